@@ -1,0 +1,82 @@
+"""Every error that tactsim raises on purpose, with the exit code of its branch.
+
+::
+
+    TactsimError
+    |-- InputError            2   what the user wrote cannot be used
+    |   |-- CaseError             a case file, with file, line and key
+    |   |-- InvalidQuantity       a number out of its range, or without its unit
+    |   `-- UnknownName           a name that is not registered
+    |-- ConvergenceError      3   the solver gave up; carries its history
+    |-- ValidationError       4   a validation row left its recorded state
+    |-- StorageError          5   a file or folder cannot be read or written
+    `-- Interrupted         130   stopped by the user or the system
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import ClassVar
+
+
+class TactsimError(Exception):
+    """Base class; ``exit_code`` is what the command line returns."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class InputError(TactsimError):
+    """What the user wrote cannot be used."""
+
+    exit_code = 2
+
+
+class CaseError(InputError):
+    """A case file is wrong at a place that the message names."""
+
+
+class InvalidQuantity(InputError, ValueError):
+    """A number is out of its range or lacks its unit."""
+
+
+class UnknownName(InputError, LookupError):
+    """A name that is not registered; the message lists the nearest ones."""
+
+    def __init__(self, what: str, name: str, allowed: Iterable[str]):
+        choices = sorted(allowed)
+        super().__init__(f"unknown {what} {name!r}{suggestion(name, choices)}; known: {', '.join(choices)}")
+
+
+class ConvergenceError(TactsimError):
+    """The solver gave up; ``history`` holds the residual norms of its last iterations."""
+
+    exit_code = 3
+
+    def __init__(self, reason: str, history: Iterable[float] = ()):
+        super().__init__(reason)
+        self.history = tuple(history)
+
+
+class ValidationError(TactsimError):
+    """A validation row left its recorded state."""
+
+    exit_code = 4
+
+
+class StorageError(TactsimError, OSError):
+    """A file or folder cannot be read or written."""
+
+    exit_code = 5
+
+
+class Interrupted(TactsimError):
+    """Stopped by the user or the system."""
+
+    exit_code = 130
+
+
+def suggestion(name: str, allowed: Iterable[str]) -> str:
+    """``" (did you mean 'radius'?)"`` if an allowed name is near, else an empty string."""
+    near = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.6)
+    return f" (did you mean {near[0]!r}?)" if near else ""

@@ -1,0 +1,101 @@
+"""The extension points on one page: subclass one of these in a new file of its package and it is registered by its ``kind``."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from tactsim.units import FrozenModel
+
+if TYPE_CHECKING:
+    from tactsim.results.result import Result, StepRecord
+
+Array = np.ndarray
+Progress = Callable[["StepRecord"], None]
+
+
+class Kind(FrozenModel, ABC):
+    """A registered thing that a case file names by its ``kind``."""
+
+    kind: str
+
+    @classmethod
+    @abstractmethod
+    def example(cls) -> Self:
+        """A valid instance with values from its source; the contract tests start from it."""
+
+
+class Material(Kind):
+    """A constitutive law at a point: isochoric stress plus a pressure that answers the volume change.
+
+    Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
+    ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
+    """
+
+    bulk_modulus: float | None
+
+    @property
+    @abstractmethod
+    def shear_modulus(self) -> float:
+        """Small-strain shear modulus in Pa."""
+
+    @abstractmethod
+    def first_piola_kirchhoff(self, F: Array, pressure: Array) -> Array:
+        """First Piola-Kirchhoff stress in Pa, shape ``(3, 3, ...)``."""
+
+    @abstractmethod
+    def tangent(self, F: Array, pressure: Array) -> Array:
+        """dP/dF at fixed pressure in Pa, shape ``(3, 3, 3, 3, ...)``."""
+
+    @abstractmethod
+    def volume_change(self, F: Array) -> Array:
+        """Relative change of volume, dimensionless: J - 1 or its linear part."""
+
+    @abstractmethod
+    def volume_change_gradient(self, F: Array) -> Array:
+        """Derivative of the volume change with respect to F, shape ``(3, 3, ...)``."""
+
+
+class RigidBody(Kind):
+    """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates."""
+
+    @abstractmethod
+    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
+        """Distance in m (positive outside), unit outward normal and Hessian of the distance at points ``x`` of shape (d, n).
+
+        Shapes ``(n,)``, ``(d, n)`` and ``(d, d, n)``.
+        """
+
+
+class ContactLaw(Kind):
+    """Tangential traction between tissue and a rigid body."""
+
+    @abstractmethod
+    def traction_limit(self, pressure: Array) -> Array:
+        """Largest tangential traction in Pa that the contact pressure in Pa sustains."""
+
+    @abstractmethod
+    def traction_limit_slope(self, pressure: Array) -> Array:
+        """Derivative of the limit with respect to the pressure, dimensionless."""
+
+
+class Sensor(Kind):
+    """Turns a history of forces into readings."""
+
+    @abstractmethod
+    def read(self, time: Array, force: Array) -> Array:
+        """Readings at the times in s for forces in N of shape ``(time, ...)``."""
+
+
+class Experiment(Kind):
+    """What a case can ask for: receives its parts, returns a result."""
+
+    @abstractmethod
+    def run(self, progress: Progress) -> Result:
+        """Run to the end, calling ``progress`` after each accepted step.
+
+        A run that does not converge or is interrupted returns a result with that status, the reason, and what was accepted.
+        """

@@ -1,0 +1,102 @@
+"""Quantities: text with a unit in files, SI floats inside.
+
+A pydantic field typed ``Length`` accepts ``"0.8 mm"`` and holds ``0.0008``. A bare number is SI in Python; in a case file
+(validation context ``{"units": "required"}``) it is an error, because nobody can tell its unit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
+
+from tactsim.errors import InvalidQuantity
+
+
+class FrozenModel(BaseModel):
+    """A closed, immutable value: unknown keys, NaN and later changes are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+def parse_quantity(text: str, unit: str) -> float:
+    """The value of ``text`` ("0.8 mm") in ``unit`` ("m").
+
+    Raises
+    ------
+    InvalidQuantity
+        If the text is not a finite number with a unit of the same dimension.
+    """
+    import pint
+
+    expected = f"expected a number with a unit of the dimension of {unit}, like '1 {unit}'"
+    number, _, given_unit = text.strip().partition(" ")
+    if not given_unit:
+        digits = len(number.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZµ%/*^"))
+        number, given_unit = number[:digits], number[digits:]
+    try:
+        value = float(number)
+    except ValueError:
+        raise InvalidQuantity(f"{text!r} is not a quantity; {expected}") from None
+    if not math.isfinite(value):
+        raise InvalidQuantity(f"{text!r} is not finite; {expected}")
+    if not given_unit.strip():
+        raise InvalidQuantity(f"{text!r} has no unit; {expected}")
+    try:
+        return float(_registry().Quantity(value, given_unit.strip()).to(unit).magnitude)
+    except pint.DimensionalityError:
+        raise InvalidQuantity(f"{text!r} has the wrong dimension; {expected}") from None
+    except (pint.errors.PintError, ValueError, TypeError, AttributeError, AssertionError):
+        raise InvalidQuantity(f"{text!r} has an unknown unit {given_unit.strip()!r}; {expected}") from None
+
+
+def format_quantity(value: float, unit: str) -> str:
+    """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``."""
+    if unit in ("", "1"):
+        return f"{value:.4g}"
+    if value == 0 or not math.isfinite(value):
+        return f"{value:g} {unit}"
+    quantity = _registry().Quantity(value, unit).to_compact()
+    return f"{quantity.magnitude:.5g} {quantity.units:~P}"
+
+
+def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
+    def read(value: Any, info: ValidationInfo) -> float:
+        if isinstance(value, str):
+            return parse_quantity(value, unit)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise InvalidQuantity(f"{value!r} is not a quantity; expected text such as '1 {unit}'")
+        if info.context and info.context.get("units") == "required":
+            raise InvalidQuantity(f"{value!r} has no unit; expected text such as '{value} {unit}'")
+        return float(value)
+
+    return read
+
+
+def quantity_type(unit: str, example: str) -> Any:
+    """A pydantic type that reads text in any unit of this dimension and holds the SI float."""
+    schema = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^0-9\s].*$", "examples": [example]}
+    return Annotated[
+        float,
+        BeforeValidator(_reader(unit)),
+        WithJsonSchema(schema, mode="validation"),
+        Field(json_schema_extra={"unit": unit}),
+    ]
+
+
+Length = quantity_type("m", "1.5 mm")
+Pressure = quantity_type("Pa", "3.2 kPa")
+Force = quantity_type("N", "0.5 N")
+Time = quantity_type("s", "2 s")
+Speed = quantity_type("m/s", "1 mm/s")
+Angle = quantity_type("rad", "20 deg")
