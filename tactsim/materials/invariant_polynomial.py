@@ -1,0 +1,58 @@
+"""Energies that are polynomials of the invariants: evaluated once for every Mooney-Rivlin kind."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from tactsim.interfaces import Array
+from tactsim.materials.hyperelastic import Hyperelastic
+
+COEFFICIENT_NAME = re.compile(r"c(\d)(\d)")
+
+
+class InvariantPolynomial(Hyperelastic):
+    r"""Rivlin's series in Pa; a kind lists its coefficients as fields named ``c<i><j>``.
+
+    .. math:: W = \sum_{ij} c_{ij} (I_1 - 3)^i (I_2 - 3)^j
+
+    Source: Rivlin & Saunders 1951, doi:10.1098/rsta.1951.0004; thesis 3.1.6.
+    """
+
+    @property
+    def terms(self) -> dict[tuple[int, int], float]:
+        """Coefficient in Pa by its pair of powers (i, j)."""
+        return powers_of({name: getattr(self, name) for name in type(self).model_fields if COEFFICIENT_NAME.fullmatch(name)})
+
+    def energy(self, I1: Array, I2: Array) -> Array:
+        """W in J/m^3."""
+        return self._derivative(I1, I2, 0, 0)
+
+    def energy_gradient(self, I1: Array, I2: Array) -> tuple[Array, Array]:
+        """(W1, W2) in Pa."""
+        return self._derivative(I1, I2, 1, 0), self._derivative(I1, I2, 0, 1)
+
+    def energy_hessian(self, I1: Array, I2: Array) -> tuple[Array, Array, Array]:
+        """(W11, W12, W22) in Pa."""
+        return self._derivative(I1, I2, 2, 0), self._derivative(I1, I2, 1, 1), self._derivative(I1, I2, 0, 2)
+
+    def _derivative(self, I1: Array, I2: Array, m: int, n: int) -> Array:
+        """The derivative m times by I1 and n times by I2."""
+        total = np.zeros(np.broadcast_shapes(np.shape(I1), np.shape(I2)))
+        for (i, j), c in self.terms.items():
+            if i >= m and j >= n:
+                total = total + c * _power_derivative(I1 - 3, i, m) * _power_derivative(I2 - 3, j, n)
+        return total
+
+
+def powers_of(coefficients: Mapping[str, float]) -> dict[tuple[int, int], float]:
+    """``{"c10": 3.0}`` as ``{(1, 0): 3.0}``."""
+    return {(int(name[1]), int(name[2])): value for name, value in coefficients.items()}
+
+
+def _power_derivative(x: Array, power: int, order: int) -> Array:
+    """The derivative of ``x**power``, ``order`` <= 2 times, for ``order <= power``."""
+    factor = (1, power, power * (power - 1))[order]
+    return factor * x ** (power - order)

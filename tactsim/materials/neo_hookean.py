@@ -1,0 +1,24 @@
+"""Neo-Hookean energy."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from tactsim.materials.invariant_polynomial import InvariantPolynomial
+from tactsim.units import Pressure
+
+
+class NeoHookean(InvariantPolynomial):
+    r"""W = c10 (I1 - 3); G = 2 c10.
+
+    Source: Treloar 1943, doi:10.1039/tf9433900036 (statistical theory); verification in the thesis's chapter 6 materials.
+    """
+
+    kind: Literal["neo_hookean"] = "neo_hookean"
+    c10: Pressure
+    """Coefficient of (I1 - 3)."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """Arterial wall of the thesis, section 6.5: E = 130 kPa, so c10 = E / 6."""
+        return cls(c10=130e3 / 6)
