@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Annotated, Self
+from typing import Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.interfaces import Array, Material
 from tactsim.materials.kinematics import (
@@ -18,12 +18,7 @@ from tactsim.materials.kinematics import (
     isochoric_invariants,
     outer,
 )
-from tactsim.units import Pressure
-
-LARGEST_BULK_TO_SHEAR_RATIO = 1e7
-"""Beyond it the volume equation ``volume_change - p / K = 0`` loses the last term to round-off of a solved pressure."""
-
-BulkModulus = Annotated[Pressure, Field(gt=0)]
+from tactsim.materials.moduli import BulkModulus, check_moduli
 
 
 class Hyperelastic(Material):
@@ -56,14 +51,7 @@ class Hyperelastic(Material):
 
     @model_validator(mode="after")
     def _moduli_are_usable(self) -> Self:
-        shear = self.shear_modulus
-        if not shear > 0:
-            raise ValueError(f"small-strain shear modulus 2 (W1 + W2) = {shear:g} Pa; it must be > 0 Pa")
-        if self.bulk_modulus is not None and self.bulk_modulus > LARGEST_BULK_TO_SHEAR_RATIO * shear:
-            raise ValueError(
-                f"bulk modulus = {self.bulk_modulus:g} Pa is {self.bulk_modulus / shear:.2g} times the shear modulus {shear:g} Pa; "
-                f"allowed are up to {LARGEST_BULK_TO_SHEAR_RATIO:g} times, or null for an exactly incompressible material"
-            )
+        check_moduli(self.shear_modulus, self.bulk_modulus)
         return self
 
     @property

@@ -1,0 +1,70 @@
+"""Homogeneous states of an incompressible material: stretches and nominal stress along three loading paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tactsim.errors import InputError
+from tactsim.interfaces import Array, Material
+from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.linear_elastic import LinearElastic
+
+
+def uniaxial(stretch: Array) -> Array:
+    """Principal stretches (l, l^-1/2, l^-1/2), shape (3, ...): directions 2 and 3 are free."""
+    return np.stack([stretch, stretch**-0.5, stretch**-0.5])
+
+
+def equibiaxial(stretch: Array) -> Array:
+    """Principal stretches (l, l, l^-2), shape (3, ...): direction 3 is free."""
+    return np.stack([stretch, stretch, stretch**-2.0])
+
+
+def planar(stretch: Array) -> Array:
+    """Principal stretches (l, 1, 1/l), shape (3, ...): direction 3 is free, direction 2 is held (pure shear)."""
+    return np.stack([stretch, np.ones_like(stretch), 1 / stretch])
+
+
+PATHS: dict[str, Callable[[Array], Array]] = {"uniaxial": uniaxial, "equibiaxial": equibiaxial, "planar": planar}
+"""Loading path by name: a function of the stretch."""
+
+
+def principal_invariants(stretches: Array) -> tuple[Array, Array]:
+    """I1 and I2 of an incompressible state of principal stretches of shape (3, ...)."""
+    squared = stretches**2
+    return squared.sum(axis=0), (1 / squared).sum(axis=0)
+
+
+def cauchy_stress(material: Hyperelastic, stretches: Array) -> Array:
+    r"""True stress in Pa along direction 1 when direction 3 is free of stress.
+
+    .. math:: \sigma_1 = 2 (\lambda_1^2 - \lambda_3^2)(W_1 + \lambda_2^2 W_2)
+
+    ``stretches`` has shape (3, ...) and product 1; a finite bulk modulus is left out.
+
+    Source: Rivlin 1948, doi:10.1098/rsta.1948.0024; thesis 3.1.2 with 3.1.9 corrected (c11 kept, pressure from the free face).
+    """
+    W1, W2 = material.energy_gradient(*principal_invariants(stretches))
+    return 2 * (stretches[0] ** 2 - stretches[2] ** 2) * (W1 + stretches[1] ** 2 * W2)
+
+
+def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
+    """Force per reference area in Pa along direction 1 of a path of ``PATHS``, of the shape of ``stretch``.
+
+    Hyperelastic kinds are taken as incompressible, ``linear_elastic`` keeps its Poisson's ratio.
+
+    Raises
+    ------
+    InputError
+        For a kind whose homogeneous states are not known.
+    """
+    stretch = np.asarray(stretch, dtype=float)
+    if isinstance(material, Hyperelastic):
+        return cauchy_stress(material, PATHS[path](stretch)) / stretch
+    if isinstance(material, LinearElastic):
+        nu = material.poisson_ratio
+        stiffening = {"uniaxial": 1.0, "equibiaxial": 1 / (1 - nu), "planar": 1 / (1 - nu**2)}[path]
+        return material.youngs_modulus * stiffening * (stretch - 1)
+    raise InputError(f"homogeneous states of material kind {material.kind!r} are not known")

@@ -1,0 +1,32 @@
+"""Limits on small-strain moduli that every material keeps."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tactsim.units import Pressure
+
+LARGEST_BULK_TO_SHEAR_RATIO = 1e7
+"""Assumption: beyond it p / K, of the order of G / K, drowns in the round-off of J - 1 after a solve."""
+
+BulkModulus = Annotated[Pressure, Field(gt=0)]
+"""Bulk modulus in Pa."""
+
+
+def check_moduli(shear_modulus: float, bulk_modulus: float | None) -> None:
+    """Nothing, for moduli in Pa that a simulation can use.
+
+    Raises
+    ------
+    ValueError
+        Naming the modulus, its value and what is allowed.
+    """
+    if not shear_modulus > 0:
+        raise ValueError(f"small-strain shear modulus = {shear_modulus:g} Pa; it must be > 0 Pa")
+    if bulk_modulus is not None and bulk_modulus > LARGEST_BULK_TO_SHEAR_RATIO * shear_modulus:
+        raise ValueError(
+            f"bulk modulus = {bulk_modulus:g} Pa is {bulk_modulus / shear_modulus:.2g} times the shear modulus; "
+            f"allowed are up to {LARGEST_BULK_TO_SHEAR_RATIO:g} times: make the material exactly incompressible instead (bulk modulus null)"
+        )
