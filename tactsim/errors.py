@@ -16,8 +16,9 @@
 from __future__ import annotations
 
 import difflib
+import reprlib
 from collections.abc import Iterable
-from typing import ClassVar
+from typing import Any, ClassVar
 
 
 class TactsimError(Exception):
@@ -78,5 +79,14 @@ class Interrupted(TactsimError):
 
 def suggestion(name: str, allowed: Iterable[str]) -> str:
     """``" (did you mean 'radius'?)"`` if an allowed name is near, else an empty string."""
-    near = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.6)
+    near = difflib.get_close_matches(name[:100], list(allowed), n=1, cutoff=0.6)
     return f" (did you mean {near[0]!r}?)" if near else ""
+
+
+def shown(value: Any) -> str:
+    """``value`` as a message shows it: its ``repr``, cut in the middle when it is long."""
+    return _SHORTENED.repr(value)
+
+
+_SHORTENED = reprlib.Repr()
+_SHORTENED.maxstring = _SHORTENED.maxother = _SHORTENED.maxlong = 80

@@ -7,19 +7,29 @@ A pydantic field typed ``Length`` accepts ``"0.8 mm"`` and holds ``0.0008``. A b
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import InvalidQuantity, shown
 
 
 class FrozenModel(BaseModel):
     """A closed, immutable value: unknown keys, NaN and later changes are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
+
+
+_QUANTITY = re.compile(
+    r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",
+    re.ASCII | re.DOTALL | re.IGNORECASE,
+)
+# One power of one digit per unit: pint evaluates longer towers, which a hostile file could make endless.
+_FACTOR = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\*\*|\^)-?\d)?|[%°]"
+_UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
 
 
 @lru_cache(maxsize=1)
@@ -40,24 +50,25 @@ def parse_quantity(text: str, unit: str) -> float:
     import pint
 
     expected = f"expected a number with a unit of the dimension of {unit}, like '1 {unit}'"
-    number, _, given_unit = text.strip().partition(" ")
-    if not given_unit:
-        digits = len(number.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZµ%/*^"))
-        number, given_unit = number[:digits], number[digits:]
-    try:
-        value = float(number)
-    except ValueError:
-        raise InvalidQuantity(f"{text!r} is not a quantity; {expected}") from None
+    parts = _QUANTITY.fullmatch(text.strip())
+    if parts is None:
+        raise InvalidQuantity(f"{shown(text)} is not a quantity; {expected}")
+    value, given_unit = float(parts["number"]), parts["unit"]
     if not math.isfinite(value):
-        raise InvalidQuantity(f"{text!r} is not finite; {expected}")
-    if not given_unit.strip():
-        raise InvalidQuantity(f"{text!r} has no unit; {expected}")
+        raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
+    if not given_unit:
+        raise InvalidQuantity(f"{shown(text)} has no unit; {expected}")
+    if not _UNIT.fullmatch(given_unit):
+        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}")
     try:
-        return float(_registry().Quantity(value, given_unit.strip()).to(unit).magnitude)
+        converted = float(_registry().Quantity(value, given_unit).to(unit).magnitude)
     except pint.DimensionalityError:
-        raise InvalidQuantity(f"{text!r} has the wrong dimension; {expected}") from None
-    except (pint.errors.PintError, ValueError, TypeError, AttributeError, AssertionError):
-        raise InvalidQuantity(f"{text!r} has an unknown unit {given_unit.strip()!r}; {expected}") from None
+        raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected}") from None
+    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}") from None
+    if not math.isfinite(converted):
+        raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
+    return float(f"{converted:.15g}")  # so that "0.8 mm" and "800 um" are the same float
 
 
 def format_quantity(value: float, unit: str) -> str:
@@ -75,9 +86,9 @@ def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
         if isinstance(value, str):
             return parse_quantity(value, unit)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InvalidQuantity(f"{value!r} is not a quantity; expected text such as '1 {unit}'")
+            raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {unit}'")
         if info.context and info.context.get("units") == "required":
-            raise InvalidQuantity(f"{value!r} has no unit; expected text such as '{value} {unit}'")
+            raise InvalidQuantity(f"{shown(value)} has no unit; expected text such as '{value:g} {unit}'")
         return float(value)
 
     return read
@@ -85,7 +96,8 @@ def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
 
 def quantity_type(unit: str, example: str) -> Any:
     """A pydantic type that reads text in any unit of this dimension and holds the SI float."""
-    schema = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^0-9\s].*$", "examples": [example]}
+    pattern = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^0-9\s].*$"
+    schema = {"type": "string", "pattern": pattern, "examples": [example], "unit": unit}
     return Annotated[
         float,
         BeforeValidator(_reader(unit)),

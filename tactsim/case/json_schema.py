@@ -1,0 +1,51 @@
+"""JSON Schema of a case file, for completion and checking in editors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tactsim.case.model import any_experiment, case_class
+from tactsim.units import format_quantity
+
+
+def case_json_schema() -> dict[str, Any]:
+    """JSON Schema (draft 7, which editors know) of a case file with every registered experiment; quantities are text."""
+    schema = _readable(case_class(any_experiment()).model_json_schema(by_alias=True, mode="validation"))
+    for reference in _told_apart(schema):
+        definition = schema["$defs"][reference.rpartition("/")[2]]
+        definition["required"] = list(dict.fromkeys(["kind", *definition.get("required", ())]))
+    return {"$schema": "http://json-schema.org/draft-07/schema#", **schema, "title": "tactsim case"}
+
+
+def _told_apart(schema: dict[str, Any]) -> set[str]:
+    """References to the definitions that must name their ``kind``: the experiments and the members of unions."""
+    experiment = schema["properties"]["experiment"]
+    return {*_union_members(schema), *([experiment["$ref"]] if "$ref" in experiment else ())}
+
+
+def _union_members(fragment: Any) -> Iterator[str]:
+    if isinstance(fragment, dict):
+        yield from fragment.get("discriminator", {}).get("mapping", {}).values()
+    for item in fragment.values() if isinstance(fragment, dict) else fragment if isinstance(fragment, list) else ():
+        yield from _union_members(item)
+
+
+def _readable(fragment: Any) -> Any:
+    """The fragment with the defaults of quantities as text, in the words of draft 7."""
+    if isinstance(fragment, list):
+        return [_readable(item) for item in fragment]
+    if not isinstance(fragment, dict):
+        return fragment
+    readable = {key: _readable(item) for key, item in fragment.items()}
+    default, unit = readable.get("default"), _unit(readable)
+    if unit and isinstance(default, int | float):
+        readable["default"] = format_quantity(default, unit)
+    if isinstance(readable.get("prefixItems"), list):
+        readable["items"] = readable.pop("prefixItems")
+    return readable
+
+
+def _unit(fragment: dict[str, Any]) -> str:
+    units = [part["unit"] for part in (fragment, *fragment.get("anyOf", ())) if isinstance(part.get("unit"), str)]
+    return units[0] if units else ""

@@ -1,0 +1,135 @@
+"""From a case file to a validated case; every fault with its file, line and key."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tactsim.case.explaining import as_written, problems_of
+from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_kinds
+from tactsim.case.overrides import apply_override
+from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
+from tactsim.case.yaml_reading import Path as KeyPath
+from tactsim.errors import CaseError, InputError, StorageError, suggestion
+
+LARGEST_FILE = 1024 * 1024
+"""In bytes."""
+Place = Callable[[Problem], str]
+
+
+def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
+    """The validated case in a file, after the overrides ``path.to.key=value``.
+
+    Raises
+    ------
+    CaseError
+        With one line for every fault: the file, the line, the key path, the value, and what is allowed.
+    StorageError
+        If the file is missing or cannot be read.
+    """
+    text = read_case_text(path)
+    try:
+        document = read_yaml(text)
+    except YamlProblems as error:
+        raise _case_error(error.problems, _place_in(path, {})) from None
+    if not isinstance(document.value, dict):
+        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
+        raise CaseError(f"{path}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+    overridden: dict[KeyPath, str] = {}
+    for override in overrides:
+        try:
+            key_path = apply_override(document, override)
+        except YamlProblems as error:
+            raise _case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
+        overridden[key_path] = override.partition("=")[0].strip()
+    return _validated(document, _place_in(path, overridden))
+
+
+def read_case_text(path: str | Path) -> str:
+    """The text of a case file of at most ``LARGEST_FILE`` bytes of UTF-8."""
+    try:
+        with open(path, "rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise StorageError(f"cannot read the case file {path}: {reason}") from None
+    if len(content) > LARGEST_FILE:
+        raise CaseError(f"{path}: larger than {LARGEST_FILE} bytes, which no case needs")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise CaseError(f"{path}:{line}: byte {content[error.start]:#04x} is not UTF-8 text") from None
+
+
+def _validated(document: Document, place: Place) -> Case:
+    _check_version(document, place)
+    experiment = document.value.get("experiment")
+    kind = experiment.get("kind") if isinstance(experiment, dict) else None
+    known = experiment_kinds()
+    problems = _kind_problems(document, known)
+    model = case_class(Any if problems else known[str(kind)] if kind else any_experiment())
+    try:
+        # Strict JSON: a list may become a tuple, but neither true nor "3" becomes a number.
+        case = model.model_validate_json(json.dumps(document.value), strict=True, context={"units": "required"})
+    except ValidationError as error:
+        problems += problems_of(error, document, model)
+    except InputError as error:
+        problems.append(Problem(("experiment",), document.line(("experiment",)), str(error)))
+    if problems:
+        raise _case_error(problems, place)
+    return case
+
+
+def _check_version(document: Document, place: Place) -> None:
+    version = document.value.get("schema")
+    if version == SCHEMA:
+        return
+    if "schema" not in document.value:
+        message = f"missing; the file must begin with 'schema: {SCHEMA}'"
+    else:
+        message = f"the version {as_written(version)} is not supported; this tactsim reads {SCHEMA!r}"
+    raise _case_error([Problem(("schema",), document.line(("schema",)), message)], place)
+
+
+def _kind_problems(document: Document, known: dict[str, Any]) -> list[Problem]:
+    choices = f"choices: {', '.join(sorted(known))}"
+    experiment = document.value.get("experiment")
+    if "experiment" not in document.value:
+        return []
+    path: KeyPath = ("experiment",)
+    kind = experiment.get("kind") if isinstance(experiment, dict) else None
+    if isinstance(kind, str) and kind in known:
+        return []
+    if not isinstance(experiment, dict):
+        message = f"{as_written(experiment)} is not a mapping with a 'kind'; {choices}"
+    elif "kind" not in experiment:
+        path, message = (*path, "kind"), f"missing; {choices}"
+    else:
+        path = (*path, "kind")
+        message = f"unknown kind {as_written(kind)}{suggestion(str(kind), known)}; {choices}"
+    return [Problem(path, document.line(path), message)]
+
+
+def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
+    """Names the place of a problem: the option that set the value, or file and line."""
+
+    def place(problem: Problem) -> str:
+        for length in range(len(problem.path), 0, -1):
+            if problem.path[:length] in overridden:
+                return f"--set {overridden[problem.path[:length]]}"
+        return f"{path}:{problem.line}" if problem.line else str(path)
+
+    return place
+
+
+def _case_error(problems: Sequence[Problem], place: Place) -> CaseError:
+    lines = []
+    for problem in sorted(problems, key=lambda problem: problem.line):
+        where, key = place(problem), ".".join(map(str, problem.path))
+        lines.append(": ".join(part for part in (where, "" if where == f"--set {key}" else key, problem.message) if part))
+    return CaseError("\n".join(dict.fromkeys(lines)))

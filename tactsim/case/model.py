@@ -1,0 +1,76 @@
+"""What a case file may hold: one experiment out of those registered, a title, and what to write."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from typing import Annotated, Any, Literal, Union
+
+from pydantic import Field, SerializeAsAny, create_model
+
+from tactsim.interfaces import Experiment
+from tactsim.registry import kinds
+from tactsim.units import FrozenModel
+
+SCHEMA = "tactsim/case/1"
+EXPERIMENTS = "tactsim.experiments"
+
+
+class Output(FrozenModel):
+    """What a run writes beside its quantities."""
+
+    fields: Literal["all", "last", "none"] = "all"
+    """Accepted steps whose fields are written for ParaView."""
+
+
+class Case(FrozenModel):
+    """A validated case: every value in SI, every default filled in."""
+
+    schema_version: Literal["tactsim/case/1"] = Field(alias="schema")
+    """Version of the case format."""
+    title: str = Field(default="", max_length=200)
+    """One line that says what the case is."""
+    experiment: SerializeAsAny[Experiment]
+    """What to compute."""
+    output: Output = Output()
+    """What to write."""
+
+    @property
+    def case_id(self) -> str:
+        """Sixteen hexadecimal digits that are the same for every spelling of the same case.
+
+        The hash of the canonical JSON of ``resolved()``, numbers to twelve significant digits.
+        """
+        text = json.dumps(_canonical(self.resolved()), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def resolved(self) -> dict[str, Any]:
+        """The case as plain JSON values in SI with every default filled in."""
+        return self.model_dump(mode="json", by_alias=True)
+
+
+def experiment_kinds() -> dict[str, type[Experiment]]:
+    """``kind`` -> class of every experiment that a case can ask for."""
+    return kinds(EXPERIMENTS, Experiment)
+
+
+@cache
+def case_class(experiment: Any) -> type[Case]:
+    """The case whose experiment has this type, which may be ``Any`` to check everything else."""
+    field = Field(description=Case.model_fields["experiment"].description)
+    return create_model("Case", __base__=Case, __doc__=Case.__doc__, experiment=(experiment, field))
+
+
+def any_experiment() -> Any:
+    """The type of all registered experiments, told apart by ``kind``."""
+    choices = tuple(experiment_kinds().values())
+    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007
+
+
+def _canonical(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _canonical(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_canonical(item) for item in value]
+    return float(f"{value:.12g}") + 0.0 if isinstance(value, float) else value

@@ -1,0 +1,58 @@
+"""``--set path.to.key=value``: changes of a case from the command line, validated like the file itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems, read_yaml
+from tactsim.errors import shown
+
+
+def apply_override(document: Document, override: str) -> Path:
+    """Sets one value in the document, which it changes; returns the key path that the override made or replaced.
+
+    A missing mapping on the way is created, so that a value with a default can be set; validation refuses unknown keys.
+
+    Raises
+    ------
+    YamlProblems
+        If the text is not ``path=value`` or the path leads through something that has no such entry.
+    """
+    path_text, equals, value_text = override.partition("=")
+    keys = path_text.strip().split(".")
+    if not equals or not all(keys):
+        raise _refused(f"{shown(override)} is not of the form path.to.key=value")
+    try:
+        value = read_yaml(value_text).value
+    except YamlProblems as error:
+        raise _refused(f"the value {shown(value_text)} cannot be read: {error}") from None
+    target: Any = document.value
+    place: Path = ()
+    made: Path | None = None
+    for key in keys[:-1]:
+        step = _step(target, place, key)
+        place = (*place, step)
+        if (target[step] if isinstance(target, list) else target.get(step)) is None:
+            target[step], made = {}, made or place
+        target = target[step]
+    step = _step(target, place, keys[-1])
+    target[step] = value
+    return made or (*place, step)
+
+
+def _step(target: Any, place: Path, key: str) -> Any:
+    """The key or list index by which ``key`` enters ``target``."""
+    if isinstance(target, dict):
+        return key
+    where = ".".join(map(str, place)) or "the case"
+    if not isinstance(target, list):
+        raise _refused(f"{where} is {shown(target)}, which has no entry {shown(key)}")
+    allowed = [str(index) for index in range(len(target))]
+    if key not in allowed:
+        known = f"0 to {len(target) - 1}" if target else "none, the list is empty"
+        raise _refused(f"{where} is a list without an entry {shown(key)}; entries: {known}")
+    return int(key)
+
+
+def _refused(message: str) -> YamlProblems:
+    return YamlProblems(Problem((), 0, message))
