@@ -1,5 +1,7 @@
 """What a run returns, and its form on disk."""
 
+from tactsim.results.reading import StoredResult, read_result
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.writing import write_result
 
-__all__ = ["FieldFrame", "Quantity", "Result", "Status", "StepRecord"]
+__all__ = ["FieldFrame", "Quantity", "Result", "Status", "StepRecord", "StoredResult", "read_result", "write_result"]

@@ -1,0 +1,146 @@
+"""``result.json``: its format, defined once for writing and reading."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from tactsim.errors import StorageError
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+
+SCHEMA_VERSION: Literal[1] = 1
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
+
+
+class QuantityPart(_Part):
+    """A quantity in SI."""
+
+    value: Any
+    """Number, nested list of numbers, or null where it is not finite."""
+    unit: str
+    description: str
+
+
+class StepPart(_Part):
+    """One accepted step."""
+
+    step: int
+    newton_iterations: int
+    residual: float | None
+    values: dict[str, float | None]
+    """History values in SI; their units stand in ``units``."""
+
+
+class ResultDocument(_Part):
+    """The whole file."""
+
+    schema_version: Literal[1] = SCHEMA_VERSION
+    case_id: str
+    kind: str
+    status: Status
+    reason: str
+    quantities: dict[str, QuantityPart]
+    assumptions: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    timing: dict[str, float | None] = Field(default_factory=dict)
+    units: dict[str, str] = Field(default_factory=dict)
+    steps: tuple[StepPart, ...] = ()
+    details: dict[str, Any] = Field(default_factory=dict)
+
+
+def document_text(result: Result, case_id: str) -> str:
+    """The text of ``result.json``: strict JSON, a number that is not finite as null with a warning that names it."""
+    content = {
+        "quantities": {
+            name: {"value": quantity.value, "unit": quantity.unit, "description": quantity.description}
+            for name, quantity in result.quantities.items()
+        },
+        "timing": result.timing,
+        "units": result.units,
+        "steps": [
+            {"step": s.step, "newton_iterations": s.newton_iterations, "residual": s.residual, "values": s.values}
+            for s in result.steps
+        ],
+        "details": result.details,
+    }
+    lost: list[str] = []
+    plain = {name: plain_json(value, (name,), lost) for name, value in content.items()}
+    warnings = [*result.warnings, *(f"{place} is not finite and stored as null" for place in lost)]
+    head = {"schema_version": SCHEMA_VERSION, "case_id": case_id, "kind": result.kind, "status": str(result.status)}
+    whole = {**head, "reason": result.reason, "assumptions": list(result.assumptions), "warnings": warnings, **plain}
+    order = ResultDocument.model_fields
+    return json.dumps({name: whole[name] for name in order}, indent=1, allow_nan=False) + "\n"
+
+
+def plain_json(value: Any, place: tuple[str, ...], lost: list[str]) -> Any:
+    """``value`` as plain JSON values; the places of numbers that are not finite are added to ``lost``."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {str(key): plain_json(item, (*place, str(key)), lost) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain_json(item, (*place, str(index)), lost) for index, item in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        lost.append(".".join(place))
+        return None
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    raise TypeError(f"{'.'.join(place)} holds a {type(value).__name__}, which JSON cannot hold")
+
+
+def parse_document(text: str, name: str) -> ResultDocument:
+    """The content of ``result.json``.
+
+    Raises
+    ------
+    StorageError
+        If the text is not a result that this version of tactsim can read; the message begins with ``name``.
+    """
+    try:
+        content = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        raise StorageError(f"{name} is damaged: {error}") from None
+    version = content.get("schema_version") if isinstance(content, dict) else None
+    if not isinstance(version, int):
+        raise StorageError(f"{name} is not a result of tactsim: it has no schema_version")
+    if version != SCHEMA_VERSION:
+        raise StorageError(f"{name} has schema_version {version}; this tactsim reads {SCHEMA_VERSION}, update tactsim")
+    try:
+        return ResultDocument.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise StorageError(f"{name} is damaged: {'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+
+
+def result_of(document: ResultDocument) -> Result:
+    """The result in the document, without its fields."""
+    return Result(
+        kind=document.kind,
+        status=document.status,
+        reason=document.reason,
+        quantities={name: Quantity(q.value, q.unit, q.description) for name, q in document.quantities.items()},
+        assumptions=document.assumptions,
+        warnings=document.warnings,
+        timing={name: _number(value) for name, value in document.timing.items()},
+        steps=tuple(
+            StepRecord(s.step, s.newton_iterations, _number(s.residual), {k: _number(v) for k, v in s.values.items()})
+            for s in document.steps
+        ),
+        units=document.units,
+        details=document.details,
+    )
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _refuse_constant(name: str) -> Any:
+    raise ValueError(f"{name} is not JSON")

@@ -1,0 +1,80 @@
+"""``fields.pvd`` and its ``.vtu`` files: fields of the accepted steps for ParaView."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from tactsim.errors import StorageError
+from tactsim.results.result import FieldFrame
+
+INDEX = "fields.pvd"
+
+
+def write_fields(frames: Sequence[FieldFrame], directory: Path) -> None:
+    """Writes one ``.vtu`` per frame and the index that names them by relative path."""
+    if not frames:
+        return
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
+    collection = ElementTree.SubElement(root, "Collection")
+    for number, frame in enumerate(frames, start=1):
+        name = f"fields_{number:04d}.vtu"
+        _write_frame(frame, directory / name)
+        ElementTree.SubElement(collection, "DataSet", timestep=repr(float(frame.time)), part="0", file=name)
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(directory / INDEX, encoding="utf-8", xml_declaration=True)
+
+
+def read_fields(directory: Path) -> tuple[FieldFrame, ...]:
+    """The frames that ``write_fields`` wrote, empty if none were written.
+
+    Raises
+    ------
+    StorageError
+        If a file is missing or damaged.
+    """
+    index = directory / INDEX
+    if not index.is_file():
+        return ()
+    try:
+        entries = [dict(entry.attrib) for entry in ElementTree.parse(index).iter("DataSet")]
+        return tuple(_read_frame(directory / Path(e["file"]).name, float(e["timestep"])) for e in entries)
+    except (ElementTree.ParseError, KeyError, ValueError) as error:
+        raise StorageError(f"{index} is damaged: {error}") from None
+
+
+def _write_frame(frame: FieldFrame, path: Path) -> None:
+    import meshio
+    from meshio.vtu import write
+
+    sizes = np.cumsum([len(connectivity) for connectivity in frame.cells.values()])[:-1]
+    mesh = meshio.Mesh(
+        np.ascontiguousarray(frame.points, dtype=float),
+        list(frame.cells.items()),
+        point_data={name: _columns(values) for name, values in frame.point_data.items()},
+        cell_data={name: np.split(_columns(values), sizes) for name, values in frame.cell_data.items()},
+    )
+    write(path, mesh)
+
+
+def _columns(values: np.ndarray) -> np.ndarray:
+    """Field values as VTK wants them: one row per point, a tensor as nine columns, no booleans."""
+    array = np.asarray(values)
+    array = array.astype(np.uint8) if array.dtype == bool else array
+    return np.ascontiguousarray(array if array.ndim < 3 else array.reshape(len(array), -1))
+
+
+def _read_frame(path: Path, time: float) -> FieldFrame:
+    from meshio import ReadError
+    from meshio.vtu import read
+
+    try:
+        mesh = read(path)
+    except (OSError, ReadError, ElementTree.ParseError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise StorageError(f"cannot read {path}: {error or 'it is damaged'}") from None
+    cells = {block.type: block.data for block in mesh.cells}
+    cell_data = {name: np.concatenate(parts) for name, parts in mesh.cell_data.items()}
+    return FieldFrame(time, mesh.points, cells, dict(mesh.point_data), cell_data)

@@ -1,0 +1,52 @@
+"""What a result rests on: versions, the resolved case, the kind of machine; no names of users, hosts or folders."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import PurePosixPath, PureWindowsPath
+from typing import Any
+
+from tactsim import __version__
+
+PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "numba", "pypardiso", "pydantic", "ruamel.yaml", "pint")
+
+
+def provenance(
+    case: Mapping[str, Any], case_id: str, *, case_file: str = "", overrides: Sequence[str] = (), seed: int | None = None
+) -> dict[str, Any]:
+    """The content of ``provenance.json`` for a resolved case; of ``case_file`` only the name is kept."""
+    return {
+        "case_id": case_id,
+        "case_file": _without_folders(case_file),
+        "overrides": [_without_folders(override) for override in overrides],
+        "seed": seed,
+        "versions": {"tactsim": __version__, "python": platform.python_version(), **_package_versions()},
+        "platform": {"system": platform.system(), "machine": platform.machine()},
+        "case": _without_folders(dict(case)),
+    }
+
+
+def _package_versions() -> dict[str, str]:
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _without_folders(value: Any) -> Any:
+    """``value`` with every absolute path in it cut to its last name."""
+    if isinstance(value, dict):
+        return {key: _without_folders(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_folders(item) for item in value]
+    if isinstance(value, str):
+        key, equals, text = value.rpartition("=")
+        for flavour in (PurePosixPath, PureWindowsPath):
+            if flavour(text).is_absolute():
+                return f"{key}{equals}{flavour(text).name}"
+    return value

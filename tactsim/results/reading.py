@@ -1,0 +1,55 @@
+"""Reads the folder that a run wrote."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from tactsim.errors import StorageError
+from tactsim.results.document import parse_document, result_of
+from tactsim.results.fields import read_fields
+from tactsim.results.folder import RESULT_FILE
+from tactsim.results.result import Result
+from tactsim.results.storage import read_text
+
+
+@dataclass(frozen=True)
+class StoredResult:
+    """A result as it stands on disk, with the identity of its case and what it rests on."""
+
+    result: Result
+    case_id: str
+    provenance: dict[str, Any]
+    directory: Path
+
+
+def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
+    """The result in a folder, with or without its fields.
+
+    Raises
+    ------
+    StorageError
+        If a file is missing, damaged, or of a newer version of tactsim.
+    """
+    folder = Path(directory)
+    if not folder.is_dir():
+        raise StorageError(f"{folder} is not a folder with a result of tactsim")
+    if not (folder / RESULT_FILE).is_file():
+        raise StorageError(f"{folder} holds no {RESULT_FILE}, so it is not a result of tactsim")
+    document = parse_document(read_text(folder / RESULT_FILE), str(folder / RESULT_FILE))
+    provenance = _provenance(folder / "provenance.json")
+    result = result_of(document)
+    frames = read_fields(folder) if fields else ()
+    return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder)
+
+
+def _provenance(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(read_text(path))
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise StorageError(f"{path} is damaged: {error}") from None
+    if not isinstance(content, dict):
+        raise StorageError(f"{path} is damaged: it is not a mapping")
+    return content

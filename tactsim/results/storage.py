@@ -1,0 +1,47 @@
+"""Reading and writing whole files with errors that name the path."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tactsim.errors import StorageError
+
+
+@contextmanager
+def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
+    """Turns the system's refusal into an error that names the path."""
+    try:
+        yield
+    except StorageError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise StorageError(f"cannot {verb} {path}: {reason}") from error
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Writes a new file down to the disk, so that a full disk shows here and not later."""
+    with open(path, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def read_text(path: Path) -> str:
+    """The UTF-8 text of a file."""
+    with naming(path, "read"):
+        return path.read_bytes().decode("utf-8")
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Writes a file so that its place holds the earlier or the new content, never a part of it."""
+    waiting = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    with naming(path):
+        try:
+            write_bytes(waiting, content)
+            os.replace(waiting, path)
+        finally:
+            waiting.unlink(missing_ok=True)
