@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core.core_schema import ErrorType
 
 from tactsim.case.yaml_reading import Document, Path, Problem
 from tactsim.errors import shown, suggestion
@@ -22,6 +23,7 @@ _TYPES = {
     "null": "null",
 }
 _BOUNDS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most", "multiple_of": "a multiple of"}
+_PYDANTIC_TYPES = frozenset(get_args(ErrorType))
 _MISSING = object()
 
 
@@ -29,15 +31,26 @@ def problems_of(error: ValidationError, document: Document, model: type[BaseMode
     """One problem for every key path that the model refused."""
     schema = model.model_json_schema(by_alias=True)
     found: dict[Path, list[str]] = {}
-    for detail in error.errors(include_url=False):
+    for detail in _details(error):
         path = _path_in_file(detail["loc"], document.value, str(detail["type"]))
         if detail["type"] in ("too_short", "too_long") and _fits(detail.get("ctx", {}), _value_at(document.value, path)):
             continue  # pydantic counts only the valid entries, and the others have their own message
-        place, message = _explained(dict(detail), path, document.value, schema)
+        place, message = _explained(detail, path, document.value, schema)
         messages = found.setdefault(place, [])
         if message not in messages:
             messages.append(message)
     return [Problem(path, document.line(path), "; or ".join(messages)) for path, messages in found.items()]
+
+
+def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
+    """Every single refusal; a validator that itself validated a model wraps the refusals of that model."""
+    for detail in error.errors(include_url=False):
+        place = (*location, *detail["loc"])
+        inner = detail.get("ctx", {}).get("error")
+        if isinstance(inner, ValidationError):
+            yield from _details(inner, place)
+        else:
+            yield {**detail, "loc": place}
 
 
 def as_written(value: Any) -> str:
@@ -82,7 +95,7 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         return _tag_path(
             context, path
         ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
-    if error_type in ("value_error", "assertion_error"):
+    if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
         return path, str(context.get("error", detail["msg"]))
     if error_type in ("literal_error", "enum"):
         choices = re.findall(r"'([^']*)'", context["expected"])
@@ -124,12 +137,11 @@ def _expectation(fragment: dict[str, Any], schema: dict[str, Any]) -> str:
         return "one of " + ", ".join(map(shown, fragment["enum"]))
     if "unit" in fragment:
         return f"a quantity with its unit, such as {fragment['examples'][0]!r}"
-    members = fragment.get("anyOf") or fragment.get("oneOf") or []
+    members = list(_members(fragment, schema))
     tags = _tags(fragment, schema)
-    if tags:
-        return f"a mapping with a kind of {', '.join(tags)}"
-    if members:
-        return " or ".join(dict.fromkeys(_expectation(member, schema) for member in members))
+    if len(members) > 1 or tags:
+        words = [_expectation(member, schema) for member in members if not _tag(member)]
+        return " or ".join(dict.fromkeys([*words, *([f"a mapping with a kind of {', '.join(tags)}"] if tags else [])]))
     if fragment.get("type") == "object" and "properties" in fragment:
         return f"a mapping with {', '.join(fragment['properties'])}"
     return _TYPES.get(str(fragment.get("type")), "a value")
@@ -165,8 +177,12 @@ def _members(fragment: dict[str, Any], schema: dict[str, Any]) -> Iterator[dict[
 
 
 def _tags(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
-    members = _members(fragment, schema)
-    return sorted({tag for member in members if (tag := member.get("properties", {}).get("kind", {}).get("const"))})
+    return sorted({tag for member in _members(fragment, schema) if (tag := _tag(member))})
+
+
+def _tag(member: dict[str, Any]) -> str:
+    """The ``kind`` of a member of a union, empty if it has none."""
+    return str(member.get("properties", {}).get("kind", {}).get("const", ""))
 
 
 def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
@@ -198,7 +214,6 @@ def _narrowed(fragment: dict[str, Any], schema: dict[str, Any], value: Any) -> d
     members = list(_members(fragment, schema))
     if isinstance(value, dict) and len(members) > 1:
         kind = value.get("kind")
-        for member in members:
-            if kind is not None and member.get("properties", {}).get("kind", {}).get("const") == kind:
-                return member
+        fitting = [m for m in members if (_tag(m) == kind if kind else set(m.get("required", ["kind"])) <= value.keys())]
+        members = fitting if len(fitting) == 1 else members
     return members[0] if len(members) == 1 else {**_resolved(fragment, schema), "anyOf": members}

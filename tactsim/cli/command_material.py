@@ -1,0 +1,169 @@
+"""``tactsim material``: shipped materials, those of a case, and fits to a measured curve."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactsim.cli import console
+from tactsim.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from tactsim.identification.uniaxial import UniaxialFit
+    from tactsim.interfaces import Material
+
+NAME = "material"
+SUMMARY = "constants, stability and curves of a material; fits to a measured curve"
+DESCRIPTION = """\
+Without an argument lists the materials that ship with tactsim. With a name, or a case file,
+prints the constants, the small-strain moduli and the range of stretch in which each material
+is stable. With --fit reads a uniaxial curve (CSV with a header such as
+"stretch,nominal_stress_kPa"), fits every form of the energy, and prints the lines to put into
+a case file. --save draws the curves.
+"""
+EXAMPLES = """\
+examples:
+  tactsim material
+  tactsim material icf_stable --save icf.png
+  tactsim material cases/annulus_icf.yaml
+  tactsim material --fit my_rubber.csv --form stable --save fit.png
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options."""
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("material", metavar="NAME|CASE", nargs="?", help="name of a shipped material, or a case file")
+    what.add_argument("--fit", metavar="CURVE.csv", type=Path, help="fit a measured uniaxial curve")
+    parser.add_argument("--form", metavar="FORM", help="with --fit: report this form of the energy only")
+    parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the curves")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code of the whole command."""
+    if arguments.fit is not None:
+        return _fit(arguments)
+    if arguments.form is not None:
+        raise InputError("--form goes with --fit")
+    if arguments.material is None:
+        if arguments.save is not None:
+            raise InputError("--save needs a material to draw")
+        return _list()
+    return _report(arguments)
+
+
+def _list() -> int:
+    from tactsim.materials.library import LIBRARY
+
+    width = max(map(len, LIBRARY))
+    for name, entry in sorted(LIBRARY.items()):
+        console.out(f"{name:<{width}}  {entry.material.kind}; {entry.source}")
+    return 0
+
+
+def _report(arguments: argparse.Namespace) -> int:
+    from tactsim.materials.report import material_report
+
+    found = _materials(arguments.material)
+    console.out("\n\n".join(material_report(name, material) for name, material in found.items()))
+    if arguments.save is not None:
+        from tactsim.display.material import material_figure
+
+        for name, material in found.items():
+            place = arguments.save if len(found) == 1 else _numbered(arguments.save, name)
+            _save(material_figure(material, name), place)
+    return 0
+
+
+def _fit(arguments: argparse.Namespace) -> int:
+    from tactsim.errors import ConvergenceError, InvalidQuantity
+    from tactsim.identification.uniaxial import FORMS, fit_uniaxial
+    from tactsim.identification.uniaxial_data import read_uniaxial_curve
+
+    curve = read_uniaxial_curve(arguments.fit)
+    fits: list[UniaxialFit] = []
+    refused: list[str] = []
+    for form in [arguments.form] if arguments.form else FORMS:
+        try:
+            fits.append(fit_uniaxial(curve, form))
+        except (ConvergenceError, InvalidQuantity) as error:
+            if arguments.form:
+                raise
+            refused.append(f"{form}: no fit: {error}")
+    for fit in fits:
+        console.out(_fit_lines(fit))
+    for line in refused:
+        console.out(line)
+    if not fits:
+        raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
+    if arguments.save is not None:
+        from tactsim.display.material import fit_figure
+
+        _save(fit_figure(curve, fits, arguments.fit.stem), arguments.save)
+    return 0
+
+
+def _fit_lines(fit: UniaxialFit) -> str:
+    """The errors of a fit and its line of a case file."""
+    from tactsim.units import format_quantity
+
+    errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
+    stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic at every stretch"
+    constants = {
+        name: format_quantity(value, "Pa")
+        for name, value in fit.material.model_dump(exclude={"kind", "bulk_modulus"}).items()
+        if isinstance(value, float)
+    }
+    entries = ", ".join(f"{name}: {value}" for name, value in {"kind": fit.material.kind, **constants}.items())
+    return f"{fit.form}: {errors}; {stable}\n  {{{entries}}}"
+
+
+def _materials(name: str) -> dict[str, Material]:
+    """The shipped material of this name, or every material of a case file by its key path."""
+    from tactsim.case import load_case
+    from tactsim.materials.library import LIBRARY, named_material
+
+    looks_like_a_file = Path(name).suffix in (".yaml", ".yml") or Path(name).exists()
+    if name in LIBRARY or not looks_like_a_file:
+        return {name: named_material(name).material}
+    found = dict(_inside(load_case(name).experiment, ()))
+    if not found:
+        raise InputError(f"{name}: the case has no material")
+    return found
+
+
+def _inside(value: object, path: tuple[str, ...]) -> list[tuple[str, Material]]:
+    """Every material in a value, with its key path."""
+    from pydantic import BaseModel
+
+    from tactsim.interfaces import Material
+
+    if isinstance(value, Material):
+        return [(".".join(path), value)]
+    if isinstance(value, BaseModel):
+        entries = [(name, getattr(value, name)) for name in type(value).model_fields]
+    elif isinstance(value, dict):
+        entries = [(str(key), item) for key, item in value.items()]
+    elif isinstance(value, list | tuple):
+        entries = [(str(index), item) for index, item in enumerate(value)]
+    else:
+        return []
+    return [pair for name, item in entries for pair in _inside(item, (*path, name))]
+
+
+def _numbered(place: Path, name: str) -> Path:
+    return place.with_name(f"{place.stem}-{name.replace('.', '-')}{place.suffix}")
+
+
+def _save(figure: Figure, place: Path) -> None:
+    import io
+
+    from tactsim.results.storage import replace_file
+
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=150)
+    replace_file(place, content.getvalue())
+    console.out(f"figure {place}")

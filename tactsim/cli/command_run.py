@@ -1,0 +1,132 @@
+"""``tactsim run``: computes a case and writes its result."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactsim.cli import console
+from tactsim.cli.interruption import Interruption, interruptible
+from tactsim.errors import Interrupted, StorageError
+
+if TYPE_CHECKING:
+    from tactsim.case import Case
+    from tactsim.results import Result, StepRecord
+    from tactsim.results.folder import OutputFolder
+
+NAME = "run"
+SUMMARY = "compute a case and write its result"
+DESCRIPTION = """\
+Computes a case and writes result.json, history.csv, provenance.json, fields.pvd (for ParaView)
+and figures/ into the output folder. The folder is complete or absent: it is written beside its
+place and moved there last.
+
+Without --out the folder is results/<name of the case file>, and an earlier result of tactsim
+there is replaced; if the new run does not converge, an earlier result that did is kept beside
+it with the ending .earlier. A folder given by --out is replaced only with --force. A folder
+with files that tactsim did not write is never replaced.
+
+On a terminal every accepted step is reported as it happens; elsewhere only the final report
+is written, unless --progress asks for more. Ctrl+C stops the computation and writes what was
+accepted so far with the status "interrupted"; a second Ctrl+C stops at once.
+"""
+EXAMPLES = """\
+examples:
+  tactsim run cases/annulus_icf.yaml
+  tactsim run cases/annulus_icf.yaml --out soft --set experiment.specimen.thickness="6 mm"
+  tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options."""
+    parser.add_argument("case", metavar="CASE", type=Path, help="case file (YAML)")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="output folder (default: results/<name of the case file>)")
+    parser.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help="set path.to.key, validated like the file; may be repeated",
+    )
+    parser.add_argument("--force", action="store_true", help="replace an earlier result in --out")
+    loudness = parser.add_mutually_exclusive_group()
+    loudness.add_argument("--quiet", action="store_true", help="write no progress and no report, only errors")
+    loudness.add_argument("--progress", action="store_true", help="report every accepted step even where nobody watches")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code of the whole command."""
+    from tactsim.case import load_case
+    from tactsim.results.folder import claimed
+
+    with interruptible() as interruption:
+        case = load_case(arguments.case, arguments.set)
+        directory = arguments.out or Path("results") / arguments.case.stem
+        with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
+            result = case.experiment.run(_progress(case, arguments))
+            with interruption.deferred():
+                return _finish(result, case, folder, interruption, arguments)
+
+
+def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None]:
+    from tactsim.cli.report import step_line
+
+    if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
+        return lambda record: None
+    units = getattr(case.experiment, "history_units", {})
+    return lambda record: console.note(step_line(record, units))
+
+
+def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:
+    """Writes the result, reports it, and returns the exit code of its status."""
+    from tactsim.cli.figures import rendered_figures
+    from tactsim.cli.report import last_line, result_report
+
+    figures, warnings = rendered_figures(result)
+    result = replace(result, warnings=(*result.warnings, *warnings), frames=_chosen_frames(result, case))
+    report = result_report(result, case.title)
+    try:
+        kept = _write(result, case, folder, figures, arguments)
+    except StorageError:
+        if not arguments.quiet:
+            console.out(report)
+        raise
+    if not arguments.quiet:
+        console.out(report)
+        if kept:
+            console.out(f"  the earlier result, which converged, is kept in {kept}")
+        console.out(last_line(result, folder.path, figures))
+    return Interrupted.exit_code if interruption.requested else result.status.exit_code
+
+
+def _write(
+    result: Result, case: Case, folder: OutputFolder, figures: dict[str, bytes], arguments: argparse.Namespace
+) -> Path | None:
+    """Writes and publishes the folder; returns where an earlier result is kept, if it is."""
+    from tactsim.results import Status
+    from tactsim.results.provenance import provenance
+    from tactsim.results.writing import fill
+
+    case_id = case.case_id
+    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set)
+    fill(folder, result, case_id=case_id, provenance=origin, figures=figures)
+    keep = result.status is not Status.CONVERGED and not arguments.force and _converged(folder.path)
+    return folder.publish(keep_earlier=keep)
+
+
+def _converged(directory: Path) -> bool:
+    """Whether the folder holds a result that converged."""
+    from tactsim.results import Status, read_result
+
+    try:
+        return read_result(directory, fields=False).result.status is Status.CONVERGED
+    except StorageError:
+        return False
+
+
+def _chosen_frames(result: Result, case: Case) -> tuple:
+    return {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]

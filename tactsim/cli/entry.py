@@ -1,0 +1,77 @@
+"""Finds the command, runs it, and turns every error into one message and an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import traceback
+from collections.abc import Sequence
+from typing import NoReturn
+
+from tactsim import __version__
+from tactsim.cli import command_material, command_run, command_schema, command_show, console
+from tactsim.errors import InputError, Interrupted, TactsimError
+
+COMMANDS = (command_run, command_show, command_material, command_schema)
+EXIT_CODES = """\
+exit codes:
+  0    done
+  2    bad input: the case file, an option or a quantity
+  3    the computation did not converge; what was accepted is written
+  4    validation outside its tolerance
+  5    a file or folder cannot be read or written
+  130  interrupted; what was accepted is written
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser whose refusals are errors like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}\nsee: {self.prog} --help")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line and returns its exit code; ``arguments`` default to those of the process."""
+    debug = False
+    try:
+        parsed = _parser().parse_args(arguments)
+        debug = parsed.debug
+        return int(parsed.run(parsed))
+    except SystemExit as end:  # argparse ends --help and --version this way
+        return int(end.code or 0)
+    except KeyboardInterrupt:
+        console.error("interrupted")
+        return Interrupted.exit_code
+    except TactsimError as error:
+        console.error(traceback.format_exc() if debug else str(error))
+        return error.exit_code
+    except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is told as such
+        trace = traceback.format_exc() if debug else "run again with --debug for the details"
+        console.error(f"internal error ({type(error).__name__}: {error}); please report it; {trace}")
+        return TactsimError.exit_code
+    finally:
+        console.flush()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="tactsim",
+        description="Physics simulation of tactile sensing on soft tissue.",
+        epilog=f"example:\n  tactsim run cases/annulus_icf.yaml\n\n{EXIT_CODES}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"tactsim {__version__}")
+    parser.set_defaults(debug=False)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in COMMANDS:
+        sub = commands.add_parser(
+            command.NAME,
+            help=command.SUMMARY,
+            description=command.DESCRIPTION,
+            epilog=f"{command.EXAMPLES}\n{EXIT_CODES}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        command.add_arguments(sub)
+        sub.add_argument("--debug", action="store_true", help="show the traceback of an error")
+        sub.set_defaults(run=command.run)
+    return parser

@@ -1,0 +1,59 @@
+"""Stopping a run: the first signal ends the computation in good order, the second ends the process."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from tactsim.errors import Interrupted
+
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class Interruption:
+    """Whether a stop was asked for, and whether it must wait."""
+
+    def __init__(self) -> None:
+        self.requested = False
+        self._deferred = False
+
+    @contextmanager
+    def deferred(self) -> Iterator[None]:
+        """A block that the first signal does not break, such as writing what was computed."""
+        self._deferred = True
+        try:
+            yield
+        finally:
+            self._deferred = False
+
+    def receive(self, number: int, frame: FrameType | None) -> None:
+        """Handles a signal."""
+        if self.requested:
+            os._exit(Interrupted.exit_code)
+        self.requested = True
+        if not self._deferred:
+            raise KeyboardInterrupt
+
+
+@contextmanager
+def interruptible() -> Iterator[Interruption]:
+    """Turns SIGINT, SIGTERM and SIGHUP into one KeyboardInterrupt, and a second of them into the end of the process."""
+    interruption = Interruption()
+    if threading.current_thread() is not threading.main_thread():
+        yield interruption
+        return
+    earlier = {number: signal.signal(number, interruption.receive) for number in SIGNALS if _is_heeded(number)}
+    try:
+        yield interruption
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+
+
+def _is_heeded(number: signal.Signals) -> bool:
+    """Whether the caller did not ask to ignore the signal, as ``nohup`` does."""
+    return signal.getsignal(number) not in (signal.SIG_IGN, None)

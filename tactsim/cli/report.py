@@ -1,0 +1,67 @@
+"""A result in words, for the end of a run and for ``tactsim show``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.units import format_quantity
+
+
+def result_report(result: Result, title: str = "") -> str:
+    """Title, status, quantities with units, warnings and the number of assumptions."""
+    width = max((len(name) for name in result.quantities), default=0)
+    lines = [title] if title else []
+    lines.append(f"{result.status}: {result.reason}" if result.reason else str(result.status))
+    lines += [f"  {name:<{width}}  {format_values(q):<14}  {q.description}".rstrip() for name, q in result.quantities.items()]
+    lines += [f"  warning: {warning}" for warning in result.warnings]
+    told = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
+    lines.append(f"  {', '.join(told)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
+    return "\n".join(lines)
+
+
+def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
+    """What matters most and where to look: a threshold pressure only if the run converged."""
+    threshold = result.quantities.get("threshold_pressure")
+    if result.status is not Status.CONVERGED:
+        headline = f"{result.status}: {result.reason}"
+    elif threshold is None:
+        headline = str(result.status)
+    else:
+        headline = "threshold pressure " + ("not reached" if threshold.value is None else format_values(threshold))
+    figure = next(iter(figures), None)
+    return f"{headline}; " + (f"figure {place / 'figures' / figure}" if figure else f"result {place}")
+
+
+def format_values(quantity: Quantity) -> str:
+    """A number with its unit, or the shape and range of an array."""
+    import numpy as np
+
+    if quantity.value is None:
+        return "none"
+    values = np.array(quantity.value, dtype=float)
+    if values.ndim == 0:
+        return format_quantity(float(values), quantity.unit)
+    finite = values[np.isfinite(values)]
+    shape = " x ".join(map(str, values.shape))
+    if not finite.size:
+        return f"{shape} values, none finite"
+    low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
+    return f"{shape} values, {low} to {high}"
+
+
+def step_line(record: StepRecord, units: Mapping[str, str]) -> str:
+    """One line per accepted step; a value whose unit is not known is in SI."""
+    values = [f"{name} {format_quantity(value, units.get(name, ''))}" for name, value in record.values.items()]
+    effort = f"{record.newton_iterations} iterations, residual {record.residual:.1e}"
+    return "  ".join([f"step {record.step:4d}", *values, effort])
+
+
+def _duration(timing: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {seconds:.1f} s" for name, seconds in timing.items())
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
