@@ -1,0 +1,47 @@
+"""What the tests of several rooms share."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parent
+sys.path.insert(0, str(TESTS))
+
+import pretence  # noqa: E402  it stands beside this file, which the line above makes known
+
+
+@pytest.fixture
+def pretended(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pretended experiment is the only one that a case can ask for, and has one figure."""
+    from tactsim import display
+    from tactsim.case import model
+
+    monkeypatch.setattr(model, "kinds", lambda package, base: {"pretence": pretence.Pretence})
+    monkeypatch.setattr(display, "figures_for", lambda result: {"pretence": lambda: pretence.PNG}, raising=False)
+
+
+@pytest.fixture
+def case_file(tmp_path: Path, pretended: None) -> Path:
+    """A valid case file of the pretended experiment."""
+    path = tmp_path / "case.yaml"
+    path.write_text(pretence.CASE_TEXT, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
+    """Starts the command line with the pretended experiment in a process of its own, in ``tmp_path``."""
+
+    def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
+        command = [sys.executable, str(TESTS / "pretended_cli.py"), *arguments]
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        environment = {**os.environ, "PYTHONPATH": str(TESTS), "PYTHONWARNINGS": "error"}
+        return subprocess.Popen(command, text=True, cwd=tmp_path, env=environment, **{**streams, **options})  # type: ignore[call-overload]
+
+    return started

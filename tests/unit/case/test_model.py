@@ -1,0 +1,54 @@
+"""Identity and resolved form of a case."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from pretence import CASE_TEXT, Pretence
+
+from tactsim.case import SCHEMA, Case, load_case
+
+
+def identity(path: Path, text: str) -> str:
+    path.write_text(text, encoding="utf-8")
+    return load_case(path).case_id
+
+
+def test_the_spelling_does_not_change_the_identity(case_file: Path) -> None:
+    other = """
+experiment:
+  specimen: {layers: [{material: {modulus: 0.003 MPa, kind: soft}, thickness: 1 cm},
+                      {material: {kind: stiff, exponent: 2, c10: 10000 Pa}, thickness: 2000 um}], radius: 0.02m}
+  friction: 0.4   # the default
+  kind: pretence
+title: A pretended case
+schema: tactsim/case/1
+"""
+    assert identity(case_file, other) == identity(case_file, CASE_TEXT)
+
+
+@pytest.mark.parametrize(
+    "change", [("20 mm", "20.0001 mm"), ("3 kPa", "3.1 kPa"), ("kind: pretence", "kind: pretence\n  steps: 4")]
+)
+def test_a_change_of_value_changes_the_identity(case_file: Path, change: tuple[str, str]) -> None:
+    assert identity(case_file, CASE_TEXT.replace(*change)) != identity(case_file, CASE_TEXT)
+
+
+def test_the_identity_is_sixteen_hexadecimal_digits(case_file: Path) -> None:
+    assert len(load_case(case_file).case_id) == 16
+    assert int(load_case(case_file).case_id, 16) >= 0
+
+
+def test_the_resolved_case_is_plain_json_in_si(case_file: Path) -> None:
+    resolved = load_case(case_file).resolved()
+    assert json.loads(json.dumps(resolved, allow_nan=False)) == resolved
+    assert resolved["schema"] == SCHEMA
+    assert resolved["experiment"]["specimen"]["radius"] == 0.02
+    assert resolved["experiment"]["specimen"]["layers"][1]["material"] == {"kind": "stiff", "c10": 1e4, "exponent": 2}
+
+
+def test_a_case_made_in_python_keeps_the_fields_of_its_experiment() -> None:
+    case = Case(schema=SCHEMA, experiment=Pretence.example())
+    assert case.resolved()["experiment"]["specimen"]["layers"][0]["material"]["modulus"] == 3e3

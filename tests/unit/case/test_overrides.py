@@ -1,0 +1,64 @@
+"""Overrides from the command line."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.case.overrides import apply_override
+from tactsim.case.yaml_reading import YamlProblems, read_yaml
+
+TEXT = "a: {b: 1, c: null}\nlayers: [{t: 1 mm}, {t: 2 mm}]\nempty: []"
+
+
+@pytest.mark.parametrize(
+    ("override", "place", "value"),
+    [
+        ("a.b=2", ("a", "b"), 2),
+        ("a.b=2 mm", ("a", "b"), "2 mm"),
+        ("a.b=[1, {x: 2}]", ("a", "b"), [1, {"x": 2}]),
+        ("a.b=", ("a", "b"), None),
+        ("a.b=x=y", ("a", "b"), "x=y"),
+        ("layers.1.t=3 mm", ("layers", 1, "t"), "3 mm"),
+        ("layers.0=null", ("layers", 0), None),
+    ],
+)
+def test_a_value_is_set(override: str, place: tuple[str | int, ...], value: object) -> None:
+    document = read_yaml(TEXT)
+    assert apply_override(document, override) == place
+    found = document.value
+    for key in place:
+        found = found[key]
+    assert found == value
+
+
+def test_a_missing_mapping_is_created_and_named() -> None:
+    document = read_yaml(TEXT)
+    assert apply_override(document, "a.c.d.e=1") == ("a", "c")
+    assert document.value["a"]["c"] == {"d": {"e": 1}}
+
+
+def test_a_list_entry_that_is_null_can_be_entered() -> None:
+    document = read_yaml("layers: [null]")
+    assert apply_override(document, "layers.0.t=1 mm") == ("layers", 0)
+    assert document.value == {"layers": [{"t": "1 mm"}]}
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("a.b", "not of the form path.to.key=value"),
+        ("=1", "not of the form"),
+        ("a..b=1", "not of the form"),
+        ("a.b.c=1", "a.b is 1, which has no entry 'c'"),
+        ("layers.2.t=1 mm", "entries: 0 to 1"),
+        ("layers.-1.t=1 mm", "without an entry '-1'"),
+        ("layers.x=1", "without an entry 'x'"),
+        ("empty.0=1", "the list is empty"),
+        ("a.b=[1", "cannot be read"),
+        ("a.b=!!python/name:os.system x", "tag"),
+        ("a.b=.nan", "not a finite number"),
+    ],
+)
+def test_what_cannot_be_set_is_refused(override: str, words: str) -> None:
+    with pytest.raises(YamlProblems, match=words.replace(".", r"\.")):
+        apply_override(read_yaml(TEXT), override)
