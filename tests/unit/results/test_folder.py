@@ -1,0 +1,139 @@
+"""The claim of one run on its output folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tactsim.errors import StorageError
+from tactsim.results.folder import claimed
+
+
+def make_result(path: Path, mark: str = "old") -> None:
+    path.mkdir(parents=True)
+    (path / "result.json").write_text(mark, encoding="utf-8")
+
+
+def publish(path: Path, mark: str = "new", *, replace: bool = False, keep: bool = False) -> Path | None:
+    with claimed(path, replace=replace) as folder:
+        (folder.start() / "result.json").write_text(mark, encoding="utf-8")
+        return folder.publish(keep)
+
+
+def mark_of(path: Path) -> str:
+    return (path / "result.json").read_text(encoding="utf-8")
+
+
+def test_the_folder_appears_complete_and_alone(tmp_path: Path) -> None:
+    publish(tmp_path / "deep" / "out")
+    assert mark_of(tmp_path / "deep" / "out") == "new"
+    assert os.listdir(tmp_path / "deep") == ["out"]
+
+
+def test_nothing_stays_of_a_claim_that_was_not_published(tmp_path: Path) -> None:
+    with claimed(tmp_path / "out") as folder:
+        (folder.start() / "result.json").write_text("half", encoding="utf-8")
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_earlier_result_needs_permission_to_give_way(tmp_path: Path) -> None:
+    make_result(tmp_path / "out")
+    with pytest.raises(StorageError, match="--force"):
+        publish(tmp_path / "out")
+    assert mark_of(tmp_path / "out") == "old"
+    assert publish(tmp_path / "out", replace=True) is None
+    assert mark_of(tmp_path / "out") == "new"
+    assert os.listdir(tmp_path) == ["out"]
+
+
+def test_an_earlier_result_can_be_kept(tmp_path: Path) -> None:
+    make_result(tmp_path / "out")
+    assert publish(tmp_path / "out", replace=True, keep=True) == tmp_path / "out.earlier"
+    assert publish(tmp_path / "out", "newer", replace=True, keep=True) == tmp_path / "out.earlier"
+    assert (mark_of(tmp_path / "out"), mark_of(tmp_path / "out.earlier")) == ("newer", "new")
+
+
+def test_an_empty_folder_may_be_filled(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    publish(tmp_path / "out")
+    assert mark_of(tmp_path / "out") == "new"
+
+
+@pytest.mark.parametrize("name", ["notes.txt", ".git", "fields_x.vtu"])
+def test_a_folder_with_other_files_never_gives_way(tmp_path: Path, name: str) -> None:
+    make_result(tmp_path / "out")
+    (tmp_path / "out" / name).write_text("mine", encoding="utf-8")
+    with pytest.raises(StorageError, match="which tactsim did not write"):
+        publish(tmp_path / "out", replace=True)
+    assert (tmp_path / "out" / name).exists()
+
+
+def test_a_folder_without_a_result_never_gives_way(tmp_path: Path) -> None:
+    (tmp_path / "out" / "figures").mkdir(parents=True)
+    with pytest.raises(StorageError, match="holds no result of tactsim"):
+        publish(tmp_path / "out", replace=True)
+
+
+def test_a_file_or_a_link_in_the_place_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    make_result(tmp_path / "real")
+    os.symlink(tmp_path / "real", tmp_path / "link")
+    os.symlink(tmp_path / "nowhere", tmp_path / "dangling")
+    for name in ("file", "link", "dangling"):
+        with pytest.raises(StorageError, match="is not a folder"):
+            publish(tmp_path / name, replace=True)
+
+
+def test_two_runs_do_not_share_a_folder(tmp_path: Path) -> None:
+    with (
+        claimed(tmp_path / "out"),
+        pytest.raises(StorageError, match="in use by another run"),
+        claimed(tmp_path / "out", replace=True),
+    ):
+        pass
+    publish(tmp_path / "out")
+
+
+def test_a_folder_that_appears_during_the_run_is_not_overwritten(tmp_path: Path) -> None:
+    with claimed(tmp_path / "out") as folder:
+        (folder.start() / "result.json").write_text("new", encoding="utf-8")
+        make_result(tmp_path / "out", "other")
+        with pytest.raises(StorageError, match="exists"):
+            folder.publish()
+    assert mark_of(tmp_path / "out") == "other"
+
+
+def test_a_parent_removed_during_the_run_is_made_again(tmp_path: Path) -> None:
+    with claimed(tmp_path / "results" / "out") as folder:
+        os.rename(tmp_path / "results", tmp_path / "moved")
+        (folder.start() / "result.json").write_text("new", encoding="utf-8")
+        folder.publish()
+    assert mark_of(tmp_path / "results" / "out") == "new"
+
+
+def test_what_a_dead_run_left_is_tidied(tmp_path: Path) -> None:
+    (tmp_path / ".out.lock").write_text("", encoding="utf-8")
+    (tmp_path / ".out.partial").mkdir()
+    make_result(tmp_path / ".out.replaced")
+    with pytest.raises(StorageError, match="--force"):
+        publish(tmp_path / "out")
+    assert mark_of(tmp_path / "out") == "old"
+    assert os.listdir(tmp_path) == ["out"]
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "a\0b", "file/out"])
+def test_impossible_places_are_told(tmp_path: Path, name: str) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    with pytest.raises(StorageError, match="cannot write"):
+        publish(tmp_path / name)
+    with pytest.raises(StorageError, match="cannot write /"):
+        publish(Path("/"))
+
+
+def test_the_current_folder_is_refused_like_any_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mine").write_text("x", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(StorageError, match="did not write"):
+        publish(Path("."), replace=True)
