@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -60,6 +60,8 @@ class Specimen(FrozenModel):
 
 class Pretence(Experiment):
     """Counts steps; ends as its fields say."""
+
+    history_units: ClassVar[dict[str, str]] = {"displacement": "m", "reaction_force": "N"}
 
     kind: Literal["pretence"] = "pretence"
     specimen: Specimen

@@ -1,0 +1,130 @@
+"""``tactsim run``."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from pretence import PNG, Pretence
+
+from tactsim import display
+from tactsim.cli import main
+from tactsim.results import read_result
+
+
+@pytest.fixture(autouse=True)
+def in_the_folder_of_the_case(case_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(case_file.parent)
+
+
+def status_of(folder: str) -> str:
+    return str(json.loads(Path(folder, "result.json").read_text(encoding="utf-8"))["status"])
+
+
+def test_a_run_reports_quantities_and_ends_with_the_threshold(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml"]) == 0
+    out, err = capsys.readouterr()
+    lines = out.splitlines()
+    assert lines[:2] == ["A pretended case", "converged: all steps accepted"]
+    assert lines[2].split()[:3] == ["displacement", "300", "µm"]
+    assert "2 x 3 values, 0 N to 5 N" in out
+    assert "warning: coarse mesh" in out
+    assert "1 assumption listed in result.json" in out
+    assert lines[-1] == "threshold pressure 17.2 kPa; figure results/case/figures/pretence.png"
+    assert Path("results/case/figures/pretence.png").read_bytes() == PNG
+    assert err == ""
+
+
+def test_provenance_holds_the_resolved_case_and_the_overrides() -> None:
+    assert main(["run", "case.yaml", "--set", "experiment.steps=1", "--quiet"]) == 0
+    stored = read_result("results/case")
+    assert stored.provenance["case"]["experiment"]["steps"] == 1
+    assert stored.provenance["overrides"] == ["experiment.steps=1"]
+    assert stored.provenance["case_id"] == stored.case_id
+    assert len(stored.result.steps) == 1
+
+
+def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_progress_tells_every_accepted_step(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml", "--progress"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 3
+    assert " ".join(lines[1].split()) == "step 2 displacement 200 µm reaction_force 20 mN 4 iterations, residual 1.0e-11"
+
+
+def test_a_run_that_fails_is_written_and_presents_no_threshold(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml", "--set", "experiment.fail_at=2"]) == 3
+    assert status_of("results/case") == "failed"
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("failed: residual 1.0 after 25 iterations; ")
+    assert "threshold" not in last
+
+
+def test_the_default_folder_is_replaced_but_a_good_result_is_not_lost() -> None:
+    assert main(["run", "case.yaml"]) == 0
+    assert main(["run", "case.yaml"]) == 0
+    assert os.listdir("results") == ["case"]
+    assert main(["run", "case.yaml", "--set", "experiment.fail_at=2"]) == 3
+    assert (status_of("results/case"), status_of("results/case.earlier")) == ("failed", "converged")
+    assert main(["run", "case.yaml", "--set", "experiment.fail_at=1"]) == 3
+    assert status_of("results/case.earlier") == "converged"
+
+
+def test_a_named_folder_needs_force_and_is_checked_before_computing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "case.yaml", "--out", "mine"]) == 0
+    with monkeypatch.context() as patch:
+        patch.setattr(Pretence, "run", lambda *_: pytest.fail("computed before the folder was checked"))
+        assert main(["run", "case.yaml", "--out", "mine"]) == 5
+    assert "use --force" in capsys.readouterr().err
+    assert main(["run", "case.yaml", "--out", "mine", "--force", "--set", "experiment.fail_at=2"]) == 3
+    assert status_of("mine") == "failed"
+    assert not Path("mine.earlier").exists()
+
+
+@pytest.mark.parametrize(("fields", "count"), [("all", 3), ("last", 1), ("none", 0)])
+def test_the_case_says_which_fields_are_written(fields: str, count: int) -> None:
+    assert main(["run", "case.yaml", "--set", f"output.fields={fields}"]) == 0
+    assert len(list(Path("results/case").glob("fields_*.vtu"))) == count
+
+
+def test_a_figure_that_cannot_be_drawn_does_not_cost_the_numbers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken() -> bytes:
+        raise ZeroDivisionError("nothing to draw")
+
+    monkeypatch.setattr(display, "figures_for", lambda result: {"good": lambda: PNG, "bad": broken})
+    assert main(["run", "case.yaml"]) == 0
+    assert "warning: not every figure could be drawn: ZeroDivisionError: nothing to draw" in capsys.readouterr().out
+    assert os.listdir("results/case/figures") == ["good.png"]
+    assert any("could be drawn" in warning for warning in read_result("results/case").result.warnings)
+
+
+def test_a_disk_that_fills_up_still_shows_the_numbers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from tactsim.results import storage
+
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(storage.os, "fsync", full)
+    assert main(["run", "case.yaml"]) == 5
+    out, err = capsys.readouterr()
+    assert "threshold_pressure  17.2 kPa" in out
+    assert err == "error: cannot write results/case: No space left on device\n"
+    assert os.listdir("results") == []
+
+
+def test_a_bad_case_leaves_no_trace(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml", "--set", "experiment.friction=9"]) == 2
+    assert capsys.readouterr().err == "error: --set experiment.friction: 9 is out of range; must be at most 2.0\n"
+    assert not Path("results").exists()

@@ -1,0 +1,19 @@
+"""``tactsim schema``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tactsim.case import case_json_schema
+from tactsim.cli import main
+
+
+def test_the_schema_is_printed_or_written(pretended: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == case_json_schema()
+    assert main(["schema", "--out", str(tmp_path / "s.json")]) == 0
+    assert json.loads((tmp_path / "s.json").read_text(encoding="utf-8")) == case_json_schema()
+    assert main(["schema", "--out", str(tmp_path / "no" / "s.json")]) == 5

@@ -1,0 +1,47 @@
+"""``tactsim show``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from pretence import PNG, pretended_result
+
+from tactsim import display
+from tactsim.cli import main
+from tactsim.results import Status, StepRecord, write_result
+
+
+@pytest.fixture
+def folder(tmp_path: Path, pretended: None) -> Path:
+    result = pretended_result(Status.CONVERGED, "done", (StepRecord(1, 4, 1e-11, {"displacement": 1e-4}),))
+    return write_result(result, tmp_path / "out", case_id="abc", provenance={"case": {"title": "A case"}})
+
+
+def test_quantities_are_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", str(folder)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("A case\nconverged: done\n")
+    assert "threshold_pressure  17.2 kPa" in out
+    assert out.endswith("case abc\n")
+    assert main(["show", str(folder / "result.json")]) == 0
+    assert capsys.readouterr().out == out
+
+
+def test_the_main_figure_is_saved(folder: Path, tmp_path: Path) -> None:
+    assert main(["show", str(folder), "--save", str(tmp_path / "a.png")]) == 0
+    assert (tmp_path / "a.png").read_bytes() == PNG
+
+
+def test_a_result_without_figure_is_told(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(display, "figures_for", lambda result: {})
+    assert main(["show", str(folder), "--save", str(tmp_path / "a.png")]) == 2
+    assert "a result of kind 'pretence' has no figure" in capsys.readouterr().err
+
+
+def test_what_is_no_result_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", str(tmp_path)]) == 5
+    assert "holds no result.json" in capsys.readouterr().err
+    assert main(["show", str(tmp_path / "missing")]) == 5

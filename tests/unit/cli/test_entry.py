@@ -1,0 +1,71 @@
+"""The command line as a whole."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tactsim import __version__
+from tactsim.cli import command_schema, entry, main
+
+
+def test_help_names_every_command_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for word in ("run", "show", "material", "schema", "exit codes", "130  interrupted"):
+        assert word in text
+
+
+@pytest.mark.parametrize("command", [command.NAME for command in entry.COMMANDS])
+def test_every_command_has_examples(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, "--help"]) == 0
+    text = capsys.readouterr().out
+    assert f"tactsim {command}" in text.split("example")[1]
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"tactsim {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["rnu"], ["run"], ["run", "a", "--unknown"], ["run", "a", "--quiet", "--progress"], ["show"], ["schema", "x"]],
+)
+def test_a_wrong_command_line_is_bad_input(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert "--help" in error
+
+
+@pytest.mark.parametrize("debug", [False, True])
+def test_a_defect_is_told_as_such(debug: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def broken(arguments: object) -> int:
+        raise RuntimeError("wheel came off")
+
+    monkeypatch.setattr(command_schema, "run", broken)
+    assert main(["schema", *(["--debug"] if debug else [])]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith("error: internal error (RuntimeError: wheel came off); please report it")
+    assert ("Traceback" in error) == debug
+
+
+def test_a_known_error_has_its_traceback_only_for_debugging(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", str(tmp_path)]) == 5
+    assert "Traceback" not in capsys.readouterr().err
+    assert main(["show", str(tmp_path), "--debug"]) == 5
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_help_is_quick_because_it_imports_nothing_heavy() -> None:
+    code = "import sys; from tactsim.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+    started = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    duration = time.perf_counter() - started
+    assert not {"numpy", "pydantic", "pint", "ruamel", "matplotlib", "meshio"} & set(done.stderr.split())
+    assert duration < 3  # the goal is 0.3 s; ten times that leaves room for a busy machine

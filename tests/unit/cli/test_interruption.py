@@ -1,0 +1,58 @@
+"""Stopping a run."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+import pytest
+
+from tactsim.cli import interruption
+from tactsim.cli.interruption import SIGNALS, interruptible
+
+
+@pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
+def test_the_first_signal_interrupts(number: signal.Signals) -> None:
+    before = signal.getsignal(number)
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        signal.raise_signal(number)
+    assert signal.getsignal(number) == before
+
+
+def test_a_deferred_signal_is_remembered() -> None:
+    with interruptible() as stop:
+        with stop.deferred():
+            signal.raise_signal(signal.SIGTERM)
+        assert stop.requested
+
+
+def test_the_second_signal_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    codes: list[int] = []
+    monkeypatch.setattr(interruption.os, "_exit", codes.append)
+    with interruptible() as stop, stop.deferred():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+    assert codes == [130]
+
+
+def test_a_signal_that_the_caller_ignores_stays_ignored() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with interruptible() as stop:
+            os.kill(os.getpid(), signal.SIGHUP)
+        assert not stop.requested
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_other_threads_run_without_handlers() -> None:
+    def body() -> None:
+        with interruptible() as stop:
+            seen.append(stop.requested)
+
+    seen: list[bool] = []
+    thread = threading.Thread(target=body)
+    thread.start()
+    thread.join()
+    assert seen == [False]

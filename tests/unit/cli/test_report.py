@@ -1,0 +1,52 @@
+"""A result in words."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from pretence import pretended_result
+
+from tactsim.cli.report import format_values, last_line, result_report, step_line
+from tactsim.results import Quantity, Result, Status, StepRecord
+
+RESULT = pretended_result(Status.CONVERGED, "done", ())
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.0008, "m", "800 µm"),
+        (0.25, "1", "0.25"),
+        (None, "Pa", "none"),
+        ([[1.0, None], [3.0, 2.0]], "N", "2 x 2 values, 1 N to 3 N"),
+        ([None], "N", "1 values, none finite"),
+        (math.nan, "N", "nan N"),
+    ],
+)
+def test_values_with_units(value: object, unit: str, text: str) -> None:
+    assert format_values(Quantity(value, unit, "")) == text
+
+
+def test_the_last_line_tells_only_what_was_reached() -> None:
+    place = Path("results/x")
+    assert last_line(RESULT, place, {}) == "threshold pressure 17.2 kPa; result results/x"
+    assert last_line(RESULT, place, {"a.png": b""}).endswith("; figure results/x/figures/a.png")
+    missed = replace(RESULT, quantities={"threshold_pressure": Quantity(None, "Pa", "")})
+    assert last_line(missed, place, {}).startswith("threshold pressure not reached;")
+    assert last_line(replace(RESULT, quantities={}), place, {}).startswith("converged;")
+    failed = replace(RESULT, status=Status.FAILED, reason="stuck")
+    assert last_line(failed, place, {}).startswith("failed: stuck;")
+
+
+def test_an_empty_result_can_be_told() -> None:
+    text = result_report(Result("k", Status.INTERRUPTED, ""))
+    assert text == "interrupted\n  0 accepted steps; 0 assumptions listed in result.json"
+
+
+def test_a_step_is_one_line() -> None:
+    record = StepRecord(12, 4, 2.1e-10, {"displacement": 6.2e-4, "share": 0.5})
+    line = step_line(record, {"displacement": "m"})
+    assert line == "step   12  displacement 620 µm  share 0.5  4 iterations, residual 2.1e-10"
