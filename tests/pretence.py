@@ -76,6 +76,8 @@ class Pretence(Experiment):
     """Waiting time per step."""
     fail_at: int | None = None
     """Step that does not converge."""
+    stubborn: bool = False
+    """Whether an interruption takes its time."""
     named: str = "known"
     """A name that must be 'known'."""
 
@@ -100,6 +102,7 @@ class Pretence(Experiment):
                 progress(records[-1])
         except KeyboardInterrupt:
             status, reason = Status.INTERRUPTED, "stopped by the user"
+            time.sleep(60 if self.stubborn else 0)
         return pretended_result(status, reason, tuple(records))
 
     @classmethod

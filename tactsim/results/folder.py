@@ -42,7 +42,7 @@ class OutputFolder:
 
     def start(self) -> Path:
         """An empty folder to write into."""
-        with naming(self.partial):
+        with naming(self.path):
             _remove(self.partial)
             self.partial.mkdir(parents=True)
         return self.partial
@@ -111,15 +111,14 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     folder = OutputFolder(path, replace)
     with naming(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        lock = _locked(_beside(path, "lock"), path)
-    try:
-        folder.recover()
-        check_replaceable(path, replace)
-        folder.start()
-        yield folder
-    finally:
-        folder.discard()
-        _unlock(lock, _beside(path, "lock"))
+    with _lock(path):
+        try:
+            folder.recover()
+            check_replaceable(path, replace)
+            folder.start()
+            yield folder
+        finally:
+            folder.discard()
 
 
 def check_replaceable(path: Path, replace: bool) -> None:
@@ -157,8 +156,24 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    """Keeps other runs out of the folder; the system frees the lock when its process ends in any way."""
+    with naming(path):
+        lock = _beside(path, "lock")
+        descriptor = _locked(lock, path)
+    try:
+        yield
+    finally:
+        try:
+            with suppress(OSError):
+                lock.unlink(missing_ok=True)
+        finally:
+            os.close(descriptor)
+
+
 def _locked(lock: Path, path: Path) -> int:
-    """The descriptor of the lock, which the system frees when its process ends in any way."""
+    """The descriptor of the lock."""
     while True:
         descriptor = _opened_alone(lock, path)
         with suppress(FileNotFoundError):
@@ -183,9 +198,3 @@ def _opened_alone(lock: Path, path: Path) -> int:
         os.close(descriptor)
         raise in_use from None
     return descriptor
-
-
-def _unlock(descriptor: int, lock: Path) -> None:
-    with suppress(OSError):
-        lock.unlink(missing_ok=True)
-    os.close(descriptor)

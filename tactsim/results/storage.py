@@ -17,7 +17,7 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
         yield
     except StorageError:
         raise
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise StorageError(f"cannot {verb} {path}: {reason}") from error
 

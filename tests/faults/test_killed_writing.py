@@ -1,0 +1,133 @@
+"""A result is written through a death, a full disk and a lost folder at every single step on the disk."""
+
+from __future__ import annotations
+
+import builtins
+import errno
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+from pretence import PNG, pretended_result
+
+from tactsim.errors import StorageError
+from tactsim.results import Status, StepRecord, read_result, write_result
+
+RESULT = pretended_result(Status.CONVERGED, "done", (StepRecord(1, 4, 1e-11, {"displacement": 1e-4}),))
+CHANGES = ("mkdir", "rename", "replace", "fsync")
+REMOVALS = ("unlink", "rmdir", "remove")
+MOST_STEPS = 60
+
+
+class Killed(BaseException):
+    """The process is dead: nothing that it would do from here on happens."""
+
+
+def write(place: Path, case_id: str) -> None:
+    write_result(RESULT, place, case_id=case_id, provenance={}, force=True, figures={"a.png": PNG})
+
+
+@contextmanager
+def disk(act: Callable[[], None]) -> Iterator[None]:
+    """Calls ``act`` before every step on the disk, which it may refuse."""
+
+    def guarded(function: Callable[..., Any], *, is_open: bool = False) -> Callable[..., Any]:
+        def call(*arguments: Any, **options: Any) -> Any:
+            mode = str(options.get("mode", arguments[1] if len(arguments) > 1 else "r"))
+            if not is_open or any(letter in mode for letter in "wxa+"):
+                act()
+            return function(*arguments, **options)
+
+        return call
+
+    names = CHANGES + REMOVALS
+    patches = [patch.object(os, name, guarded(getattr(os, name))) for name in names]
+    patches.append(patch.object(builtins, "open", guarded(builtins.open, is_open=True)))
+    for one in patches:
+        one.start()
+    try:
+        yield
+    finally:
+        for one in patches:
+            one.stop()
+
+
+def trouble_of(place: Path, act: Callable[[], None]) -> StorageError | None:
+    """The refusal of a writing on a disk with trouble, if it was refused."""
+    try:
+        with disk(act):
+            write(place, "new")
+    except StorageError as error:
+        return error
+    return None
+
+
+class At:
+    """Raises ``error`` at step ``number``, and if ``for_good`` at every later one too."""
+
+    def __init__(self, number: int, error: Callable[[], BaseException], *, for_good: bool):
+        self.number, self.error, self.for_good, self.count = number, error, for_good, 0
+
+    def __call__(self) -> None:
+        self.count += 1
+        if self.count == self.number or (self.for_good and self.count > self.number):
+            raise self.error()
+
+
+def steps_of_one_writing(place: Path) -> int:
+    """Number of steps on the disk that replacing a result takes."""
+    counter = At(0, Killed, for_good=False)
+    write(place, "0")
+    with disk(counter):
+        write(place, "1")
+    return counter.count
+
+
+def test_the_harness_sees_the_steps(tmp_path: Path) -> None:
+    assert 15 < steps_of_one_writing(tmp_path / "out") < MOST_STEPS
+
+
+@pytest.mark.parametrize("earlier", [False, True])
+def test_a_death_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, earlier: bool) -> None:
+    seen = set()
+    for number in range(1, steps_of_one_writing(tmp_path / "count") + 1):
+        place = tmp_path / str(number) / "out"
+        if earlier:
+            write(place, "old")
+        with suppress(Killed), disk(At(number, Killed, for_good=True)):
+            write(place, "new")
+        visible = read_result(place).case_id if place.exists() else None
+        assert visible in ({"old", "new", None} if earlier else {"new", None})
+        seen.add(visible)
+        if visible is None and earlier:
+            assert read_result(place.with_name(".out.replaced")).case_id == "old"
+        write(place, "next")
+        assert read_result(place).case_id == "next"
+        assert os.listdir(place.parent) == ["out"]
+    assert seen == ({"old", "new", None} if earlier else {"new", None})
+
+
+@pytest.mark.parametrize("number", range(1, MOST_STEPS))
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EROFS, errno.EIO], ids=errno.errorcode.get)
+def test_a_refusing_disk_loses_nothing(tmp_path: Path, number: int, code: int) -> None:
+    place = tmp_path / "out"
+    write(place, "old")
+    error = trouble_of(place, At(number, lambda: OSError(code, os.strerror(code)), for_good=False))
+    assert read_result(place).case_id == ("old" if error else "new")
+    if error:
+        assert str(place) in str(error)
+        assert os.strerror(code) in str(error)
+    write(place, "next")
+    assert os.listdir(tmp_path) == ["out"]
+
+
+def test_a_refusing_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
+    total = steps_of_one_writing(tmp_path / "count" / "out")
+    for number in range(1, total):
+        place = tmp_path / str(number) / "out"
+        error = trouble_of(place, At(number, lambda: OSError(errno.ENOSPC, "full"), for_good=False))
+        assert place.exists() == (error is None)
