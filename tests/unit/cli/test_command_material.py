@@ -1,0 +1,135 @@
+"""``tactsim material``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pytest
+
+from tactsim.case import load_case, model
+from tactsim.cli import main
+from tactsim.interfaces import Experiment, Progress
+from tactsim.materials.any_material import AnyMaterial
+from tactsim.materials.library import LIBRARY, named_material
+from tactsim.results import Result, Status
+from tactsim.units import FrozenModel
+
+NAME = "icf_stable"
+
+
+class Sample(FrozenModel):
+    """A piece of material."""
+
+    material: AnyMaterial
+    """What it is made of."""
+
+
+class Stack(Experiment):
+    """Holds materials at several depths."""
+
+    kind: Literal["stack"] = "stack"
+    samples: tuple[Sample, ...]
+    """From the bottom up."""
+    skin: AnyMaterial | None = None
+    """What covers them."""
+
+    def run(self, progress: Progress) -> Result:
+        """Nothing."""
+        return Result("stack", Status.CONVERGED, "")
+
+    @classmethod
+    def example(cls) -> Stack:
+        """One sample."""
+        return cls(samples=(Sample(material=named_material(NAME).material),))
+
+
+@pytest.fixture
+def stack_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(model, "kinds", lambda package, base: {"stack": Stack})
+    path = tmp_path / "stack.yaml"
+    lines = ["schema: tactsim/case/1", "experiment:", "  kind: stack", "  samples:", f"    - material: {NAME}"]
+    lines += ["    - material: {kind: neo_hookean, c10: 3 kPa}", "  skin: b1a_stable"]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def curve(tmp_path: Path) -> Path:
+    """A neo-Hookean curve of c10 = 3 kPa."""
+    stretch = np.linspace(0.6, 0.95, 36)
+    rows = [f"{x},{2 * 3 * (x - x**-2)}" for x in stretch]
+    path = tmp_path / "rubber.csv"
+    path.write_text("\n".join(["stretch,nominal_stress_kPa", *rows]), encoding="utf-8")
+    return path
+
+
+def test_shipped_materials_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == sorted(LIBRARY)
+
+
+def test_a_shipped_material_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material", NAME, "--save", str(tmp_path / "curves.png")]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(NAME)
+    assert "c10" in out
+    assert (tmp_path / "curves.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_every_material_of_a_case_is_reported(stack_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material", str(stack_file), "--save", str(tmp_path / "c.png")]) == 0
+    out = capsys.readouterr().out
+    for name in ("samples.0.material", "samples.1.material (neo_hookean)", "skin"):
+        assert name in out
+    assert {"c-samples-0-material.png", "c-skin.png"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_a_curve_is_fitted_and_gives_lines_for_a_case(
+    curve: Path, stack_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["material", "--fit", str(curve), "--form", "2-parameter", "--save", str(tmp_path / "fit.png")]) == 0
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first.startswith("2-parameter: largest relative error 0.0%")
+    assert (tmp_path / "fit.png").read_bytes().startswith(b"\x89PNG")
+    case = load_case(stack_file, [f"experiment.skin={second.strip()}"])
+    assert isinstance(case.experiment, Stack)
+    assert case.experiment.skin is not None
+    assert case.experiment.skin.shear_modulus == pytest.approx(6e3, rel=1e-3)  # five printed digits
+
+
+def test_every_form_is_tried(curve: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material", "--fit", str(curve)]) == 0
+    out = capsys.readouterr().out
+    for form in ("2-parameter", "3-parameter", "5-parameter", "stable"):
+        assert f"{form}: " in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["icf_stabel"], 2, "did you mean 'icf_stable'"),
+        (["missing.yaml"], 5, "cannot read the case file"),
+        (["--save", "x.png"], 2, "--save needs a material"),
+        (["--form", "stable"], 2, "--form goes with --fit"),
+        (["--fit", "missing.csv"], 5, "missing.csv"),
+        (["icf_stable", "--fit", "x.csv"], 2, "not allowed with"),
+    ],
+)
+def test_what_cannot_be_answered(
+    arguments: list[str],
+    code: int,
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["material", *arguments]) == code
+    assert words in capsys.readouterr().err
+
+
+def test_a_case_without_material_is_told(case_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material", str(case_file)]) == 2
+    assert "the case has no material" in capsys.readouterr().err
