@@ -36,12 +36,14 @@ def flush() -> None:
         _guarded(stream, "")
 
 
-def _write(stream: TextIO, text: str) -> None:
+def _write(stream: TextIO | None, text: str) -> None:
     encoding = getattr(stream, "encoding", None) or "utf-8"
     _guarded(stream, (text + "\n").encode(encoding, "backslashreplace").decode(encoding))
 
 
-def _guarded(stream: TextIO, text: str) -> None:
+def _guarded(stream: TextIO | None, text: str) -> None:
+    if stream is None:  # the caller closed it before the start
+        return
     try:
         stream.write(text)
         stream.flush()

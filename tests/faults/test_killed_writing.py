@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import errno
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,6 +17,7 @@ from pretence import PNG, pretended_result
 
 from tactsim.errors import StorageError
 from tactsim.results import Status, StepRecord, read_result, write_result
+from tactsim.results.folder import OutputFolder
 
 RESULT = pretended_result(Status.CONVERGED, "done", (StepRecord(1, 4, 1e-11, {"displacement": 1e-4}),))
 CHANGES = ("mkdir", "rename", "replace", "fsync")
@@ -131,3 +133,13 @@ def test_a_refusing_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
         place = tmp_path / str(number) / "out"
         error = trouble_of(place, At(number, lambda: OSError(errno.ENOSPC, "full"), for_good=False))
         assert place.exists() == (error is None)
+
+
+def test_a_careless_exchange_would_be_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def careless(folder: OutputFolder, keep_earlier: bool = False) -> None:
+        shutil.rmtree(folder.path, ignore_errors=True)
+        folder.partial.rename(folder.path)
+
+    monkeypatch.setattr(OutputFolder, "publish", careless)
+    with pytest.raises(StorageError, match=r"holds no result\.json"):
+        test_a_death_at_any_step_leaves_the_old_or_the_new(tmp_path, True)

@@ -105,6 +105,14 @@ def test_a_reader_that_goes_away_does_not_stop_the_run(start: Start, tmp_path: P
     assert status(tmp_path / "results/case") == "converged"
 
 
+@pytest.mark.parametrize("closed", ["1", "2"])
+def test_a_stream_closed_before_the_start_is_no_error(start: Start, tmp_path: Path, closed: str) -> None:
+    process = start("run", "case.yaml", "--progress", preexec_fn=lambda: os.close(int(closed)))
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert status(tmp_path / "results/case") == "converged"
+
+
 def test_the_head_of_a_long_answer(start: Start) -> None:
     process = start("schema")
     assert process.stdout is not None

@@ -1,0 +1,69 @@
+"""Quantities: text with a unit in files, SI floats inside."""
+
+from __future__ import annotations
+
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from tactsim.errors import InvalidQuantity
+from tactsim.units import Length, format_quantity, parse_quantity
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("0.8 mm", "m", 0.0008),
+        ("800 um", "m", 0.0008),
+        ("800µm", "m", 0.0008),
+        (" +1e-3 km ", "m", 1.0),
+        ("-.5m", "m", -0.5),
+        ("20 deg", "rad", 0.349065850398866),
+        ("20°", "rad", 0.349065850398866),
+        ("3 N/mm**2", "Pa", 3e6),
+        ("3 N/mm^2", "Pa", 3e6),
+        ("5 kPa s", "Pa*s", 5e3),
+        ("2 1/s", "1/s", 2.0),
+        ("5 %", "", 0.05),
+    ],
+)
+def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: float) -> None:
+    assert parse_quantity(text, unit) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("3", "has no unit"),
+        ("3 Pa", "has the wrong dimension"),
+        ("3 min", "has the wrong dimension"),
+        ("3 mx", "has an unknown unit"),
+        ("nan m", "is not finite"),
+        ("-inf m", "is not finite"),
+        ("1e308 km", "is not finite"),
+        ("m", "is not a quantity"),
+        ("1,5 mm", "has an unknown unit"),
+        ("1_0 m", "has an unknown unit"),
+        ("٣ m", "is not a quantity"),
+        ("3 m**9**9**9**9", "has an unknown unit"),
+        ("3 " + "m*" * 50 + "m", "has an unknown unit"),
+        ("3 ().__class__", "has an unknown unit"),
+    ],
+)
+def test_what_is_no_quantity_is_told(text: str, words: str) -> None:
+    with pytest.raises(InvalidQuantity, match=words):
+        parse_quantity(text, "m")
+
+
+def test_a_bare_number_is_si_in_python_and_refused_in_a_file() -> None:
+    adapter = TypeAdapter(Length)
+    assert adapter.validate_python(0.5) == 0.5
+    with pytest.raises(ValidationError, match=r"0\.5 has no unit; expected text such as '0\.5 m'"):
+        adapter.validate_python(0.5, context={"units": "required"})
+    with pytest.raises(ValidationError, match="True is not a quantity"):
+        adapter.validate_python(True)
+
+
+def test_values_are_printed_to_be_read() -> None:
+    assert format_quantity(0.0008, "m") == "800 µm"
+    assert format_quantity(0.25, "1") == "0.25"
+    assert format_quantity(0.0, "Pa") == "0 Pa"
