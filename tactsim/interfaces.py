@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -92,6 +92,9 @@ class Sensor(Kind):
 
 class Experiment(Kind):
     """What a case can ask for: receives its parts, returns a result."""
+
+    history_units: ClassVar[dict[str, str]]
+    """Unit of every value that an accepted step records."""
 
     @abstractmethod
     def run(self, progress: Progress) -> Result:

@@ -6,7 +6,9 @@ import importlib
 import inspect
 import pkgutil
 from functools import cache
-from typing import Any
+from typing import Annotated, Any, Union
+
+from pydantic import Field
 
 from tactsim.errors import UnknownName
 
@@ -21,7 +23,7 @@ def kinds(package: str, base: type) -> dict[str, type]:
         for cls in vars(module).values():
             own = inspect.isclass(cls) and issubclass(cls, base) and cls.__module__ == module.__name__
             if own and not inspect.isabstract(cls):
-                found[cls.model_fields["kind"].default] = cls  # type: ignore[attr-defined]
+                found[cls.model_fields["kind"].default] = cls
     return found
 
 
@@ -37,3 +39,9 @@ def kind_class(package: str, base: type, kind: str) -> Any:
     if kind not in known:
         raise UnknownName(f"{base.__name__.lower()} kind", kind, known)
     return known[kind]
+
+
+def tagged_union(package: str, base: type) -> Any:
+    """Pydantic type of all kinds in a package, told apart by ``kind``."""
+    choices = tuple(cls for _, cls in sorted(kinds(package, base).items()))
+    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import cache
-from typing import Annotated, Any, Literal, Union
+from typing import Any, Literal
 
 from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
-from tactsim.registry import kinds
+from tactsim.registry import kinds, tagged_union
 from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
@@ -64,8 +64,7 @@ def case_class(experiment: Any) -> type[Case]:
 
 def any_experiment() -> Any:
     """The type of all registered experiments, told apart by ``kind``."""
-    choices = tuple(experiment_kinds().values())
-    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007
+    return tagged_union(EXPERIMENTS, Experiment)
 
 
 def _canonical(value: Any) -> Any:

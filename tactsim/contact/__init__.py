@@ -1,1 +1,1 @@
-""""""
+"""Rigid bodies as signed distances, friction laws, and the contact traction at a point."""

@@ -1,1 +1,1 @@
-""""""
+"""Constants from measurements: uniaxial curves."""

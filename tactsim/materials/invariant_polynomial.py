@@ -40,11 +40,10 @@ class InvariantPolynomial(Hyperelastic):
 
     def _derivative(self, I1: Array, I2: Array, m: int, n: int) -> Array:
         """The derivative m times by I1 and n times by I2."""
-        total = np.zeros(np.broadcast_shapes(np.shape(I1), np.shape(I2)))
-        for (i, j), c in self.terms.items():
-            if i >= m and j >= n:
-                total = total + c * _power_derivative(I1 - 3, i, m) * _power_derivative(I2 - 3, j, n)
-        return total
+        return sum(
+            (c * monomial_derivative(I1, I2, power, (m, n)) for power, c in self.terms.items()),
+            start=np.zeros(np.broadcast_shapes(np.shape(I1), np.shape(I2))),
+        )
 
 
 def powers_of(coefficients: Mapping[str, float]) -> dict[tuple[int, int], float]:
@@ -52,7 +51,14 @@ def powers_of(coefficients: Mapping[str, float]) -> dict[tuple[int, int], float]
     return {(int(name[1]), int(name[2])): value for name, value in coefficients.items()}
 
 
+def monomial_derivative(I1: Array, I2: Array, power: tuple[int, int], order: tuple[int, int]) -> Array:
+    """The derivative of (I1 - 3)^i (I2 - 3)^j, ``order`` times (each at most 2) by I1 and I2, of the shape of the invariants."""
+    return _power_derivative(I1 - 3, power[0], order[0]) * _power_derivative(I2 - 3, power[1], order[1])
+
+
 def _power_derivative(x: Array, power: int, order: int) -> Array:
-    """The derivative of ``x**power``, ``order`` <= 2 times, for ``order <= power``."""
+    """The derivative of ``x**power``, ``order`` <= 2 times."""
+    if power < order:
+        return np.zeros_like(x)
     factor = (1, power, power * (power - 1))[order]
     return factor * x ** (power - order)

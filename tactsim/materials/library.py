@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tactsim.errors import UnknownName
-from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
 
@@ -15,9 +15,17 @@ class MaterialSet:
     """A material by name, with where it comes from."""
 
     name: str
-    material: Hyperelastic
+    material: InvariantPolynomial
     source: str
+    """Where the constants stand, or what they were fitted to and how."""
     note: str
+    """What a user must know before using it."""
+    fitted_stretch: tuple[float, float] | None = None
+    """Range of uniaxial stretch of the fit; None if it is not known."""
+    max_relative_error: float | None = None
+    """Largest relative error of the nominal stress over that range, dimensionless."""
+    rms_relative_error: float | None = None
+    """Root mean square of the relative errors over that range, dimensionless."""
 
 
 def named_material(name: str) -> MaterialSet:
@@ -29,19 +37,46 @@ def named_material(name: str) -> MaterialSet:
         With the nearest name.
     """
     if name not in LIBRARY:
-        raise UnknownName("material", name, LIBRARY)
+        raise UnknownName("material set", name, LIBRARY)
     return LIBRARY[name]
 
 
-_PRINTED = "thesis, Table 3.1"
-_STABLE = "fit of the uniaxial curve of thesis Table 3.1 over 0.6 <= stretch <= 1, relative least squares"
+B1A_PRINTED = MaterialSet(
+    name="b1a_printed",
+    material=MooneyRivlin3(c10=-129700, c01=173670, c11=55812),
+    source="thesis, Table 3.1, row B1 (erratum E5: the text calls this elastomer B1-A)",
+    note="not strongly elliptic in part of compression: finite element results depend on the mesh; b1a_stable is the alternative",
+)
 
-LIBRARY = {
-    entry.name: entry
-    for entry in (
-        MaterialSet("b1a_printed", MooneyRivlin3(c10=-129700, c01=173670, c11=55812), _PRINTED, ""),
-        MaterialSet("icf_printed", MooneyRivlin3(c10=-8598.8, c01=10284, c11=5143.6), _PRINTED, ""),
-        MaterialSet("b1a_stable", MooneyRivlin5(c10=0, c01=49657.5, c20=146454.2, c11=0, c02=0), _STABLE, ""),
-        MaterialSet("icf_stable", MooneyRivlin5(c10=0, c01=1995.84, c20=11957.5, c11=0, c02=0), _STABLE, ""),
-    )
-}
+ICF_PRINTED = MaterialSet(
+    name="icf_printed",
+    material=MooneyRivlin3(c10=-8598.8, c01=10284, c11=5143.6),
+    source="thesis, Table 3.1, row ICF",
+    note="not strongly elliptic in part of compression: finite element results depend on the mesh; icf_stable is the alternative",
+)
+
+_FITTED_TO = "uniaxial curve of {} (3.1.9 with c11, erratum E4) at 200 even stretches, relative least squares, form 'stable'"
+_STABLE_NOTE = "strongly elliptic at every stretch from 0.2 to 5; the fitted range is an assumption, the test is not described"
+
+B1A_STABLE = MaterialSet(
+    name="b1a_stable",
+    material=MooneyRivlin5(c10=-92910, c01=137860, c20=97811, c11=0, c02=0),
+    source=_FITTED_TO.format("b1a_printed"),
+    note=_STABLE_NOTE,
+    fitted_stretch=(0.6, 1.0),
+    max_relative_error=0.0227,
+    rms_relative_error=0.0085,
+)
+
+ICF_STABLE = MaterialSet(
+    name="icf_stable",
+    material=MooneyRivlin5(c10=-5787.3, c01=7537.6, c20=8682.4, c11=0, c02=0),
+    source=_FITTED_TO.format("icf_printed"),
+    note=_STABLE_NOTE,
+    fitted_stretch=(0.6, 1.0),
+    max_relative_error=0.0358,
+    rms_relative_error=0.0140,
+)
+
+LIBRARY = {entry.name: entry for entry in (B1A_PRINTED, B1A_STABLE, ICF_PRINTED, ICF_STABLE)}
+"""Shipped sets by name."""

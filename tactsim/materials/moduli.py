@@ -28,5 +28,5 @@ def check_moduli(shear_modulus: float, bulk_modulus: float | None) -> None:
     if bulk_modulus is not None and bulk_modulus > LARGEST_BULK_TO_SHEAR_RATIO * shear_modulus:
         raise ValueError(
             f"bulk modulus = {bulk_modulus:g} Pa is {bulk_modulus / shear_modulus:.2g} times the shear modulus; "
-            f"allowed are up to {LARGEST_BULK_TO_SHEAR_RATIO:g} times: make the material exactly incompressible instead (bulk modulus null)"
+            f"allowed are up to {LARGEST_BULK_TO_SHEAR_RATIO:g} times: use null, exactly incompressible, instead"
         )

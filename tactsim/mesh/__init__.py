@@ -1,1 +1,1 @@
-""""""
+"""Meshes of quadratic elements: graded axisymmetric sections, refinement, quality."""

@@ -1,0 +1,57 @@
+"""The filler plate of the hardness sensor: a rigid annulus with walls and filleted edges."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.contact.profile import Revolved, rounded_box
+from tactsim.units import Length, format_quantity
+
+Array = np.ndarray
+
+
+class Annulus(Revolved):
+    """A rigid ring ``inner_radius <= r <= outer_radius`` whose face lies at z = 0 and whose walls rise along z > 0.
+
+    Source: thesis, Fig. 3.1 and 3.7, p. 3.1.1; the fillet is not printed and is a declared assumption.
+    """
+
+    kind: Literal["annulus"] = "annulus"
+    inner_radius: Annotated[Length, Field(gt=0)] = 1.5e-3
+    """Radius of the hole."""
+    outer_radius: Annotated[Length, Field(gt=0)] = 3e-3
+    """Outer radius of the ring."""
+    fillet: Annotated[Length, Field(ge=0)] = 0.2e-3
+    """Radius of the rounding of both edges of the face; 0 is a sharp edge."""
+    height: Annotated[Length, Field(gt=0)] = 20e-3
+    """Height of the walls."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.inner_radius >= self.outer_radius:
+            inner, outer = (format_quantity(value, "m") for value in (self.inner_radius, self.outer_radius))
+            raise ValueError(f"inner_radius {inner} must be smaller than outer_radius {outer}")
+        largest = min((self.outer_radius - self.inner_radius) / 2, self.height / 2)
+        if self.fillet > largest:
+            fillet, limit = format_quantity(self.fillet, "m"), format_quantity(largest, "m")
+            raise ValueError(f"fillet {fillet} is too large: at most half the ring's width, {limit}")
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """The sensor of chapter 3."""
+        return cls()
+
+    @property
+    def area(self) -> float:
+        """Annular area in m^2 that the thesis divides the threshold force by."""
+        return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
+
+    def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
+        """Distance to the rounded rectangle of the section."""
+        center = np.array([(self.inner_radius + self.outer_radius) / 2, self.height / 2])
+        half = np.array([(self.outer_radius - self.inner_radius) / 2, self.height / 2])
+        return rounded_box(p, center, half, self.fillet)

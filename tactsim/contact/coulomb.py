@@ -1,0 +1,36 @@
+"""Coulomb friction."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.interfaces import ContactLaw
+
+Array = np.ndarray
+
+
+class Coulomb(ContactLaw):
+    """Tangential traction up to ``friction`` times the contact pressure.
+
+    Source: thesis, 3.2 (0.4 between annulus and elastomer) and 6.5 (0.6 between jaws and tissue).
+    """
+
+    kind: Literal["coulomb"] = "coulomb"
+    friction: Annotated[float, Field(ge=0, le=10)] = 0.4
+    """Coefficient of friction, dimensionless; 0 is frictionless."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The coefficient of chapter 3."""
+        return cls()
+
+    def traction_limit(self, pressure: Array) -> Array:
+        """``friction * pressure``."""
+        return self.friction * pressure
+
+    def traction_limit_slope(self, pressure: Array) -> Array:
+        """``friction``."""
+        return np.full_like(pressure, self.friction)

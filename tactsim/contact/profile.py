@@ -1,0 +1,58 @@
+"""Bodies of revolution from a profile in the (r, z) half-plane."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+
+from tactsim.interfaces import RigidBody
+
+Array = np.ndarray
+
+
+class Revolved(RigidBody):
+    """A body of revolution about z; points are (r, z) on an axisymmetric mesh or (x, y, z) in space."""
+
+    @abstractmethod
+    def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
+        """Distance (n,), normal (2, n) and Hessian (2, 2, n) in the half-plane at points (2, n)."""
+
+    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
+        """Distance in m, outward normal and Hessian in 1/m at points (2, n) or (3, n)."""
+        if len(x) == 2:
+            return self.profile_distance(x)
+        radius = np.hypot(x[0], x[1])
+        safe = np.where(radius > 0, radius, 1.0)
+        radial = np.stack([np.where(radius > 0, x[0], 1.0) / safe, x[1] / safe, np.zeros_like(radius)])
+        hoop = np.stack([-radial[1], radial[0], np.zeros_like(radius)])
+        axial = np.zeros_like(radial)
+        axial[2] = 1.0
+        distance, normal, hessian = self.profile_distance(np.stack([radius, x[2]]))
+        basis = np.stack([radial, axial])
+        lifted = np.einsum("in,ian,jbn,ijn->abn", np.ones_like(normal), basis, basis, hessian)
+        lifted += np.where(radius > 0, normal[0] / safe, 0.0) * hoop[:, None] * hoop[None, :]
+        return distance, np.einsum("in,ian->an", normal, basis), lifted
+
+
+def rounded_box(p: Array, center: Array, half: Array, fillet: float) -> tuple[Array, Array, Array]:
+    """Signed distance, normal and Hessian of a rectangle with filleted corners in the plane.
+
+    Parameters
+    ----------
+    p : (2, n) points in m
+    center, half : (2,) centre and half widths in m
+    fillet : radius of the corners in m, at most the smaller half width
+    """
+    offset = p - center[:, None]
+    sign = np.where(offset < 0, -1.0, 1.0)
+    q = np.abs(offset) - (half - fillet)[:, None]
+    outside = np.maximum(q, 0.0)
+    reach = np.hypot(*outside)
+    corner = (q > 0).all(axis=0)
+    distance = reach + np.minimum(q.max(axis=0), 0.0) - fillet
+    flat = np.stack([q[0] >= q[1], q[0] < q[1]]).astype(float)
+    safe = np.where(corner, reach, 1.0)
+    normal = sign * np.where(corner, outside / safe, flat)
+    hessian = np.where(corner, 1.0 / safe, 0.0) * (np.eye(2)[:, :, None] - normal[:, None] * normal[None, :])
+    return distance, normal, hessian

@@ -1,0 +1,50 @@
+"""A flat cylindrical punch, or the face of a disc-shaped sensor."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.contact.profile import Revolved, rounded_box
+from tactsim.units import Length, format_quantity
+
+Array = np.ndarray
+
+
+class Punch(Revolved):
+    """A rigid disc ``r <= radius`` whose face lies at z = 0.
+
+    Source: the flat punch of contact mechanics (Sneddon 1965, doi:10.1016/0020-7225(65)90019-4).
+    """
+
+    kind: Literal["punch"] = "punch"
+    radius: Annotated[Length, Field(gt=0)] = 1.5e-3
+    """Radius of the disc."""
+    fillet: Annotated[Length, Field(ge=0)] = 0.0
+    """Radius of the rounding of the edge."""
+    height: Annotated[Length, Field(gt=0)] = 20e-3
+    """Height of the wall."""
+
+    @model_validator(mode="after")
+    def _rounded(self) -> Self:
+        largest = min(self.radius, self.height / 2)
+        if self.fillet > largest:
+            fillet, limit = format_quantity(self.fillet, "m"), format_quantity(largest, "m")
+            raise ValueError(f"fillet {fillet} is too large: at most {limit}")
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """A disc as wide as the hole of chapter 3's sensor."""
+        return cls()
+
+    @property
+    def area(self) -> float:
+        """Area of the face in m^2."""
+        return float(np.pi * self.radius**2)
+
+    def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
+        """Distance to the rounded rectangle of the section."""
+        return rounded_box(p, np.array([0.0, self.height / 2]), np.array([self.radius, self.height / 2]), self.fillet)

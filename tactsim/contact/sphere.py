@@ -1,0 +1,39 @@
+"""A rigid sphere."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.interfaces import RigidBody
+from tactsim.units import Length
+
+Array = np.ndarray
+
+
+class Sphere(RigidBody):
+    """A rigid sphere whose lowest point is the origin.
+
+    Source: Hertz 1881, doi:10.1515/crll.1882.92.156.
+    """
+
+    kind: Literal["sphere"] = "sphere"
+    radius: Annotated[Length, Field(gt=0)] = 5e-3
+    """Radius of the sphere."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """A small indenter."""
+        return cls()
+
+    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
+        """Distance, normal and Hessian at points (d, n)."""
+        offset = x.copy()
+        offset[-1] -= self.radius
+        reach = np.linalg.norm(offset, axis=0)
+        safe = np.where(reach > 0, reach, self.radius)
+        normal = offset / safe
+        hessian = (np.eye(len(x))[:, :, None] - normal[:, None] * normal[None, :]) / safe
+        return reach - self.radius, normal, hessian

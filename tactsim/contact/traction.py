@@ -1,0 +1,167 @@
+"""Contact and friction traction at surface points against one rigid body.
+
+The contact pressure (per reference area) is ``max(0, -penalty * gap)`` with a penalty so stiff that the penetration stays below
+a stated tolerance. Friction is the return mapping of Simo & Laursen 1992 (doi:10.1016/0045-7949(92)90540-G): an elastic trial
+traction from the slip since the last accepted step, cut back to the friction limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactsim.interfaces import ContactLaw, RigidBody
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """What the last accepted step left at n surface points, in the body's frame.
+
+    ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
+    ``normals`` (d, n) of the rigid body there.
+    """
+
+    pressure: Array
+    tangential: Array
+    points: Array
+    normals: Array
+
+    @classmethod
+    def untouched(cls, points: Array, normals: Array) -> ContactState:
+        """No contact yet."""
+        return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
+
+
+@dataclass(frozen=True)
+class ContactTraction:
+    """Contact at n surface points: ``gap`` in m (negative is penetration), ``pressure`` and ``tangential`` traction on the
+    tissue in Pa, ``normal`` of the body, ``derivative`` (d, d, n) of the whole traction with respect to the point in Pa/m.
+    """
+
+    gap: Array
+    pressure: Array
+    tangential: Array
+    normal: Array
+    points: Array
+    derivative: Array
+
+    @property
+    def traction(self) -> Array:
+        """Traction (d, n) on the tissue in Pa."""
+        return self.pressure * self.normal + self.tangential
+
+    def commit(self) -> ContactState:
+        """The state that an accepted step leaves behind."""
+        return ContactState(self.pressure, self.tangential, self.points, self.normal)
+
+
+@dataclass(frozen=True)
+class ContactIterate:
+    """Contact forces as unknowns of their own during Newton: ``pressure`` (n,) and ``tangential`` (d, n) in Pa."""
+
+    pressure: Array
+    tangential: Array
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """Tissue surface against one rigid body.
+
+    ``penalty`` and ``tangential_penalty`` in Pa/m are regularisations, not properties of the tissue: the contact is closed to
+    pressure / penalty and sticks to traction / tangential_penalty. They may be stiff because Newton carries the contact
+    forces as unknowns of their own, updated by their linearisation and condensed point by point (the mixed integration point
+    method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
+    against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
+    doi:10.1137/060671061).
+    """
+
+    body: RigidBody
+    law: ContactLaw
+    penalty: float = 1.0
+    tangential_penalty: float = 1.0
+    switch_stiffness: float = 1.0
+
+    def with_penalty(self, penalty: float, tangential_penalty: float, switch_stiffness: float) -> ContactPair:
+        """The same pair, regularised otherwise (all in Pa/m)."""
+        return replace(self, penalty=penalty, tangential_penalty=tangential_penalty, switch_stiffness=switch_stiffness)
+
+    def iterate(self, state: ContactState) -> ContactIterate:
+        """Where Newton starts: the forces of the last accepted step."""
+        return ContactIterate(state.pressure, state.tangential)
+
+    def converged(self, points: Array, state: ContactState) -> ContactTraction:
+        """Traction at points (d, n) by the return mapping itself: what holds at the end of a step."""
+        gap, normal, hessian = self.body.signed_distance(points)
+        pressure = np.maximum(0.0, -self.penalty * gap)
+        trial, _ = self._elastic_trial(points, normal, hessian, state)
+        limit = np.where(pressure > 0, self.law.traction_limit(pressure), 0.0)
+        size = np.linalg.norm(trial, axis=0)
+        scale = np.where(size > limit, limit / np.where(size > 0, size, 1.0), 1.0)
+        return ContactTraction(gap, pressure, scale * trial, normal, points, np.zeros((len(points), *points.shape)))
+
+    def linearised(self, points: Array, state: ContactState, iterate: ContactIterate) -> ContactTraction:
+        """Traction and derivative at points (d, n), each point open, sticking or slipping as the iterate decides.
+
+        The pressure of a closed point may come out negative on the way; it opens in the next iteration.
+        """
+        gap, normal, hessian = self.body.signed_distance(points)
+        closed = (iterate.pressure > 0) | (gap < 0)
+        pressure = np.where(closed, -self.penalty * gap, 0.0)
+        weight = np.where(iterate.pressure > 0, iterate.pressure, np.maximum(pressure, 0.0))
+        slope = np.where(closed, -self.penalty, 0.0) * normal
+        trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
+        decider, decider_slope = self._decider(iterate.tangential, normal, hessian, (trial, trial_slope))
+        size = np.linalg.norm(decider, axis=0)
+        limit = self.law.traction_limit(weight)
+        slips = closed & (size > limit)
+        sticks = closed & ~slips
+        direction = np.where(slips, decider / np.where(size > 0, size, 1.0), 0.0)
+        across = np.eye(len(points))[:, :, None] - direction[:, None] * direction[None, :]
+        spread = np.where(slips, limit, 0.0) / np.where(slips, size, 1.0)
+        tangential_slope = spread * np.einsum("ijn,jkn->ikn", across, decider_slope) + np.where(sticks, trial_slope, 0.0)
+        limit_slope = np.where(slips, self.law.traction_limit_slope(weight), 0.0)
+        tangential_slope = tangential_slope + limit_slope * direction[:, None] * slope[None, :]
+        at_limit = np.where(slips, limit, 0.0) + limit_slope * (pressure - weight)
+        tangential = np.where(slips, at_limit * direction, np.where(sticks, trial, 0.0))
+        derivative = normal[:, None] * slope[None, :] + weight * hessian + tangential_slope
+        return ContactTraction(gap, pressure, tangential, normal, points, derivative)
+
+    def advanced(self, now: ContactTraction, step: Array) -> ContactIterate:
+        """The iterate after moving the points by ``step`` (d, n), by the linearisation that ``now`` carries."""
+        along = np.einsum("in,in->n", now.normal, step)
+        pressure = np.where(now.pressure != 0, now.pressure - self.penalty * along, 0.0)
+        change = (
+            np.einsum("ijn,jn->in", now.derivative, step) + self.penalty * np.where(now.pressure != 0, along, 0.0) * now.normal
+        )
+        return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
+
+    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Traction (d, n) whose size decides between stick and slip and whose direction is that of slip, and its derivative:
+        the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it."""
+        share = min(1.0, self.switch_stiffness / self.tangential_penalty)
+        across = np.einsum("in,in->n", carried, normal)
+        plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
+        in_plane = carried - across * normal
+        return in_plane + share * (trial[0] - in_plane), (1 - share) * plane_slope + share * trial[1]
+
+    def _elastic_trial(self, points: Array, normal: Array, hessian: Array, state: ContactState) -> tuple[Array, Array]:
+        """Trial traction (d, n) if nothing slipped, and its derivative: the old one turned to the new tangent plane, minus
+        the tangential penalty times the slip since then."""
+        identity = np.eye(len(points))[:, :, None]
+        travel = points - state.points
+        along = np.einsum("in,in->n", normal, travel)
+        slip = travel - along * normal
+        slip_slope = identity - normal[:, None] * normal[None, :]
+        slip_slope = slip_slope - along * hessian - normal[:, None] * np.einsum("in,ijn->jn", travel, hessian)[None, :]
+        old, both = state.tangential, normal + state.normals
+        cosine = np.maximum(1.0 + np.einsum("in,in->n", normal, state.normals), 1e-3)
+        out_of_plane = np.einsum("in,in->n", old, normal)
+        turned = old - out_of_plane / cosine * both
+        d_out = np.einsum("in,ijn->jn", old, hessian)
+        d_cosine = np.einsum("in,ijn->jn", state.normals, hessian)
+        d_ratio = d_out / cosine - out_of_plane / cosine**2 * d_cosine
+        turned_slope = -both[:, None] * d_ratio[None, :] - out_of_plane / cosine * hessian
+        return turned - self.tangential_penalty * slip, turned_slope - self.tangential_penalty * slip_slope

@@ -1,0 +1,187 @@
+"""A rigid body pressed into tissue; for the annulus, up to the threshold where the tissue touches the inner sensor."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.punch import Punch
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.indentation_report import IndentationRecord
+from tactsim.experiments.specimen import Specimen
+from tactsim.fem.loading import Event, PathFollower, StepControl
+from tactsim.interfaces import ContactLaw, Experiment, Progress, RigidBody
+from tactsim.mesh.axisymmetric import edge_graded
+from tactsim.registry import tagged_union
+from tactsim.results.result import Result, Status
+from tactsim.units import FrozenModel, Length, format_quantity
+
+Array = np.ndarray
+
+AnyBody: Any = tagged_union("tactsim.contact", RigidBody)
+AnyLaw: Any = tagged_union("tactsim.contact", ContactLaw)
+EVENT_TOLERANCE = 1e-5
+"""Tolerance of the displacement at the threshold, as a part of the recess."""
+
+
+class MeshSettings(FrozenModel):
+    """Size of the elements: finest at the edges of the body, growing with the distance from them."""
+
+    finest: Annotated[Length, Field(gt=0)] | None = None
+    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 0.35
+    """Growth of the element size per distance from the edges, dimensionless."""
+    coarsest: Annotated[Length, Field(gt=0)] | None = None
+    """Largest element size; by default a fifth of the specimen's thickness."""
+    refinement: Annotated[float, Field(gt=0)] = 1.0
+    """Divides every size: 2 halves the elements."""
+
+
+class StepSettings(FrozenModel):
+    """Lengths of the load steps, as displacements of the body."""
+
+    first: Annotated[Length, Field(gt=0)] | None = None
+    """First step; by default a thousandth of the body's radius."""
+    largest: Annotated[Length, Field(gt=0)] | None = None
+    """Largest step; by default a twentieth of the body's radius."""
+    smallest: Annotated[Length, Field(gt=0)] | None = None
+    """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
+
+
+class Indentation(Experiment):
+    """A rigid body pressed into a cylindrical specimen along its axis."""
+
+    kind: Literal["indentation"] = "indentation"
+    specimen: Specimen
+    """The tissue."""
+    body: AnyBody = Annulus()
+    """The rigid body; its reference point moves by the displacement."""
+    contact: AnyLaw = Coulomb()
+    """Friction between body and tissue."""
+    recess: Annotated[Length, Field(gt=0)] | None = None
+    """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
+    stop: Literal["threshold", "displacement"] = "threshold"
+    """Whether the run ends at the threshold, or goes on to the displacement with the inner sensor in contact."""
+    displacement: Annotated[Length, Field(gt=0)]
+    """Displacement of the body from first touch; the most that is tried when the run stops at the threshold."""
+    penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
+    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius."""
+    mesh: MeshSettings = MeshSettings()
+    """Size of the elements."""
+    steps: StepSettings = StepSettings()
+    """Length of the load steps."""
+
+    history_units: ClassVar[dict[str, str]] = IndentationRecord.UNITS
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        width = format_quantity(self.specimen.radius, "m")
+        if self.body.kind != "plane" and self.contact_radius >= self.specimen.radius:
+            raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
+        if self.displacement >= self.specimen.thickness:
+            given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
+            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
+        if self.body.kind == "annulus":
+            if self.recess is None:
+                raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
+            if self.recess >= self.specimen.thickness:
+                raise ValueError("the recess must be smaller than the specimen's thickness (thesis, end of 3.1.1)")
+            if self.rise_at_touch >= self.recess:
+                raise ValueError("the curved surface reaches the inner sensor before it touches the annulus")
+        elif self.recess is not None or self.stop == "threshold":
+            raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """A thin specimen under the sensor of chapter 3."""
+        return cls(specimen=Specimen(material="icf_stable", thickness=4e-3, radius=8e-3), recess=0.8e-3, displacement=2e-3)
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius in m that the body's size is measured by."""
+        return float(getattr(self.body, "outer_radius", getattr(self.body, "radius", self.specimen.radius)))
+
+    @property
+    def rise_at_touch(self) -> float:
+        """Rise in m of a convex surface into the hole when the annulus first touches it."""
+        inner = self.body.inner_radius if self.specimen.surface == "convex" else 0.0
+        return float(self.specimen.depth_of_cap(inner))
+
+    @property
+    def tolerance(self) -> float:
+        """Largest penetration in m."""
+        return self.penetration_tolerance or 1e-4 * self.contact_radius
+
+    def model(self) -> IndentationModel:
+        """The finite element model."""
+        radii = [r for r in (getattr(self.body, "inner_radius", 0.0), self.contact_radius) if 0 < r < self.specimen.radius]
+        if self.body.kind == "sphere":
+            radii = [0.0]
+        settings, fillet = self.mesh, float(getattr(self.body, "fillet", 0.0))
+        finest = settings.finest or (fillet / 3 if fillet > 0 else self.contact_radius / 50)
+        coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
+        edges = np.array([(r, 0.0) for r in radii or [self.specimen.radius]])
+        n = settings.refinement
+        size = edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=fillet)
+        mesh = self.specimen.mesh(size, tuple(radii))
+        facets, _ = mesh.boundary_facets()
+        flat_top = self._on_top(mesh.nodes[facets])
+        return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=facets[flat_top])
+
+    def _on_top(self, corners: Array) -> Array:
+        sign = -1.0 if self.specimen.surface == "concave" else 1.0
+        top = -sign * self.specimen.depth_of_cap(corners[..., 0])
+        return (np.abs(corners[..., 1] - top) < 1e-9 * self.specimen.thickness).all(axis=1)
+
+    def run(self, progress: Progress) -> Result:
+        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
+        begin = time.perf_counter()
+        model = self.model()
+        record = IndentationRecord(self, model, begin)
+        try:
+            for state, event in self._path(model, record):
+                progress(record.accept(state, threshold=event))
+        except ConvergenceError as error:
+            return record.result(Status.FAILED, f"stopped converging: {error}")
+        except KeyboardInterrupt:
+            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        if self.stop == "threshold" and not record.has_threshold:
+            reached = format_quantity(self.displacement, "m")
+            return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")
+        return record.result(Status.CONVERGED, "threshold reached" if self.stop == "threshold" else "displacement reached")
+
+    def _path(self, model: IndentationModel, record: IndentationRecord) -> Iterator[tuple[IndentationState, bool]]:
+        """Accepted states, each with whether it is the threshold."""
+        height = model.touching_height(self.body)
+        record.starting_height = height
+        softest = min(material.shear_modulus for material in self.specimen.materials)
+        scale = Regularisation(self.tolerance, softest, switch_length=0.03 * self.contact_radius)
+        state = model.start([(self.body, height)], self.contact, scale)
+        follower = PathFollower(model.advance, self._control())
+        record.follower = follower
+        recess = self.recess
+        event: Event[IndentationState] | None = None
+        if recess is not None:
+            event = Event(lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
+        touched = False
+        start = state
+        for state, touched in follower.follow(start, self.displacement, event):
+            yield state, touched
+        if recess is not None and touched and self.stop == "displacement" and state.load < self.displacement:
+            sensor = Punch(radius=self.body.inner_radius, height=self.body.height)
+            state = model.with_contact(state, model.contact(sensor, self.contact, height - state.load + recess))
+            yield from follower.follow(state, self.displacement)
+
+    def _control(self) -> StepControl:
+        first = self.steps.first or 1e-3 * self.contact_radius
+        largest = self.steps.largest or 0.05 * self.contact_radius
+        return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first)

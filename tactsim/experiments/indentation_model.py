@@ -1,0 +1,147 @@
+"""The finite element model of an indentation: tissue section, rigid bodies, and one step of the path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.traction import ContactPair
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.posed_contact import PosedContact
+from tactsim.fem.body import Body, Kinematics
+from tactsim.fem.newton import Problem
+from tactsim.fem.space import TaylorHood
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.interfaces import ContactLaw, Material, RigidBody
+from tactsim.mesh.quadratic import QuadraticMesh
+
+Array = np.ndarray
+
+PENALTY_ATTEMPTS = 5
+"""How often a step is solved again with a stiffer contact before it counts as failed."""
+
+
+@dataclass(frozen=True)
+class IndentationState:
+    """An accepted state: ``load`` is the body's displacement in m from first touch."""
+
+    load: float
+    unknowns: Array
+    iterations: int
+    residual: float
+    contacts: tuple[PosedContact, ...]
+    regularisation: Regularisation
+    kinematics: Kinematics
+
+
+class IndentationModel:
+    """Tissue on a base with rigid bodies above it that move down together.
+
+    Parameters
+    ----------
+    mesh : axisymmetric section, r >= 0
+    materials : one per region of the mesh
+    base : "fixed" or "slipping"
+    top : (F, 3) facets of the tissue that may touch
+    """
+
+    def __init__(self, mesh: QuadraticMesh, materials: Sequence[Material], *, base: str, top: Array):
+        self.mesh, self.top = mesh, top
+        self.space = TaylorHood(mesh.nodes, mesh.elements, "axisymmetric")
+        self.body = Body(self.space, materials, mesh.regions)
+        self.points = self.space.surface_points(top)
+        self.surface = SurfaceAssembly(self.points, self.body.pattern, self.space.dim)
+        self.reference = self.points.interpolate(mesh.nodes)
+        self.base_nodes = np.flatnonzero(mesh.nodes[:, 1] <= mesh.nodes[:, 1].min() * (1 - 1e-9))
+        axis = np.flatnonzero(mesh.nodes[:, 0] == 0.0)
+        held = [2 * self.base_nodes + 1, 2 * axis]
+        self.problem = Problem(self.body, np.concatenate([*held, 2 * self.base_nodes] if base == "fixed" else held))
+
+    def touching_height(self, body: RigidBody) -> float:
+        """Height in m of the body's reference point at which it first touches the undeformed surface."""
+        low, high = -float(np.ptp(self.mesh.nodes[:, 1])), float(np.ptp(self.mesh.nodes[:, 1]))
+        points = self._surface_samples()
+        for _ in range(200):
+            middle = (low + high) / 2
+            gap = body.signed_distance(points - np.array([[0.0], [middle]]))[0].min()
+            low, high = (low, middle) if gap > 0 else (middle, high)
+        return high
+
+    def _surface_samples(self) -> Array:
+        """Points (2, n) on the undeformed top: nodes and quadrature points."""
+        return np.hstack([self.mesh.nodes[np.unique(self.top)].T, self.reference])
+
+    def start(
+        self, bodies: Sequence[tuple[RigidBody, float]], law: ContactLaw, regularisation: Regularisation
+    ) -> IndentationState:
+        """The undeformed tissue under bodies, each with the height in m of its reference point."""
+        contacts = tuple(self.contact(body, law, height) for body, height in bodies)
+        unknowns = np.zeros(self.space.size)
+        return IndentationState(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+
+    def contact(self, body: RigidBody, law: ContactLaw, height: float) -> PosedContact:
+        """A body above the tissue that has not touched it."""
+        return PosedContact.apart(self.surface, self.reference, ContactPair(body, law), np.array([0.0, height]))
+
+    def with_contact(self, state: IndentationState, contact: PosedContact) -> IndentationState:
+        """A state with one more body, which starts from the points where the tissue is now."""
+        committed = contact.committed(self.displacement(state.unknowns))
+        return replace(state, contacts=(*state.contacts, committed))
+
+    def advance(self, state: IndentationState, load: float, guess: Array) -> IndentationState:
+        """Equilibrium with the bodies at displacement ``load``, its penetration below the tolerance.
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton fails, or no penalty keeps the tissue out of the bodies.
+        """
+        regularisation, iterations = state.regularisation, 0
+        shift = np.array([0.0, state.load - load])
+        for _ in range(PENALTY_ATTEMPTS):
+            contacts = [c.moved(c.place + shift, regularisation.applied(c.pair)) for c in state.contacts]
+            solved = self.problem.solve(guess, interfaces=contacts)
+            iterations += solved.iterations
+            displacement = self.displacement(solved.unknowns)
+            results = [contact.at(displacement) for contact in contacts]
+            deepest = max(float(-result.gap.min()) for result in results)
+            regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
+            if deepest <= regularisation.tolerance:
+                return IndentationState(
+                    load,
+                    solved.unknowns,
+                    iterations,
+                    solved.history[-1],
+                    tuple(contact.committed(displacement) for contact in contacts),
+                    regularisation,
+                    solved.kinematics,
+                )
+            guess = solved.unknowns
+        raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+
+    def displacement(self, unknowns: Array) -> Array:
+        """Displacements (2, n) in m of the surface points."""
+        return self.points.interpolate(self.space.split(unknowns)[0])
+
+    def base_force(self, unknowns: Array) -> Array:
+        """Resultant (2,) in N of the internal forces on the base nodes."""
+        internal = self.body.residual(unknowns)[: self.space.displacement_size].reshape(-1, 2)
+        return internal[self.base_nodes].sum(axis=0)
+
+    def highest(self, unknowns: Array, radius: float) -> tuple[float, float]:
+        """Largest height of the tissue within ``radius`` of the axis, and its height on the axis, in m.
+
+        Exact for the quadratic edges: their vertices of parabola count beside the nodes.
+        """
+        positions = self.mesh.nodes + self.space.split(unknowns)[0]
+        first, second, middle = (positions[self.top[:, k]] for k in range(3))
+        slope = 4 * middle - 3 * first - second
+        bend = 2 * first + 2 * second - 4 * middle
+        flat = np.abs(bend[:, 1]) < 1e-300
+        at = np.clip(np.where(flat, 0.0, -slope[:, 1] / np.where(flat, 1.0, 2 * bend[:, 1])), 0.0, 1.0)[:, None]
+        candidates = np.vstack([first, second, middle, first + at * (slope + at * bend)])
+        inside = candidates[candidates[:, 0] <= radius]
+        return float(inside[:, 1].max()), float(inside[np.argmin(inside[:, 0]), 1])

@@ -1,0 +1,198 @@
+"""What an indentation reports: history, quantities, fields, assumptions and warnings."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.materials.stability import strongly_elliptic
+from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.experiments.indentation import Indentation
+
+Array = np.ndarray
+
+
+class IndentationRecord:
+    """Collects accepted steps and turns them into a result."""
+
+    UNITS: ClassVar[dict[str, str]] = {
+        "displacement": "m",
+        "reaction_force": "N",
+        "tissue_rise": "m",
+        "tissue_rise_axis": "m",
+        "sensor_force": "N",
+        "base_force": "N",
+        "max_penetration": "m",
+        "max_pressure": "Pa",
+        "min_volume_ratio": "1",
+        "unstable_volume_fraction": "1",
+    }
+
+    def __init__(self, experiment: Indentation, model: IndentationModel, begin: float):
+        self.experiment, self.model, self.begin = experiment, model, begin
+        self.starting_height = 0.0
+        self.follower: Any = None
+        self.steps: list[StepRecord] = []
+        self.frames: list[FieldFrame] = []
+        self.threshold: dict[str, float] = {}
+        self._unstable = np.zeros(model.body.points.weights.shape, bool)
+        self._setup_time = time.perf_counter() - begin
+
+    @property
+    def has_threshold(self) -> bool:
+        """Whether the tissue has touched the inner sensor."""
+        return bool(self.threshold)
+
+    def rise(self, state: IndentationState) -> tuple[float, float]:
+        """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m."""
+        face = self.starting_height - state.load
+        highest, axis = self.model.highest(state.unknowns, self.experiment.body.inner_radius)
+        return highest - face, axis - face
+
+    def accept(self, state: IndentationState, *, threshold: bool) -> StepRecord:
+        """Record an accepted state."""
+        values = self._values(state)
+        record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
+        self.steps.append(record)
+        self.frames = [*self.frames[-1:], self._frame(state)] if threshold else [self._frame(state)]
+        if threshold:
+            self.threshold = values
+        return record
+
+    def _values(self, state: IndentationState) -> dict[str, float]:
+        displacement = self.model.displacement(state.unknowns)
+        tractions = [contact.at(displacement) for contact in state.contacts]
+        forces = [-float(self.model.surface.total(t.traction)[1]) for t in tractions]
+        inside = ~self._elliptic(state)
+        self._unstable |= inside
+        weights = self.model.body.points.weights
+        values = {
+            "displacement": state.load,
+            "reaction_force": forces[0],
+            "base_force": float(self.model.base_force(state.unknowns)[1]),
+            "max_penetration": max(0.0, *(float(-t.gap.min()) for t in tractions)),
+            "max_pressure": max(float(t.pressure.max()) for t in tractions),
+            "min_volume_ratio": float(state.kinematics.J.min()),
+            "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
+        }
+        if self.experiment.recess is not None:
+            rise, axis = self.rise(state)
+            values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": sum(forces[1:])}
+        return values
+
+    def _elliptic(self, state: IndentationState) -> Array:
+        body = self.model.body
+        elliptic = np.ones(self._unstable.shape, bool)
+        for index, material in enumerate(body.materials):
+            mine = body.regions == index
+            elliptic[mine] = strongly_elliptic(material, state.kinematics.F[:, :, mine])
+        return elliptic
+
+    def _frame(self, state: IndentationState) -> FieldFrame:
+        space, mesh = self.model.space, self.model.mesh
+        u, p = space.split(state.unknowns)
+        flat = np.zeros((len(u), 3))
+        points, displacement = flat.copy(), flat.copy()
+        points[:, :2], displacement[:, :2] = mesh.nodes, u
+        pressure = np.zeros(len(u))
+        pressure[: len(p)] = -p
+        ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
+        pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
+        stretch = np.linalg.norm(np.moveaxis(state.kinematics.F, (0, 1), (-2, -1)), 2, axis=(-2, -1))
+        return FieldFrame(
+            time=state.load,
+            points=points,
+            cells={"triangle6": mesh.elements},
+            point_data={"displacement [m]": displacement, "pressure [Pa]": pressure},
+            cell_data={
+                "largest_stretch [1]": stretch.max(axis=1),
+                "volume_ratio [1]": state.kinematics.J.mean(axis=1),
+                "region [1]": mesh.regions.astype(float),
+                "left_ellipticity [1]": self._unstable.any(axis=1).astype(float),
+            },
+        )
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with everything that was accepted."""
+        total = time.perf_counter() - self.begin
+        return Result(
+            kind=self.experiment.kind,
+            status=status,
+            reason=reason,
+            quantities=self._quantities(),
+            assumptions=tuple(self._assumptions()),
+            warnings=tuple(self._warnings()),
+            timing={"setup": self._setup_time, "total": total},
+            steps=tuple(self.steps),
+            units=self.UNITS,
+            frames=tuple(self.frames),
+            details=self._details(),
+        )
+
+    def _quantities(self) -> dict[str, Quantity]:
+        last = self.steps[-1].values if self.steps else {}
+        told = {
+            "displacement": "displacement of the body from first touch",
+            "reaction_force": "force of the tissue on the body, along the axis",
+            "base_force": "force on the base, along the axis",
+            "tissue_rise": "largest height of the tissue in the hole above the face of the annulus",
+            "tissue_rise_axis": "height of the tissue on the axis above the face of the annulus",
+            "sensor_force": "force of the tissue on the inner sensor",
+        }
+        found = {name: Quantity(last[name], self.UNITS[name], text) for name, text in told.items() if name in last}
+        if self.steps:
+            deepest = max(step.values["max_penetration"] for step in self.steps)
+            found["max_penetration"] = Quantity(deepest, "m", "largest penetration at any surface point in any step")
+            share = last["unstable_volume_fraction"]
+            found["unstable_volume_fraction"] = Quantity(
+                share, "1", "part of the volume outside strong ellipticity at any accepted step"
+            )
+        if self.threshold:
+            force, area = self.threshold["reaction_force"], self.experiment.body.area
+            found["threshold_force"] = Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor")
+            found["threshold_pressure"] = Quantity(force / area, "Pa", "threshold force over the annular area")
+            found["threshold_displacement"] = Quantity(self.threshold["displacement"], "m", "displacement at the threshold")
+        return found
+
+    def _assumptions(self) -> list[str]:
+        experiment, specimen = self.experiment, self.experiment.specimen
+        radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
+        told = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
+        if hasattr(experiment.body, "fillet"):
+            told.append(f"edges of the body filleted by {format_quantity(experiment.body.fillet, 'm')} (not printed)")
+        if any(material.bulk_modulus is None for material in specimen.materials):
+            told.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
+        told.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
+        return told
+
+    def _warnings(self) -> list[str]:
+        if not self.steps:
+            return []
+        warnings = []
+        share = self.steps[-1].values["unstable_volume_fraction"]
+        if share > 0:
+            first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
+            at = format_quantity(first.values["displacement"], "m")
+            warnings.append(
+                f"{share:.1%} of the volume left strong ellipticity, first at a displacement of {at}: "
+                "there the answer depends on the mesh; take a stable material set"
+            )
+        return warnings
+
+    def _details(self) -> dict[str, Any]:
+        space = self.model.space
+        return {
+            "unknowns": space.size,
+            "elements": len(space.elements),
+            "linear_solver": self.model.problem.solver.name,
+            "rejected_steps": self.follower.rejected if self.follower else 0,
+            "newton_iterations": sum(step.newton_iterations for step in self.steps),
+            "remeshings": 0,
+            "starting_height": self.starting_height,
+        }

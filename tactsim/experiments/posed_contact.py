@@ -1,0 +1,68 @@
+"""A rigid body at a place, touching a tissue surface: the bridge between the contact law at a point and Newton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction
+from tactsim.fem.surface import SurfaceAssembly
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class PosedContact:
+    """One contact pair on one surface, the body's reference point at ``place``.
+
+    ``reference`` (d, n) are the undeformed surface points in m, ``place`` (d,) the body's reference point, ``state`` what the
+    last accepted step left.
+    """
+
+    surface: SurfaceAssembly
+    reference: Array
+    pair: ContactPair
+    place: Array
+    state: ContactState
+
+    @classmethod
+    def apart(cls, surface: SurfaceAssembly, reference: Array, pair: ContactPair, place: Array) -> PosedContact:
+        """A pair whose surfaces have not met yet."""
+        points = reference - place[:, None]
+        return cls(surface, reference, pair, place, ContactState.untouched(points, pair.body.signed_distance(points)[1]))
+
+    def moved(self, place: Array, pair: ContactPair) -> PosedContact:
+        """The same history with the body at another place and another regularisation."""
+        return replace(self, place=place, pair=pair)
+
+    def committed(self, displacement: Array) -> PosedContact:
+        """The pair after a step was accepted at displacements (d, n) of the points."""
+        return replace(self, state=self.at(displacement).commit())
+
+    def at(self, displacement: Array) -> ContactTraction:
+        """Contact that holds at displacements (d, n) of the points."""
+        return self.pair.converged(self._points(displacement), self.state)
+
+    def start(self) -> ContactIterate:
+        """Newton starts from the forces of the last accepted step."""
+        return self.pair.iterate(self.state)
+
+    def converged(self, displacement: Array) -> Array:
+        """Traction (d, n) in Pa."""
+        return self.at(displacement).traction
+
+    def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
+        """Traction and derivative as the carried forces decide."""
+        return self.pair.linearised(self._points(displacement), self.state, carried)
+
+    def advanced(self, now: ContactTraction, carried: ContactIterate, step: Array, damping: float) -> ContactIterate:
+        """The carried forces after a damped step."""
+        full = self.pair.advanced(now, step)
+        return ContactIterate(
+            carried.pressure + damping * (full.pressure - carried.pressure),
+            carried.tangential + damping * (full.tangential - carried.tangential),
+        )
+
+    def _points(self, displacement: Array) -> Array:
+        return self.reference + displacement - self.place[:, None]

@@ -1,0 +1,86 @@
+"""A cylindrical piece of tissue: layers, surface, base, and its axisymmetric mesh."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.interfaces import Material
+from tactsim.materials import AnyMaterial
+from tactsim.mesh.axisymmetric import Size, section_mesh
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.units import FrozenModel, Length, format_quantity
+
+Array = np.ndarray
+
+
+class Layer(FrozenModel):
+    """A layer of other material at the top of the specimen."""
+
+    thickness: Annotated[Length, Field(gt=0)]
+    """Thickness of the layer."""
+    material: AnyMaterial
+    """Material of the layer."""
+
+
+class Specimen(FrozenModel):
+    """A cylinder of tissue on a rigid base; its axis is the axis of the body pressed into it."""
+
+    material: AnyMaterial
+    """Material below the layers."""
+    thickness: Annotated[Length, Field(gt=0)] = 10e-3
+    """Thickness on the axis of a flat specimen, layers included."""
+    radius: Annotated[Length, Field(gt=0)] = 15e-3
+    """Radius of the cylinder; its side is free."""
+    layers: tuple[Layer, ...] = ()
+    """Layers from the surface down, inside the thickness."""
+    base: Literal["fixed", "slipping"] = "fixed"
+    """Whether the tissue sticks to the base or slides on it without friction."""
+    surface: Literal["flat", "convex", "concave"] = "flat"
+    """Shape of the top."""
+    surface_radius: Annotated[Length, Field(gt=0)] | None = None
+    """Radius of the sphere that a convex or concave top follows."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        stacked = sum(layer.thickness for layer in self.layers)
+        if stacked >= self.thickness:
+            stack, thickness = format_quantity(stacked, "m"), format_quantity(self.thickness, "m")
+            raise ValueError(f"layers of {stack} leave nothing of the thickness {thickness}")
+        if (self.surface == "flat") != (self.surface_radius is None):
+            raise ValueError("surface_radius belongs to a convex or concave surface, and such a surface needs it")
+        if self.surface_radius is not None and self.surface_radius < self.radius:
+            given, least = format_quantity(self.surface_radius, "m"), format_quantity(self.radius, "m")
+            raise ValueError(f"surface_radius {given} must be at least the specimen's radius, {least}")
+        if self.surface == "concave" and self.depth_of_cap(self.radius) >= 0.9 * self.thickness:
+            raise ValueError("the concave surface is as deep as the specimen is thick; take a larger surface_radius")
+        return self
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Materials by region, from the top down."""
+        return (*(layer.material for layer in self.layers), self.material)
+
+    @property
+    def interfaces(self) -> tuple[float, ...]:
+        """Heights in m of the top, of every layer's lower face and of the base, on a flat specimen."""
+        depths = np.cumsum([layer.thickness for layer in self.layers])
+        return (0.0, *(-float(depth) for depth in depths), -self.thickness)
+
+    def depth_of_cap(self, radius: float | Array) -> Array:
+        """How far the sphere of the surface has dropped at a distance in m from the axis."""
+        if self.surface_radius is None:
+            return np.zeros_like(np.asarray(radius, float))
+        return self.surface_radius - np.sqrt(self.surface_radius**2 - np.asarray(radius, float) ** 2)
+
+    def mesh(self, size: Size, lines: tuple[float, ...]) -> QuadraticMesh:
+        """Section of the specimen, r >= 0, the top of the axis at z = 0; nodes of a curved top lie on it."""
+        flat = section_mesh(self.radius, self.interfaces, size, lines=lines)
+        if self.surface == "flat":
+            return flat
+        drop = self.depth_of_cap(flat.nodes[:, 0]) * (-1.0 if self.surface == "convex" else 1.0)
+        nodes = flat.nodes.copy()
+        nodes[:, 1] += drop * (1 + nodes[:, 1] / self.thickness)
+        return flat.moved(nodes)

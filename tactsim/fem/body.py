@@ -1,0 +1,133 @@
+"""A deformable body: space, materials per region, and its residual and tangent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tactsim.errors import InputError
+from tactsim.fem.kernels import compiled
+from tactsim.fem.pattern import Pattern, build_pattern
+from tactsim.fem.space import TaylorHood
+from tactsim.interfaces import Material
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Deformation at the volume points: ``F`` (3, 3, E, Q), ``J`` and the isochoric invariants ``I1``, ``I2`` (E, Q)."""
+
+    F: Array
+    J: Array
+    I1: Array
+    I2: Array
+
+
+class Body:
+    """A body of one or more materials in a Taylor-Hood space.
+
+    The weak form, for all test displacements v and pressures q (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7,
+    in the displacement-pressure form):
+
+    .. math::
+        \\int (P_{iso}(F) + p\\, \\partial_F g) : \\nabla v\\, dV = f(v), \\qquad \\int q\\, (g(F) - p / K)\\, dV = 0
+
+    with g = J - 1 (or its linear part for a linear elastic material).
+
+    Parameters
+    ----------
+    space : TaylorHood
+    materials : one per region
+    regions : (E,) index into ``materials``
+    """
+
+    def __init__(self, space: TaylorHood, materials: Sequence[Material], regions: Array, *, quadrature_order: int | None = None):
+        if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
+            raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
+        self.space = space
+        self.materials = tuple(materials)
+        self.regions = np.asarray(regions)
+        self.points = space.volume_points(quadrature_order)
+        self.linear = np.array([not hasattr(m, "energy_gradient") for m in materials])[self.regions]
+        self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
+        self._kernels = compiled(space.dim)
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """Sparse pattern of the tangent."""
+        return build_pattern(self.space.elements, self.space.dim, self.space.corner_count)
+
+    def kinematics(self, unknowns: Array) -> Kinematics:
+        """Deformation at the quadrature points."""
+        u, _ = self.space.split(unknowns)
+        shape = self.points.weights.shape
+        F, invariants = np.empty((9, *shape)), np.empty((3, *shape))
+        self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
+        return Kinematics(F.reshape(3, 3, *shape), *invariants)
+
+    def pressure(self, unknowns: Array) -> Array:
+        """Pressure unknown (tension positive) at the quadrature points in Pa, shape (E, Q)."""
+        _, p = self.space.split(unknowns)
+        return np.einsum("qv,ev->eq", self.points.pressure_values, p[self.space.elements[:, : self.space.dim + 1]])
+
+    def energy_slopes(self, state: Kinematics, *, second: bool) -> Array:
+        """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear."""
+        slopes = np.zeros((5 if second else 2, *state.J.shape))
+        for index, material in enumerate(self.materials):
+            mine = self.regions == index
+            if hasattr(material, "energy_gradient"):
+                values = material.energy_gradient(state.I1[mine], state.I2[mine])
+                if second:
+                    values = (*values, *material.energy_hessian(state.I1[mine], state.I2[mine]))  # type: ignore[attr-defined]
+                for slot, value in zip(slopes, values, strict=True):
+                    slot[mine] = value
+            else:
+                slopes[0, mine] = material.shear_modulus
+        return slopes
+
+    def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
+        """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
+        state = self.kinematics(unknowns) if state is None else state
+        u, p = self.space.split(unknowns)
+        out = np.zeros(self.space.size)
+        self._kernels.residual(
+            u, p, self._tables(), self.energy_slopes(state, second=False), self.pattern.order, self.pattern.color_starts, out
+        )
+        return out
+
+    def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
+        """Entries of the tangent in the order of ``pattern``, a new array."""
+        state = self.kinematics(unknowns) if state is None else state
+        u, p = self.space.split(unknowns)
+        pattern = self.pattern
+        data = np.zeros(len(pattern.indices))
+        slopes = self.energy_slopes(state, second=True)
+        self._kernels.tangent(
+            u, p, self._tables(), slopes, pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets, data
+        )
+        return data
+
+    def rounding_force(self) -> float:
+        """Largest nodal force in N that a stress as large as the shear modulus could make without cancellation."""
+        moduli = np.array([material.shear_modulus for material in self.materials])[self.regions]
+        points = self.points
+        size = np.abs(points.gradients).max(axis=-1) + points.hoop
+        forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
+        return float(np.bincount(self.space.elements.ravel(), forces.ravel()).max())
+
+    def _tables(self) -> tuple[Array, ...]:
+        """What the compiled loops read of the mesh and the materials."""
+        points = self.points
+        return (
+            self.space.elements,
+            points.gradients,
+            points.hoop,
+            points.weights,
+            points.pressure_values,
+            self.linear,
+            self.compliance,
+        )

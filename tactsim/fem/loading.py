@@ -1,0 +1,126 @@
+"""Following an equilibrium path: adaptive load steps, prediction, and events located by root finding on the step length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from scipy.optimize import brentq
+
+from tactsim.errors import ConvergenceError
+
+Array = np.ndarray
+
+
+class LoadedState(Protocol):
+    """An accepted equilibrium at a value of the load parameter."""
+
+    @property
+    def load(self) -> float:
+        """Load parameter."""
+
+    @property
+    def unknowns(self) -> Array:
+        """Unknowns of the body."""
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations it took."""
+
+
+State = TypeVar("State", bound=LoadedState)
+
+
+@dataclass(frozen=True)
+class StepControl:
+    """How load steps grow and shrink: all lengths in the unit of the load parameter."""
+
+    first: float
+    largest: float
+    smallest: float
+    growth: float = 1.6
+    shrink: float = 0.7
+    cut: float = 0.5
+    few_iterations: int = 7
+    many_iterations: int = 12
+
+    def next_step(self, step: float, iterations: int) -> float:
+        """Length of the step after one that took so many iterations."""
+        if iterations <= self.few_iterations:
+            return min(step * self.growth, self.largest)
+        return step if iterations <= self.many_iterations else step * self.shrink
+
+
+@dataclass(frozen=True)
+class Event(Generic[State]):
+    """A sign change from negative to positive of ``value`` along the path, located to ``tolerance`` of the load parameter."""
+
+    value: Callable[[State], float]
+    tolerance: float
+
+
+class PathFollower(Generic[State]):
+    """Advances a state by accepted load steps; ``rejected`` counts the steps that had to be cut back.
+
+    Parameters
+    ----------
+    advance : (state, load, guess) -> the equilibrium at ``load`` reached from ``state``; raises ConvergenceError
+    control : step lengths
+    """
+
+    def __init__(self, advance: Callable[[State, float, Array], State], control: StepControl):
+        self._advance, self._control = advance, control
+        self.rejected = 0
+
+    def follow(self, start: State, target: float, event: Event[State] | None = None) -> Iterator[tuple[State, bool]]:
+        """Yield every accepted state from ``start`` up to ``target`` or to the event, with whether it is the event.
+
+        Raises
+        ------
+        ConvergenceError
+            If no step longer than the smallest one converges; the message names the load that was reached.
+        """
+        before, now, step = None, start, self._control.first
+        while now.load < target * (1 - 1e-12):
+            load = min(now.load + step, target)
+            try:
+                reached = self._advance(now, load, _predicted(before, now, load))
+            except ConvergenceError as error:
+                self.rejected += 1
+                step = (load - now.load) * self._control.cut
+                if step < self._control.smallest:
+                    raise ConvergenceError(f"gave up at {now.load:.6g} of {target:.6g}: {error}", error.history) from error
+                continue
+            if event is not None and event.value(reached) >= 0:
+                yield self._located(event, now, reached), True
+                return
+            step = self._control.next_step(max(step, load - now.load), reached.iterations)
+            before, now = now, reached
+            yield now, False
+
+    def _located(self, event: Event[State], before: State, after: State) -> State:
+        """The state at the event, which lies between the two."""
+        found = {before.load: event.value(before), after.load: event.value(after)}
+        states = {after.load: after}
+
+        def value(load: float) -> float:
+            if load not in found:
+                share = (load - before.load) / (after.load - before.load)
+                guess = (1 - share) * before.unknowns + share * after.unknowns
+                states[load] = self._advance(before, load, guess)
+                found[load] = event.value(states[load])
+            return found[load]
+
+        root = brentq(value, before.load, after.load, xtol=event.tolerance)
+        value(root)
+        return states.get(root, after)
+
+
+def _predicted(before: State | None, now: State, load: float) -> Array:
+    """Unknowns at ``load`` by extrapolating the last step."""
+    if before is None:
+        return now.unknowns
+    share = (load - now.load) / (now.load - before.load)
+    return now.unknowns + min(share, 2.0) * (now.unknowns - before.unknowns)

@@ -1,0 +1,192 @@
+"""Newton's method for the equilibrium of a body under nodal forces, follower pressures and contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError
+from tactsim.fem.body import Body, Kinematics
+from tactsim.fem.constraints import Constraints
+from tactsim.fem.linear import DirectSolver, direct_solver
+from tactsim.fem.surface import SurfaceAssembly
+
+Array = np.ndarray
+
+
+ROUND_OFF = 32 * np.finfo(float).eps
+"""Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
+
+
+class Interface(Protocol):
+    """Forces at the points of one surface that depend on where the points are, and on forces carried by Newton's iterate."""
+
+    @property
+    def surface(self) -> SurfaceAssembly:
+        """The surface that the forces act on."""
+
+    def start(self) -> Any:
+        """The carried forces at the beginning."""
+
+    def converged(self, displacement: Array) -> Array:
+        """Traction (d, n) in Pa that holds at displacements (d, n) of the points."""
+
+    def linearised(self, displacement: Array, carried: Any) -> Any:
+        """An object with ``traction`` (d, n) in Pa and ``derivative`` (d, d, n) in Pa/m."""
+
+    def advanced(self, now: Any, carried: Any, step: Array, damping: float) -> Any:
+        """The carried forces after the points moved by ``damping * step``."""
+
+
+class FollowerLoad(Protocol):
+    """Nodal forces that depend on the displacement of the surface they act on."""
+
+    def force(self, displacement: Array) -> Array:
+        """External nodal forces (size,) in N at nodal displacements (n, d)."""
+
+    def stiffness(self, displacement: Array) -> Array:
+        """Tangent entries, minus the derivative of the force."""
+
+
+@dataclass(frozen=True)
+class NewtonOptions:
+    """When Newton stops, and when it gives up."""
+
+    tolerance: float = 1e-10
+    """Largest residual over the largest nodal force (not below round-off), and over the mean nodal volume."""
+    max_iterations: int = 25
+    smallest_damping: float = 1 / 256
+    patience: int = 8
+    """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
+    volume_floor: float = 0.2
+    """A step is shortened until no J falls below this part of the smallest J before it."""
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A converged state: the unknowns, the deformation, the traction at each interface, and how Newton got there."""
+
+    unknowns: Array
+    kinematics: Kinematics
+    tractions: tuple[Array, ...]
+    history: tuple[float, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Linear systems solved."""
+        return len(self.history) - 1
+
+
+class Problem:
+    """A body with fixed unknowns, interfaces and loads; keeps the sparse solver between solutions."""
+
+    def __init__(self, body: Body, fixed: Array, *, solver: DirectSolver | None = None, options: NewtonOptions | None = None):
+        self.body = body
+        self.constraints = Constraints(fixed, body.pattern)
+        self.solver = solver or direct_solver()
+        self.options = options or NewtonOptions()
+        self._volume_scale = body.points.weights.sum() / body.space.corner_count
+        self._noise = ROUND_OFF * body.rounding_force()
+
+    def solve(
+        self,
+        guess: Array,
+        *,
+        interfaces: Sequence[Interface] = (),
+        loads: Sequence[FollowerLoad] = (),
+        nodal_force: Array | None = None,
+    ) -> Equilibrium:
+        """Equilibrium nearest to the guess, which holds the prescribed values.
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton does not converge or an element would turn inside out; the history is in the error.
+        """
+        options, history = self.options, []
+        carried = [interface.start() for interface in interfaces]
+        unknowns = guess.copy()
+        kinematics = self._admissible(unknowns, 0.0)
+        if kinematics is None:
+            raise ConvergenceError("an element is inside out in the state that Newton starts from")
+        for iteration in range(options.max_iterations + 1):
+            internal = self.body.residual(unknowns, kinematics)
+            scale = np.abs(internal[: self.body.space.displacement_size]).max()
+            internal -= self._nodal(unknowns, loads, nodal_force)
+            moved = [self._displacement(unknowns, interface) for interface in interfaces]
+            tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
+            history.append(self._residual_norm(internal, scale, interfaces, tractions))
+            if history[-1] < options.tolerance:
+                return Equilibrium(unknowns, kinematics, tractions, tuple(history))
+            if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
+                break
+            now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
+            step = self._linear_step(unknowns, kinematics, internal, (interfaces, now, loads))
+            damping, kinematics = self._damped(unknowns, step, kinematics)
+            unknowns = unknowns + damping * step
+            carried = [
+                interface.advanced(n, c, self._displacement(step, interface), damping)
+                for interface, n, c in zip(interfaces, now, carried, strict=True)
+            ]
+        raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
+
+    def _stagnates(self, history: list[float]) -> bool:
+        """Whether the last iterations brought nothing, as when contact points switch to and fro."""
+        patience = self.options.patience
+        return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
+
+    def _nodal(self, unknowns: Array, loads: Sequence[FollowerLoad], nodal_force: Array | None) -> Array:
+        u, _ = self.body.space.split(unknowns)
+        total = np.zeros(self.body.space.size)
+        for load in loads:
+            total += load.force(u)
+        return total if nodal_force is None else total + nodal_force
+
+    def _displacement(self, unknowns: Array, interface: Interface) -> Array:
+        return interface.surface.points.interpolate(self.body.space.split(unknowns)[0])
+
+    def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], tractions: Sequence[Array]) -> float:
+        """Largest unbalanced force over the largest force, or largest volume error over the mean nodal volume."""
+        residual, split = internal.copy(), self.body.space.displacement_size
+        scale = max(scale, float(np.abs(internal[:split]).max()))
+        for interface, traction in zip(interfaces, tractions, strict=True):
+            force = interface.surface.force(traction)
+            scale = max(scale, float(np.abs(force).max()))
+            residual -= force
+        residual = self.constraints.free(residual)
+        scale = max(scale, self._noise / self.options.tolerance)
+        unbalanced = np.abs(residual[:split]).max() / scale
+        return float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
+
+    def _linear_step(self, unknowns: Array, kinematics: Kinematics, internal: Array, parts: tuple[Any, ...]) -> Array:
+        interfaces, now, loads = parts
+        residual, data = internal.copy(), self.body.tangent(unknowns, kinematics)
+        for interface, force in zip(interfaces, now, strict=True):
+            residual -= interface.surface.force(force.traction)
+            data += interface.surface.stiffness(force.derivative)
+        u, _ = self.body.space.split(unknowns)
+        for load in loads:
+            data += load.stiffness(u)
+        self.solver.factor(self.body.pattern.matrix(self.constraints.apply(data)))
+        return self.solver.solve(-self.constraints.free(residual))
+
+    def _damped(self, unknowns: Array, step: Array, before: Kinematics) -> tuple[float, Kinematics]:
+        """Largest step length, halving from 1, that keeps every element right side out."""
+        floor = self.options.volume_floor * min(1.0, float(before.J.min()))
+        damping = 1.0
+        while damping >= self.options.smallest_damping:
+            after = self._admissible(unknowns + damping * step, floor)
+            if after is not None:
+                return damping, after
+            damping /= 2
+        raise ConvergenceError("an element turns inside out in the direction that Newton wants")
+
+    def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
+        after = self.body.kinematics(unknowns)
+        nonlinear = ~self.body.linear
+        J = after.J[nonlinear]
+        ok = np.isfinite(after.F).all() and (not J.size or J.min() > floor)
+        return after if ok else None

@@ -1,0 +1,107 @@
+"""The sparse pattern of the tangent: where each element entry lands, and an element order that threads can share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from scipy.sparse import csr_matrix
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """CSR pattern of a tangent assembled from elements.
+
+    The rows of one node's components have one structure, so an element's entry for nodes (a, b) and components (i, k) stands
+    in ``data`` at ``indptr[row of (a, i)] + offsets[e, a, b] + k``; pressures count as nodes of one component after the
+    displacements'. ``order`` lists the elements colour by colour, ``color_starts`` where each colour begins: elements of one
+    colour share no node, so threads add without locks and every entry is summed in the same order whatever their number.
+    """
+
+    indptr: Array
+    indices: Array
+    offsets: Array
+    order: Array
+    color_starts: Array
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(self.indptr) - 1
+
+    def matrix(self, data: Array) -> csr_matrix:
+        """The CSR matrix with these entries (no copy)."""
+        return csr_matrix((data, self.indices, self.indptr), shape=(self.size, self.size))
+
+    def positions(self, rows: Array, columns: Array) -> Array:
+        """Places in ``data`` of the entries (rows, columns), which must be in the pattern."""
+        keys = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.indptr)) * self.size + self.indices
+        return np.searchsorted(keys, rows.astype(np.int64) * self.size + columns)
+
+
+def build_pattern(elements: Array, dim: int, corner_count: int) -> Pattern:
+    """Pattern of Taylor-Hood elements (E, A) of quadratic nodes, corners first, with ``dim`` displacement components."""
+    node_count = int(elements.max()) + 1
+    size = node_count * dim + corner_count
+    corners = elements[:, : dim + 1]
+    unknowns = (elements[:, :, None] * dim + np.arange(dim)).reshape(len(elements), -1)
+    indptr, indices = _csr_structure(np.hstack([unknowns, node_count * dim + corners]), size)
+    leading = np.hstack([elements * dim, node_count * dim + corners])
+    offsets = np.empty((len(elements), leading.shape[1], leading.shape[1]), np.int32)
+    _locate(leading, indptr, indices, offsets)
+    order, starts = _color(elements, node_count)
+    return Pattern(indptr, indices, offsets, order, starts)
+
+
+def _csr_structure(element_unknowns: Array, size: int) -> tuple[Array, Array]:
+    count, width = element_unknowns.shape
+    ones = np.ones(element_unknowns.size, np.int8)
+    rows = np.repeat(np.arange(count), width)
+    incidence = csr_matrix((ones, (element_unknowns.ravel(), rows)), shape=(size, count))
+    adjacency = (incidence.astype(np.int32) @ incidence.T.astype(np.int32)).tocsr()
+    adjacency.sort_indices()
+    return adjacency.indptr.astype(np.int32), adjacency.indices.astype(np.int32)
+
+
+@numba.njit(cache=True)
+def _locate(leading, indptr, indices, offsets):  # type: ignore[no-untyped-def]
+    count, width = leading.shape
+    for e in range(count):
+        for i in range(width):
+            start, stop = indptr[leading[e, i]], indptr[leading[e, i] + 1]
+            for j in range(width):
+                offsets[e, i, j] = np.searchsorted(indices[start:stop], leading[e, j])
+
+
+@numba.njit(cache=True)
+def _color(elements, size):  # type: ignore[no-untyped-def]
+    """Greedy colouring by 64-bit masks: the lowest colour that no unknown of the element has seen."""
+    count, width = elements.shape
+    colors = np.full(count, -1, np.int64)
+    assigned, base = 0, 0
+    while assigned < count:
+        seen = np.zeros(size, np.uint64)
+        for e in range(count):
+            if colors[e] >= 0:
+                continue
+            mask = np.uint64(0)
+            for i in range(width):
+                mask |= seen[elements[e, i]]
+            for c in range(64):
+                bit = np.uint64(1) << np.uint64(c)
+                if mask & bit == 0:
+                    colors[e] = base + c
+                    assigned += 1
+                    for i in range(width):
+                        seen[elements[e, i]] |= bit
+                    break
+        base += 64
+    order = np.argsort(colors, kind="mergesort")
+    total = colors.max() + 1
+    starts = np.zeros(total + 1, np.int64)
+    for e in range(count):
+        starts[colors[e] + 1] += 1
+    return order, np.cumsum(starts)

@@ -1,0 +1,172 @@
+"""Mooney-Rivlin constants from a uniaxial curve: free fits, and a fit that keeps the material strongly elliptic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydantic import ValidationError
+from scipy.optimize import minimize
+
+from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
+from tactsim.identification.uniaxial_data import UniaxialCurve
+from tactsim.interfaces import Array
+from tactsim.materials.homogeneous import nominal_stress, principal_invariants, uniaxial
+from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.invariant_polynomial import InvariantPolynomial, monomial_derivative, powers_of
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
+from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
+from tactsim.materials.stability import PAIRS, shear_conditions
+from tactsim.materials.stability_range import SCANNED, StabilityReport, stability_range
+
+
+@dataclass(frozen=True)
+class Form:
+    """Which coefficients a fit may use, and the kind that holds them."""
+
+    coefficients: tuple[str, ...]
+    kind: type[InvariantPolynomial]
+    strongly_elliptic: bool = False
+
+
+FORMS = {
+    "2-parameter": Form(("c10", "c01"), MooneyRivlin2),
+    "3-parameter": Form(("c10", "c01", "c11"), MooneyRivlin3),
+    "5-parameter": Form(("c10", "c01", "c20", "c11", "c02"), MooneyRivlin5),
+    "stable": Form(("c10", "c01", "c20"), MooneyRivlin5, strongly_elliptic=True),
+}
+"""Fits by name. ``stable`` leaves out c11 and c02, which stiffen equibiaxial tension beyond what compression data can tell."""
+
+SMALLEST_SHEAR_FRACTION = 0.2
+"""Assumption: a stable fit keeps every shear modulus of the ellipticity conditions above this part of its value at rest."""
+
+STRETCH_STATES = 31
+"""Values per principal stretch at which a stable fit imposes its conditions, even in the logarithm."""
+
+
+@dataclass(frozen=True)
+class UniaxialFit:
+    """A fitted material with its errors and its stability."""
+
+    form: str
+    material: InvariantPolynomial
+    curve: UniaxialCurve
+    max_relative_error: float
+    """Largest relative error of the nominal stress, dimensionless."""
+    rms_relative_error: float
+    """Root mean square of the relative errors, dimensionless."""
+    stability: StabilityReport
+
+
+def uniaxial_nominal_stress(material: Hyperelastic, stretch: Array) -> Array:
+    r"""Nominal stress in Pa at uniaxial stretches.
+
+    .. math:: P = 2 (\lambda - \lambda^{-2}) (W_1 + W_2 / \lambda)
+
+    Source: thesis 3.1.9 divided by the stretch, corrected: W1 and W2 keep the terms of c11.
+    """
+    return nominal_stress(material, "uniaxial", stretch)
+
+
+def uniaxial_stress_as_printed(c10: float, c01: float, stretch: Array) -> Array:
+    r"""True stress in Pa by the printed formula, which has no c11.
+
+    .. math:: \sigma = 2 (\lambda^2 - \lambda^{-1}) (c_{10} + c_{01} / \lambda)
+
+    Source: thesis 3.1.9 as printed; right for the two-parameter energy only.
+    """
+    return 2 * (stretch**2 - 1 / stretch) * (c10 + c01 / stretch)
+
+
+def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool = True) -> UniaxialFit:
+    """Least-squares fit of a form of ``FORMS`` to a curve, in relative or absolute stress; points without stress are left out.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such form.
+    InvalidQuantity
+        If the data do not determine the constants, or give a shear modulus that is not positive.
+    ConvergenceError
+        If no strongly elliptic material was found.
+    """
+    if form not in FORMS:
+        raise UnknownName("form of the energy", form, FORMS)
+    names = FORMS[form].coefficients
+    loaded = (curve.nominal_stress != 0) & (curve.stretch != 1)
+    stretch, stress = curve.stretch[loaded], curve.nominal_stress[loaded]
+    weight = 1 / np.abs(stress) if relative else np.full_like(stress, 1 / np.abs(stress).max())
+    design, target = weight[:, None] * unit_stresses(stretch, names), weight * stress
+    if np.linalg.matrix_rank(design) < len(names):
+        raise InvalidQuantity(f"{curve.source}: {stretch.size} points do not determine {len(names)} constants")
+    fit = _elliptic_least_squares if FORMS[form].strongly_elliptic else _least_squares
+    values = fit(design, target, names)
+    material = _material(FORMS[form], values, curve.source)
+    error = uniaxial_nominal_stress(material, stretch) / stress - 1
+    report = stability_range(material)
+    if FORMS[form].strongly_elliptic and not report.strongly_elliptic:
+        raise ConvergenceError(f"{curve.source}: the {form} fit is not strongly elliptic at every stretch from {SCANNED[0]:g}")
+    return UniaxialFit(form, material, curve, float(np.abs(error).max()), float(np.sqrt(np.mean(error**2))), report)
+
+
+def unit_stresses(stretch: Array, names: tuple[str, ...]) -> Array:
+    """Nominal stress per unit of each named coefficient, dimensionless, shape (stretches, names)."""
+    I1, I2 = principal_invariants(uniaxial(stretch))
+    columns = [
+        monomial_derivative(I1, I2, power, (1, 0)) + monomial_derivative(I1, I2, power, (0, 1)) / stretch
+        for power in powers_of(dict.fromkeys(names, 1.0))
+    ]
+    return 2 * (stretch - stretch**-2)[:, None] * np.stack(columns, axis=-1)
+
+
+def _least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:
+    """Free coefficients in Pa."""
+    return np.linalg.lstsq(design, target, rcond=None)[0]
+
+
+def _elliptic_least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:
+    """Coefficients in Pa under the linear conditions of strong ellipticity: a convex quadratic program."""
+    conditions = _ellipticity_rows(names)
+    scale = np.abs(_least_squares(design, target, names)).max()
+    scaled = design * scale
+    start = np.array([1.0 if name in ("c10", "c01") else 0.0 for name in names])
+    solution = minimize(
+        lambda c: np.sum((scaled @ c - target) ** 2),
+        start,
+        jac=lambda c: 2 * scaled.T @ (scaled @ c - target),
+        constraints={"type": "ineq", "fun": lambda c: conditions @ c, "jac": lambda c: conditions},
+        method="SLSQP",
+        options={"maxiter": 500, "ftol": 1e-14},
+    )
+    if not solution.success:
+        raise ConvergenceError(f"stable fit: {solution.message}")
+    return solution.x * scale
+
+
+def _ellipticity_rows(names: tuple[str, ...]) -> Array:
+    """Rows r with r . c >= 0: every g_k, and every d_k over (l_i + l_j)^2, at least a fraction of its value at rest."""
+    axis = np.geomspace(*SCANNED, STRETCH_STATES)
+    first, second = (side.ravel() for side in np.meshgrid(axis, axis))
+    states = np.stack([first, second, 1 / (first * second)])
+    states = states[:, (first <= second) & (second <= states[2]) & (states[2] <= SCANNED[1])]
+    I1, I2 = principal_invariants(states)
+    perimeter = np.stack([(states[i] + states[j]) ** 2 for i, j, _ in PAIRS])
+    rows = []
+    for power in powers_of(dict.fromkeys(names, 1.0)):
+        derivatives = [monomial_derivative(I1, I2, power, order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))]
+        shear, opposite, _ = shear_conditions((*derivatives,), states)  # type: ignore[arg-type]
+        at_rest = 1.0 if sum(power) == 1 else 0.0
+        rows.append(np.concatenate([shear.ravel(), (opposite / perimeter).ravel()]) - SMALLEST_SHEAR_FRACTION * at_rest)
+    matrix = np.stack(rows, axis=-1)
+    return matrix / np.abs(matrix).max(axis=1, keepdims=True)
+
+
+def _material(form: Form, values: Array, source: str) -> InvariantPolynomial:
+    """The fitted constants as a material, zero where the form has none."""
+    constants = dict.fromkeys((name for name in form.kind.model_fields if name.startswith("c")), 0.0)
+    constants |= dict(zip(form.coefficients, map(float, values), strict=True))
+    try:
+        return form.kind.model_validate(constants)
+    except ValidationError as error:
+        raise InvalidQuantity(f"{source}: the fit is no material: {error.errors()[0]['msg']}") from None

@@ -1,0 +1,99 @@
+"""A straight-sided or curved mesh of quadratic triangles or tetrahedra as plain arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from skfem import Mesh
+
+from tactsim.errors import InputError
+
+Array = np.ndarray
+
+_EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
+_MIRROR = {2: [0, 2, 1, 5, 4, 3], 3: [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
+_FACETS = {2: ((0, 1), (1, 2), (2, 0)), 3: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))}
+
+
+@dataclass(frozen=True)
+class QuadraticMesh:
+    """Nodes, elements and regions; corner nodes are numbered before mid-edge nodes.
+
+    Attributes
+    ----------
+    nodes : (n, d) coordinates in m
+    elements : (E, 6) triangles or (E, 10) tetrahedra by node number, in the order of VTK, positively oriented
+    regions : (E,) region number of each element
+    """
+
+    nodes: Array
+    elements: Array
+    regions: Array
+
+    @property
+    def dim(self) -> int:
+        """Number of coordinates."""
+        return int(self.nodes.shape[1])
+
+    @property
+    def corner_count(self) -> int:
+        """Number of corner nodes."""
+        return int(self.elements[:, : self.dim + 1].max()) + 1
+
+    def boundary_facets(self) -> tuple[Array, Array]:
+        """Facets of one element only, outward oriented: node numbers (F, 3) edges or (F, 6) triangles, and their elements."""
+        corners = np.concatenate([self.elements[:, list(facet)] for facet in _FACETS[self.dim]])
+        owner = np.tile(np.arange(len(self.elements)), len(_FACETS[self.dim]))
+        keys = np.sort(corners, axis=1)
+        _, first, counts = np.unique(keys, axis=0, return_index=True, return_counts=True)
+        chosen = np.sort(first[counts == 1])
+        corners, owner = corners[chosen], owner[chosen]
+        pairs = ((0, 1),) if self.dim == 2 else ((0, 1), (1, 2), (0, 2))
+        return np.hstack([corners, *[self._middle(corners[:, [a, b]], owner)[:, None] for a, b in pairs]]), owner
+
+    def _middle(self, pairs: Array, owner: Array) -> Array:
+        """Mid-edge node between two corners of an element, for pairs (F, 2) in elements ``owner``."""
+        found = np.full(len(pairs), -1)
+        for slot, (a, b) in enumerate(_EDGES[self.dim]):
+            edge = self.elements[owner][:, [a, b]]
+            same = (np.sort(edge, axis=1) == np.sort(pairs, axis=1)).all(axis=1)
+            found[same] = self.elements[owner[same], self.dim + 1 + slot]
+        return found
+
+    def moved(self, nodes: Array) -> QuadraticMesh:
+        """The same mesh with other node coordinates."""
+        return QuadraticMesh(nodes, self.elements, self.regions)
+
+
+def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = None) -> QuadraticMesh:
+    """Straight-sided quadratic mesh of simplices (E, d + 1) on corner coordinates (n, d); orientation is put right.
+
+    Raises
+    ------
+    InputError
+        If an element is flat, a coordinate is not finite or an index has no coordinates.
+    """
+    dim = corners.shape[1]
+    if simplices.min() < 0 or simplices.max() >= len(corners):
+        raise InputError(f"element indices run from {simplices.min()} to {simplices.max()}; allowed: 0 to {len(corners) - 1}")
+    if not np.isfinite(corners).all():
+        raise InputError("the mesh has node coordinates that are not finite numbers")
+    used, simplices = np.unique(simplices, return_inverse=True)
+    corners, simplices = corners[used], simplices.reshape(-1, dim + 1)
+    edges = np.concatenate([np.sort(simplices[:, list(edge)], axis=1) for edge in _EDGES[dim]])
+    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    middles = len(corners) + number.reshape(len(_EDGES[dim]), -1).T
+    elements = np.hstack([simplices, middles]).astype(np.int64)
+    volume = np.linalg.det(np.moveaxis(corners[simplices[:, 1:]] - corners[simplices[:, :1]], 1, 2))
+    if not (volume != 0).all():
+        raise InputError(f"element {int(np.flatnonzero(volume == 0)[0])} of the mesh is flat")
+    mirrored = volume < 0
+    elements[mirrored] = elements[mirrored][:, _MIRROR[dim]]
+    nodes = np.vstack([corners, corners[unique].mean(axis=1)])
+    return QuadraticMesh(nodes, elements, np.zeros(len(elements), np.int64) if regions is None else np.asarray(regions))
+
+
+def from_skfem(mesh: Mesh) -> QuadraticMesh:
+    """Quadratic mesh on a scikit-fem mesh of linear simplices."""
+    return quadratic_mesh(mesh.p.T.copy(), mesh.t.T.astype(np.int64))
