@@ -1,0 +1,81 @@
+r"""The weak form in a few lines of numpy: what the compiled loops of ``kernels`` compute, to be read and to be checked against.
+
+For all test displacements v and pressures q (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7, in the
+displacement-pressure form), with :math:`P(F, p)` and the volume change :math:`g(F)` of the material:
+
+.. math::
+    \int P(F, p) : \nabla v\, dV = f(v), \qquad \int q\, (g(F) - p / K)\, dV = 0
+
+The deformation gradient is linear in the unknowns, :math:`F = 1 + B u`; on an axisymmetric body its hoop component is
+:math:`1 + u_R / R` and :math:`dV = 2 \pi R\, dR\, dZ`. Linearised at fixed p and at fixed F:
+
+.. math::
+    K_{uu} = \int B^T \frac{\partial P}{\partial F} B\, dV, \quad K_{up} = \int B^T \frac{\partial g}{\partial F} N\, dV, \quad
+    K_{pp} = -\int \frac{1}{K} N^T N\, dV
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from tactsim.fem.body import Body
+
+Array = np.ndarray
+
+
+def residual(body: Body, unknowns: Array) -> Array:
+    """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
+    B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
+    weights, N = body.points.weights, body.points.pressure_values
+    stress = _at_points(body, (3, 3), lambda material, mine: material.first_piola_kirchhoff(F[:, :, mine], p[mine]))
+    change = _at_points(body, (), lambda material, mine: material.volume_change(F[:, :, mine]))
+    forces = np.einsum("eq,iJeq,iJeqak->eak", weights, stress, B, optimize=True)
+    volumes = np.einsum("eq,eq,qv->ev", weights, change - p * body.compliance[:, None], N)
+    entries = np.hstack([forces.reshape(len(forces), -1), volumes])
+    return np.bincount(body.space.element_unknowns().ravel(), entries.ravel(), body.space.size)
+
+
+def tangent(body: Body, unknowns: Array) -> csr_matrix:
+    """Derivative of the residual, (size, size): N/m, N/Pa and m^3/Pa by block."""
+    B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
+    weights, N = body.points.weights, body.points.pressure_values
+    moduli = _at_points(body, (3, 3, 3, 3), lambda material, mine: material.tangent(F[:, :, mine], p[mine]))
+    slope = _at_points(body, (3, 3), lambda material, mine: material.volume_change_gradient(F[:, :, mine]))
+    B = B.reshape(*B.shape[:4], -1)
+    K_uu = np.einsum("eq,iJeqm,iJkLeq,kLeqn->emn", weights, B, moduli, B, optimize=True)
+    K_up = np.einsum("eq,iJeqm,iJeq,qv->emv", weights, B, slope, N, optimize=True)
+    K_pp = -np.einsum("eq,e,qv,qx->evx", weights, body.compliance, N, N, optimize=True)
+    blocks = np.block([[K_uu, K_up], [K_up.transpose(0, 2, 1), K_pp]])
+    unknown = body.space.element_unknowns()
+    rows = np.repeat(unknown[:, :, None], unknown.shape[1], axis=2)
+    return csr_matrix((blocks.ravel(), (rows.ravel(), rows.transpose(0, 2, 1).ravel())), shape=(body.space.size,) * 2)
+
+
+def strain_operator(body: Body) -> Array:
+    """B = dF/du at the volume points in 1/m, shape (3, 3, E, Q, A, d)."""
+    dim, gradients, hoop = body.space.dim, body.points.gradients, body.points.hoop
+    B = np.zeros((3, 3, *hoop.shape, dim))
+    for k in range(dim):
+        B[k, :dim, ..., k] = np.moveaxis(gradients, -1, 0)
+    if dim == 2:
+        B[2, 2, ..., 0] = hoop
+    return B
+
+
+def deformation_gradient(body: Body, unknowns: Array) -> Array:
+    """F = 1 + B u at the volume points, shape (3, 3, E, Q)."""
+    u, _ = body.space.split(unknowns)
+    change = np.einsum("iJeqak,eak->iJeq", strain_operator(body), u[body.space.elements])
+    return np.eye(3)[:, :, None, None] + change
+
+
+def _at_points(body: Body, shape: tuple[int, ...], law: Callable[..., Array]) -> Array:
+    """A law of (material, its elements) evaluated at every volume point, shape (*shape, E, Q)."""
+    values = np.empty((*shape, *body.points.weights.shape))
+    for index, material in enumerate(body.materials):
+        mine = body.regions == index
+        values[..., mine, :] = law(material, mine)
+    return values

@@ -1,0 +1,83 @@
+"""Meshes, boundary conditions and measured errors that the tests of the solver share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from skfem import MeshTet, MeshTri
+
+from tactsim.fem.body import Body
+from tactsim.fem.newton import Equilibrium, Problem
+from tactsim.fem.space import Measure, TaylorHood
+from tactsim.interfaces import Material
+from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
+
+Array = np.ndarray
+
+
+def box(lengths: Sequence[float], counts: Sequence[int], *, jitter: float = 0.0, seed: int = 0) -> QuadraticMesh:
+    """Triangles or tetrahedra of a box from the origin; ``jitter`` moves nodes by that part of a cell, on its faces within them."""
+    lines = [np.linspace(0.0, length, count + 1) for length, count in zip(lengths, counts, strict=True)]
+    mesh = MeshTri.init_tensor(*lines) if len(lines) == 2 else MeshTet.init_tensor(*lines)
+    corners, upper = mesh.p.T.copy(), np.asarray(lengths, float)
+    shift = np.random.default_rng(seed).uniform(-jitter, jitter, corners.shape) * upper / np.asarray(counts)
+    shift[np.isclose(corners, 0.0) | np.isclose(corners, upper)] = 0.0
+    return quadratic_mesh(corners + shift, mesh.t.T.astype(np.int64))
+
+
+def body_of(mesh: QuadraticMesh, measure: Measure, *materials: Material) -> Body:
+    """A body in the Taylor-Hood space of a mesh, one material per region."""
+    return Body(TaylorHood(mesh.nodes, mesh.elements, measure), materials, mesh.regions)
+
+
+def facets_where(mesh: QuadraticMesh, inside: Callable[[Array], Array]) -> Array:
+    """Boundary facets whose nodes (n, d) all satisfy a condition."""
+    facets, _ = mesh.boundary_facets()
+    return facets[inside(mesh.nodes)[facets].all(axis=1)]
+
+
+def on_plane(axis: int, value: float) -> Callable[[Array], Array]:
+    """The condition of lying where a coordinate has a value."""
+    return lambda nodes: np.isclose(nodes[:, axis], value, rtol=0, atol=1e-9 * max(1.0, np.abs(nodes).max()))
+
+
+def held(mesh: QuadraticMesh, axis: int, inside: Callable[[Array], Array]) -> Array:
+    """Numbers of the displacement unknowns along an axis at the nodes that satisfy a condition."""
+    return mesh.dim * np.flatnonzero(inside(mesh.nodes)) + axis
+
+
+def solve_prescribed(
+    body: Body, fixed: Array, displacement: Array, *, steps: int = 1, nodal_force: Array | None = None
+) -> Equilibrium:
+    """Equilibrium with the unknowns ``fixed`` at the values of a displacement field (n, d), all loads in equal steps."""
+    problem, unknowns = Problem(body, fixed), np.zeros(body.space.size)
+    for step in range(1, steps + 1):
+        unknowns = unknowns.copy()
+        unknowns[fixed] = displacement.ravel()[fixed] * step / steps
+        solved = problem.solve(unknowns, nodal_force=None if nodal_force is None else nodal_force * step / steps)
+        unknowns = solved.unknowns
+    problem.solver.close()
+    return solved
+
+
+def first_piola_kirchhoff(body: Body, solved: Equilibrium) -> Array:
+    """P at the volume points of a body of one material in Pa, shape (3, 3, E, Q)."""
+    return body.materials[0].first_piola_kirchhoff(solved.kinematics.F, body.pressure(solved.unknowns))
+
+
+def cauchy_stress(body: Body, solved: Equilibrium) -> Array:
+    """P F^T / J at the volume points of a body of one material in Pa, shape (3, 3, E, Q)."""
+    return np.einsum("iJeq,kJeq->ikeq", first_piola_kirchhoff(body, solved), solved.kinematics.F) / solved.kinematics.J
+
+
+def assert_close(actual: Array | float, expected: Array | float, tolerance: float, *, scale: float | None = None) -> None:
+    """Fail where values differ by more than ``tolerance`` times ``scale``, by default the largest expected size."""
+    size = float(np.abs(expected).max()) if scale is None else scale
+    error = float(np.abs(np.asarray(actual) - np.asarray(expected)).max()) / size
+    assert error <= tolerance, f"relative error {error:.3e} above {tolerance:.1e}"
+
+
+def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
+    """Slope of log(error) over log(size) by least squares."""
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])

@@ -1,0 +1,86 @@
+"""The compiled loops equal the readable forms to round-off, for every material and every measure of volume."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from solids import assert_close, body_of, box
+
+from tactsim.fem import forms
+from tactsim.fem.body import Body
+from tactsim.interfaces import Material
+from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.registry import kinds
+
+MEASURES = {"axisymmetric": (2, 3), "plane_strain": (2, 3), "solid": (2, 1, 2)}
+ROUND_OFF = 1e-12
+"""Relative to the largest entry: some thousand operations of 1e-16 each, and cancellation of W1, W2 and pressure terms."""
+KINDS = sorted(kinds("tactsim.materials", Material).items())
+
+
+def mesh_of(measure: str) -> QuadraticMesh:
+    """A jittered box; regions 0 and 1 alternate."""
+    counts = MEASURES[measure]
+    mesh = box([1.0] * len(counts), counts, jitter=0.2, seed=3)
+    nodes = mesh.nodes + (np.array([0.3, 0.0]) if measure == "axisymmetric" else 0.0)
+    return QuadraticMesh(nodes, mesh.elements, np.arange(len(mesh.elements)) % 2)
+
+
+def random_unknowns(body: Body, seed: int) -> np.ndarray:
+    """Displacements that keep every J > 0, and pressures of the size of the shear modulus."""
+    generator = np.random.default_rng(seed)
+    unknowns = np.empty(body.space.size)
+    u, p = body.space.split(unknowns)
+    stretch = np.eye(body.space.dim) + generator.uniform(-0.2, 0.2, (body.space.dim, body.space.dim))
+    u[:] = body.space.nodes @ (stretch - np.eye(body.space.dim)).T + generator.uniform(-0.01, 0.01, u.shape)
+    p[:] = generator.normal(size=p.shape) * body.materials[0].shear_modulus
+    assert body.kinematics(unknowns).J.min() > 0.1
+    return unknowns
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("kind", [name for name, _ in KINDS])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_compiled_loops_equal_the_readable_forms(measure, kind, seed):
+    material = dict(KINDS)[kind].example()
+    other = MooneyRivlin2(c10=0.4 * material.shear_modulus, c01=0.1 * material.shear_modulus, bulk_modulus=material.shear_modulus)
+    body = body_of(mesh_of(measure), measure, material, other)
+    unknowns = random_unknowns(body, seed)
+    split = body.space.displacement_size
+    compiled, readable = body.residual(unknowns), forms.residual(body, unknowns)
+    assert_close(compiled[:split], readable[:split], ROUND_OFF)
+    assert_close(compiled[split:], readable[split:], ROUND_OFF)
+    difference = (body.pattern.matrix(body.tangent(unknowns)) - forms.tangent(body, unknowns)).toarray()
+    expected = forms.tangent(body, unknowns).toarray()
+    for rows in (slice(None, split), slice(split, None)):
+        for columns in (slice(None, split), slice(split, None)):
+            block = expected[rows, columns]
+            assert_close(difference[rows, columns] + block, block, ROUND_OFF, scale=max(np.abs(block).max(), 1e-300))
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_coefficient_wrong_by_three_tolerances_is_seen(measure):
+    material = MooneyRivlin2(c10=80.0, c01=20.0)
+    wrong = MooneyRivlin2(c10=80.0, c01=20.0 * (1 + 100 * ROUND_OFF))
+    body, broken = (body_of(mesh_of(measure), measure, m, m) for m in (material, wrong))
+    unknowns = random_unknowns(body, 1)
+    with pytest.raises(AssertionError):
+        assert_close(broken.residual(unknowns), forms.residual(body, unknowns), ROUND_OFF)
+    with pytest.raises(AssertionError):
+        assert_close(body.residual(unknowns) * (1 + 3 * ROUND_OFF), forms.residual(body, unknowns), ROUND_OFF)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_deformation_and_invariants_equal_the_readable_ones(measure):
+    body = body_of(mesh_of(measure), measure, MooneyRivlin2.example(), LinearElastic.example())
+    unknowns = random_unknowns(body, 4)
+    state, F = body.kinematics(unknowns), forms.deformation_gradient(body, unknowns)
+    C = np.einsum("iJ...,iK...->JK...", F, F)
+    J = np.linalg.det(np.moveaxis(F, (0, 1), (-2, -1)))
+    trace = np.einsum("JJ...->...", C)
+    assert_close(state.F, F, ROUND_OFF)
+    assert_close(state.J, J, ROUND_OFF)
+    assert_close(state.I1, J ** (-2 / 3) * trace, ROUND_OFF)
+    assert_close(state.I2, J ** (-4 / 3) * (trace**2 - np.einsum("JK...,JK...->...", C, C)) / 2, ROUND_OFF)
