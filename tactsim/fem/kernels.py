@@ -125,33 +125,31 @@ def _linear_tangent(shear_modulus, A):  # type: ignore[no-untyped-def]
             A[4 * i, 4 * j] -= 2.0 / 3.0 * shear_modulus
 
 
-def _deformation_gradient(dim: int) -> Callable[..., Any]:
-    @numba.njit(cache=True, inline="always")
-    def fill(u, nodes, gradients, hoop, F):  # type: ignore[no-untyped-def]
-        for m in range(9):
-            F[m] = 0.0
-        F[0] = F[4] = F[8] = 1.0
-        for a in range(nodes.shape[0]):
-            for i in range(dim):
-                value = u[nodes[a], i]
-                for j in range(dim):
-                    F[3 * i + j] += value * gradients[a, j]
-            if dim == 2:
-                F[8] += u[nodes[a], 0] * hoop[a]
-
-    return fill
+@numba.njit(cache=True, inline="always")
+def _fill(dim, u, nodes, gradients, hoop, F):  # type: ignore[no-untyped-def]
+    """Deformation gradient of one point into F (9,)."""
+    for m in range(9):
+        F[m] = 0.0
+    F[0] = F[4] = F[8] = 1.0
+    for a in range(nodes.shape[0]):
+        for i in range(dim):
+            value = u[nodes[a], i]
+            for j in range(dim):
+                F[3 * i + j] += value * gradients[a, j]
+        if dim == 2:
+            F[8] += u[nodes[a], 0] * hoop[a]
 
 
 @cache
 def compiled(dim: int) -> SimpleNamespace:
-    """The element loops for ``dim`` components: ``deformation``, ``residual`` and ``tangent``."""
-    fill = _deformation_gradient(dim)
-    return SimpleNamespace(
-        deformation=_deformation_loop(fill), residual=_residual_loop(dim, fill), tangent=_tangent_loop(dim, fill)
-    )
+    """The element loops for ``dim`` components: ``deformation``, ``residual`` and ``tangent``.
+
+    They may close over numbers only: numba never finds the stored code of a function that closes over a compiled one.
+    """
+    return SimpleNamespace(deformation=_deformation_loop(dim), residual=_residual_loop(dim), tangent=_tangent_loop(dim))
 
 
-def _deformation_loop(fill: Callable[..., Any]) -> Callable[..., Any]:
+def _deformation_loop(dim: int) -> Callable[..., Any]:
     @numba.njit(cache=True, parallel=True)
     def deformation(u, elements, gradients, hoop, F_out, invariants):  # type: ignore[no-untyped-def]
         """F at every point into F_out (9, E, Q); J, I1bar, I2bar into invariants (3, E, Q)."""
@@ -160,7 +158,7 @@ def _deformation_loop(fill: Callable[..., Any]) -> Callable[..., Any]:
             F, work = np.empty(9), np.empty((6, 9))
             for e in range(256 * task, min(count, 256 * task + 256)):
                 for q in range(points):
-                    fill(u, elements[e], gradients[e, q], hoop[e, q], F)
+                    _fill(dim, u, elements[e], gradients[e, q], hoop[e, q], F)
                     J, I1, I2 = _hyperelastic_stress(F, 0.0, 0.0, work)
                     scale = abs(J) ** (-2.0 / 3.0)
                     invariants[0, e, q] = J
@@ -172,7 +170,7 @@ def _deformation_loop(fill: Callable[..., Any]) -> Callable[..., Any]:
     return deformation
 
 
-def _residual_loop(dim: int, fill: Callable[..., Any]) -> Callable[..., Any]:
+def _residual_loop(dim: int) -> Callable[..., Any]:
     width = 6 if dim == 2 else 10
     corners = dim + 1
 
@@ -193,7 +191,7 @@ def _residual_loop(dim: int, fill: Callable[..., Any]) -> Callable[..., Any]:
                     Ru[:] = 0.0
                     Rp[:] = 0.0
                     for q in range(weights.shape[1]):
-                        fill(u, elements[e], gradients[e, q], hoop[e, q], F)
+                        _fill(dim, u, elements[e], gradients[e, q], hoop[e, q], F)
                         pressure = 0.0
                         for v in range(corners):
                             pressure += shape_p[q, v] * p[elements[e, v]]
@@ -228,7 +226,7 @@ def _residual_loop(dim: int, fill: Callable[..., Any]) -> Callable[..., Any]:
     return residual
 
 
-def _tangent_loop(dim: int, fill: Callable[..., Any]) -> Callable[..., Any]:
+def _tangent_loop(dim: int) -> Callable[..., Any]:
     width = 6 if dim == 2 else 10
     corners = dim + 1
 
@@ -251,7 +249,7 @@ def _tangent_loop(dim: int, fill: Callable[..., Any]) -> Callable[..., Any]:
                     B[:] = 0.0
                     D[:] = 0.0
                     for q in range(weights.shape[1]):
-                        fill(u, elements[e], gradients[e, q], hoop[e, q], F)
+                        _fill(dim, u, elements[e], gradients[e, q], hoop[e, q], F)
                         pressure = 0.0
                         for v in range(corners):
                             pressure += shape_p[q, v] * p[elements[e, v]]
