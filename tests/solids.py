@@ -17,7 +17,7 @@ Array = np.ndarray
 
 
 def box(lengths: Sequence[float], counts: Sequence[int], *, jitter: float = 0.0, seed: int = 0) -> QuadraticMesh:
-    """Triangles or tetrahedra of a box from the origin; ``jitter`` moves nodes by that part of a cell, on its faces within them."""
+    """Triangles or tetrahedra of a box from the origin; ``jitter`` moves nodes by that part of a cell, along the faces."""
     lines = [np.linspace(0.0, length, count + 1) for length, count in zip(lengths, counts, strict=True)]
     mesh = MeshTri.init_tensor(*lines) if len(lines) == 2 else MeshTet.init_tensor(*lines)
     corners, upper = mesh.p.T.copy(), np.asarray(lengths, float)

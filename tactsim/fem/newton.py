@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body, Kinematics
 from tactsim.fem.constraints import Constraints
-from tactsim.fem.linear import DirectSolver, direct_solver
+from tactsim.fem.linear import DirectSolver, direct_solver, solved
 from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
@@ -170,8 +170,8 @@ class Problem:
         u, _ = self.body.space.split(unknowns)
         for load in loads:
             data += load.stiffness(u)
-        self.solver.factor(self.body.pattern.matrix(self.constraints.apply(data)))
-        return self.solver.solve(-self.constraints.free(residual))
+        matrix = self.body.pattern.matrix(self.constraints.apply(data))
+        return solved(self.solver, matrix, -self.constraints.free(residual))
 
     def _damped(self, unknowns: Array, step: Array, before: Kinematics) -> tuple[float, Kinematics]:
         """Largest step length, halving from 1, that keeps every element right side out."""

@@ -1,0 +1,78 @@
+"""Direct solvers agree, and a singular matrix is an error with a diagnosis, never a bad vector."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix
+from solids import assert_close, body_of, box, held, on_plane
+
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.constraints import Constraints
+from tactsim.fem.linear import direct_solver, solved
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+
+SOLVERS = ["pardiso", "superlu"]
+
+
+def tangent_of(dim: int, *, axes: int, bulk_modulus: float | None = None) -> tuple[csr_matrix, np.ndarray]:
+    """Tangent at rest of a unit box whose face at the origin is held along the first ``axes`` axes, and free random forces."""
+    mesh = box([1.0] * dim, [3] * dim, jitter=0.2)
+    body = body_of(mesh, "plane_strain" if dim == 2 else "solid", MooneyRivlin2(c10=80.0, c01=20.0, bulk_modulus=bulk_modulus))
+    fixed = np.array([held(mesh, axis, on_plane(0, 0.0)) for axis in range(axes)], int).ravel()
+    constraints = Constraints(fixed, body.pattern)
+    right = np.zeros(body.space.size)
+    right[: body.space.displacement_size] = np.random.default_rng(5).normal(size=body.space.displacement_size)
+    return body.pattern.matrix(constraints.apply(body.tangent(np.zeros(body.space.size)))), constraints.free(right)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("bulk_modulus", [None, 1e6])
+def test_pardiso_and_superlu_agree(dim, bulk_modulus):
+    matrix, right = tangent_of(dim, axes=dim, bulk_modulus=bulk_modulus)
+    pardiso, superlu = (solved(direct_solver(name), matrix, right) for name in SOLVERS)
+    assert_close(pardiso, superlu, 1e-9)  # condition number times round-off
+    with pytest.raises(AssertionError):
+        assert_close(pardiso * (1 + 3e-9), superlu, 1e-9)
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize(("dim", "axes"), [(2, 0), (2, 1), (3, 0), (3, 1)])
+def test_a_body_that_is_not_held_is_an_error_with_a_diagnosis(name, dim, axes):
+    matrix, right = tangent_of(dim, axes=axes)
+    with pytest.raises(ConvergenceError, match="is the body held"):
+        solved(direct_solver(name), matrix, right)
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_numbers_that_are_not_finite_are_an_error(name):
+    matrix, right = tangent_of(2, axes=2)
+    right[0] = np.nan
+    with pytest.raises(ConvergenceError, match="singular"):
+        solved(direct_solver(name), matrix, right)
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_the_same_solver_factors_again_with_other_numbers(name):
+    solver = direct_solver(name)
+    matrix, right = tangent_of(2, axes=2)
+    first = solved(solver, matrix, right)
+    assert_close(solved(solver, 2 * matrix, right), first / 2, 1e-9)
+    assert_close(solver.solve(2 * right), first, 1e-9)
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_solving_before_factoring_or_after_closing_is_refused(name):
+    solver = direct_solver(name)
+    with pytest.raises(InputError, match="factor a matrix"):
+        solver.solve(np.ones(3))
+    matrix, right = tangent_of(2, axes=2)
+    solved(solver, matrix, right)
+    solver.close()
+    with pytest.raises(InputError, match="factor a matrix"):
+        solver.solve(right)
+
+
+def test_an_unknown_solver_is_refused_by_name():
+    with pytest.raises(InputError, match=r"'mumps'.*pardiso, superlu"):
+        direct_solver("mumps")

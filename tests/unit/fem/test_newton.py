@@ -1,0 +1,103 @@
+"""Newton's method ends in an equilibrium or in an error that tells why."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from solids import body_of, box, facets_where, held, on_plane
+
+from tactsim.errors import ConvergenceError
+from tactsim.fem.linear import direct_solver
+from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+
+MATERIALS = {
+    "incompressible": MooneyRivlin2(c10=80.0, c01=20.0),
+    "compressible": MooneyRivlin2(c10=80.0, c01=20.0, bulk_modulus=1e3),
+    "linear": LinearElastic(youngs_modulus=600.0, poisson_ratio=0.3),
+}
+
+
+def block(dim, material, *, held_axes):
+    """A unit block whose bottom is held along the given axes, and the pull of 20 Pa on its top as nodal forces in N."""
+    mesh = box([1.0] * dim, [2] * dim, jitter=0.1)
+    body = body_of(mesh, "plane_strain" if dim == 2 else "solid", material)
+    fixed = np.concatenate([np.zeros(0, int), *[held(mesh, axis, on_plane(dim - 1, 0.0)) for axis in held_axes]])
+    points = body.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
+    traction = np.zeros((dim, len(points.weights)))
+    traction[-1] = 20.0
+    return body, fixed, SurfaceAssembly(points, body.pattern, dim).force(traction)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("name", MATERIALS)
+def test_newton_ends_below_its_tolerance_and_says_how_it_got_there(dim, name):
+    body, fixed, force = block(dim, MATERIALS[name], held_axes=range(dim))
+    solved = Problem(body, fixed).solve(np.zeros(body.space.size), nodal_force=force)
+    assert solved.history[-1] < NewtonOptions().tolerance < solved.history[0]
+    assert solved.iterations == len(solved.history) - 1 <= (1 if name == "linear" else 6)
+    assert (solved.unknowns[fixed] == 0.0).all()
+    assert body.space.split(solved.unknowns)[0][:, -1].max() > 0.01
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("name", MATERIALS)
+@pytest.mark.parametrize("solver", ["pardiso", "superlu"])
+def test_a_body_without_a_boundary_condition_is_an_error_with_a_diagnosis(dim, name, solver):
+    body, fixed, force = block(dim, MATERIALS[name], held_axes=())
+    with pytest.raises(ConvergenceError, match="is the body held"):
+        Problem(body, fixed, solver=direct_solver(solver)).solve(np.zeros(body.space.size), nodal_force=force)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_too_few_iterations_raise_with_the_history(dim):
+    body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))
+    problem = Problem(body, fixed, options=NewtonOptions(max_iterations=2))
+    with pytest.raises(ConvergenceError, match="did not converge in 3 iterations") as caught:
+        problem.solve(np.zeros(body.space.size), nodal_force=force)
+    assert len(caught.value.history) == 3
+    assert np.isfinite(caught.value.history).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_load_far_too_large_for_one_step_raises_and_leaves_the_guess_alone(dim):
+    body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))
+    guess = np.zeros(body.space.size)
+    with pytest.raises(ConvergenceError, match=r"Newton|element"):
+        Problem(body, fixed).solve(guess, nodal_force=-1e4 * force)
+    assert not guess.any()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_guess_with_an_element_inside_out_is_refused(dim):
+    body, fixed, force = block(dim, MATERIALS["compressible"], held_axes=range(dim))
+    guess = np.zeros(body.space.size)
+    body.space.split(guess)[0][-1] = 5.0
+    with pytest.raises(ConvergenceError, match="inside out"):
+        Problem(body, fixed).solve(guess, nodal_force=force)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_forces_that_are_not_finite_raise(dim, bad):
+    body, fixed, force = block(dim, MATERIALS["compressible"], held_axes=range(dim))
+    force[-body.space.corner_count - 1] = bad
+    with np.errstate(invalid="ignore"), pytest.raises(ConvergenceError):
+        Problem(body, fixed).solve(np.zeros(body.space.size), nodal_force=force)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_newton_converges_quadratically_under_a_follower_pressure(dim):
+    body, fixed, _ = block(dim, MATERIALS["compressible"], held_axes=range(dim))
+    mesh = box([1.0] * dim, [2] * dim, jitter=0.1)
+    load = FollowerPressure(body.space, facets_where(mesh, on_plane(dim - 1, 1.0)), body.pattern, 30.0)
+    history = Problem(body, fixed).solve(np.zeros(body.space.size), loads=[load]).history
+    assert len(history) <= 7
+    contraction = [later / earlier**2 for earlier, later in itertools.pairwise(history) if 1e-6 < earlier < 1e-1]
+    assert contraction
+    assert max(contraction) < 100  # linear convergence would make it grow without bound
