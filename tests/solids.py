@@ -47,16 +47,19 @@ def held(mesh: QuadraticMesh, axis: int, inside: Callable[[Array], Array]) -> Ar
     return mesh.dim * np.flatnonzero(inside(mesh.nodes)) + axis
 
 
-def solve_prescribed(
-    body: Body, fixed: Array, displacement: Array, *, steps: int = 1, nodal_force: Array | None = None
+def solve_near(
+    body: Body, fixed: Array, displacement: Array, *, nodal_force: Array | None = None, noise: float = 0.01
 ) -> Equilibrium:
-    """Equilibrium with the unknowns ``fixed`` at the values of a displacement field (n, d), all loads in equal steps."""
-    problem, unknowns = Problem(body, fixed), np.zeros(body.space.size)
-    for step in range(1, steps + 1):
-        unknowns = unknowns.copy()
-        unknowns[fixed] = displacement.ravel()[fixed] * step / steps
-        solved = problem.solve(unknowns, nodal_force=None if nodal_force is None else nodal_force * step / steps)
-        unknowns = solved.unknowns
+    """Equilibrium with the unknowns ``fixed`` at the values of a displacement field (n, d), the branch next to that field.
+
+    Newton starts without pressure, from the field with ``noise`` times the size of the body added to every free unknown.
+    """
+    disturbance = np.random.default_rng(2).uniform(-noise, noise, displacement.size) * np.ptp(body.space.nodes)
+    disturbance[fixed] = 0.0
+    guess = np.zeros(body.space.size)
+    guess[: displacement.size] = displacement.ravel() + disturbance
+    problem = Problem(body, fixed)
+    solved = problem.solve(guess, nodal_force=nodal_force)
     problem.solver.close()
     return solved
 
