@@ -11,6 +11,7 @@ from solids import assert_close, body_of, box, cauchy_stress, held, on_plane, so
 
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
+pytestmark = pytest.mark.usefixtures("one_thread")
 C10, C01 = 1.0, 0.25
 TOLERANCE = 1e-10
 """Of stresses and forces over their size: the states lie in the space, so only Newton's tolerance remains."""

@@ -14,6 +14,7 @@ from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
 
+pytestmark = pytest.mark.usefixtures("one_thread")
 TOLERANCE = 1e-10
 """Of the displacement and the stress over their size: Newton's own tolerance."""
 MATERIALS = {

@@ -12,6 +12,7 @@ from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
+pytestmark = pytest.mark.usefixtures("one_thread")
 SOLVERS = ["pardiso", "superlu"]
 
 

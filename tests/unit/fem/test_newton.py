@@ -16,6 +16,7 @@ from tactsim.fem.surface import SurfaceAssembly
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
+pytestmark = pytest.mark.usefixtures("one_thread")
 MATERIALS = {
     "incompressible": MooneyRivlin2(c10=80.0, c01=20.0),
     "compressible": MooneyRivlin2(c10=80.0, c01=20.0, bulk_modulus=1e3),
