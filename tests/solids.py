@@ -16,14 +16,20 @@ from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 Array = np.ndarray
 
 
-def box(lengths: Sequence[float], counts: Sequence[int], *, jitter: float = 0.0, seed: int = 0) -> QuadraticMesh:
-    """Triangles or tetrahedra of a box from the origin; ``jitter`` moves nodes by that part of a cell, along the faces."""
+def box(
+    lengths: Sequence[float], counts: Sequence[int], *, jitter: float = 0.0, seed: int = 0, refinements: int = 0
+) -> QuadraticMesh:
+    """Triangles or tetrahedra of a box from the origin.
+
+    ``jitter`` moves nodes by that part of a cell, along the faces; ``refinements`` then halve every element.
+    """
     lines = [np.linspace(0.0, length, count + 1) for length, count in zip(lengths, counts, strict=True)]
     mesh = MeshTri.init_tensor(*lines) if len(lines) == 2 else MeshTet.init_tensor(*lines)
     corners, upper = mesh.p.T.copy(), np.asarray(lengths, float)
     shift = np.random.default_rng(seed).uniform(-jitter, jitter, corners.shape) * upper / np.asarray(counts)
     shift[np.isclose(corners, 0.0) | np.isclose(corners, upper)] = 0.0
-    return quadratic_mesh(corners + shift, mesh.t.T.astype(np.int64))
+    mesh = type(mesh)((corners + shift).T.copy(), mesh.t).refined(refinements)
+    return quadratic_mesh(mesh.p.T.copy(), mesh.t.T.astype(np.int64))
 
 
 def body_of(mesh: QuadraticMesh, measure: Measure, *materials: Material) -> Body:
@@ -31,10 +37,11 @@ def body_of(mesh: QuadraticMesh, measure: Measure, *materials: Material) -> Body
     return Body(TaylorHood(mesh.nodes, mesh.elements, measure), materials, mesh.regions)
 
 
-def facets_where(mesh: QuadraticMesh, inside: Callable[[Array], Array]) -> Array:
-    """Boundary facets whose nodes (n, d) all satisfy a condition."""
+def facets_where(mesh: QuadraticMesh, inside: Callable[[Array], Array], *, every: bool = True) -> Array:
+    """Boundary facets of which every node (n, d), or at least one, satisfies a condition."""
     facets, _ = mesh.boundary_facets()
-    return facets[inside(mesh.nodes)[facets].all(axis=1)]
+    satisfied = inside(mesh.nodes)[facets]
+    return facets[satisfied.all(axis=1) if every else satisfied.any(axis=1)]
 
 
 def on_plane(axis: int, value: float) -> Callable[[Array], Array]:
