@@ -1,0 +1,187 @@
+"""Consistency of the tangent: Newton's matrix is the derivative of the unbalanced forces (verification.md, 6).
+
+Taylor's theorem: the remainder R(u + e d) - R(u) - e K d falls by 4 when e is halved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from solids import assert_close, body_of, box, facets_where, on_plane
+
+from tactsim.fem.body import Body
+from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.interfaces import Material
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.registry import kinds
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+Array = np.ndarray
+MEASURES = ["axisymmetric", "plane_strain", "solid"]
+KINDS = sorted(name for name in kinds("tactsim.materials", Material))
+RATIO_TOLERANCE = 0.02
+"""Of the ratio 4: the third-order term over the second at the steps taken."""
+
+
+@dataclass(frozen=True)
+class Map:
+    """Forces (size,) as a function of the unknowns, and their claimed derivative in a direction."""
+
+    value: Callable[[Array], Array]
+    slope: Callable[[Array, Array], Array]
+
+
+def patch(measure: str, material: Material | None = None) -> tuple[QuadraticMesh, Body]:
+    """A small unstructured body, off the axis if axisymmetric."""
+    dim = 3 if measure == "solid" else 2
+    mesh = box([1.0] * dim, [2, 2, 1][:dim], jitter=0.2, seed=5)
+    mesh = mesh.moved(mesh.nodes + np.array([0.5, 0.0, 0.0])[:dim])
+    return mesh, body_of(mesh, measure, material or MooneyRivlin5(c10=0.6, c01=0.2, c20=0.3, c11=0.1, c02=0.05, bulk_modulus=3.0))
+
+
+def state_and_direction(body: Body) -> tuple[Array, Array]:
+    """A deformed state under pressure, and a direction of unit size in which to differentiate."""
+    generator = np.random.default_rng(8)
+    unknowns, direction = np.zeros(body.space.size), np.zeros(body.space.size)
+    size = body.materials[0].shear_modulus
+    for vector, amplitude in ((unknowns, 0.03), (direction, 0.3)):
+        u, p = body.space.split(vector)
+        u[:] = generator.uniform(-amplitude, amplitude, u.shape)
+        p[:] = size * generator.uniform(-1, 1, p.shape)
+    body.space.split(unknowns)[0][:, 1] += 0.2 * body.space.nodes[:, 0]
+    return unknowns, direction
+
+
+def remainders(map_: Map, unknowns: Array, direction: Array) -> Array:
+    """Size of the remainder of the first-order Taylor polynomial, over the change itself, for four halvings of a small step."""
+    slope, start = map_.slope(unknowns, direction), map_.value(unknowns)
+    steps = 1e-3 / 2.0 ** np.arange(4)
+    changes = [map_.value(unknowns + step * direction) - start for step in steps]
+    return np.array([np.linalg.norm(c - e * slope) / np.linalg.norm(c) for c, e in zip(changes, steps, strict=True)]) * steps
+
+
+def assert_taylor(map_: Map, body: Body, *, linear: bool = False) -> None:
+    """The last ratio is 4, or there is no remainder but round-off if the map is linear."""
+    sizes = remainders(map_, *state_and_direction(body))
+    if linear:
+        assert sizes.max() <= 1e-13, f"remainders {sizes} of a linear map"
+    else:
+        assert abs(sizes[-2] / sizes[-1] - 4) <= RATIO_TOLERANCE, f"ratios {sizes[:-1] / sizes[1:]}"
+
+
+def body_map(body: Body, error: float = 0.0) -> Map:
+    """Internal forces; ``error`` spoils the tangent by that part of its diagonal."""
+
+    def slope(unknowns, direction):
+        matrix = body.pattern.matrix(body.tangent(unknowns))
+        return matrix @ direction + error * matrix.diagonal() * direction
+
+    return Map(body.residual, slope)
+
+
+def load_map(body: Body, load: FollowerPressure) -> Map:
+    """Minus the external forces, as Newton counts them."""
+    split = body.space.split
+    return Map(lambda x: -load.force(split(x)[0]), lambda x, d: body.pattern.matrix(load.stiffness(split(x)[0])) @ d)
+
+
+def traction_map(body: Body, assembly: SurfaceAssembly, *, wrong_sign: bool = False) -> Map:
+    """Minus the forces of a traction that is a smooth vector function of the place x of the surface point."""
+    dim, points = body.space.dim, assembly.points
+    mixing = np.random.default_rng(4).normal(size=(dim, dim))
+    reference = points.interpolate(body.space.nodes)
+
+    def place(unknowns):
+        return reference + points.interpolate(body.space.split(unknowns)[0])
+
+    def slope(unknowns, direction):
+        derivative = np.einsum("ij,jn->ijn", mixing, np.cos(place(unknowns)))
+        return body.pattern.matrix(assembly.stiffness(-derivative if wrong_sign else derivative)) @ direction
+
+    return Map(lambda unknowns: -assembly.force(mixing @ np.sin(place(unknowns))), slope)
+
+
+def outer_faces(mesh: QuadraticMesh) -> Array:
+    """The far faces across the first two axes."""
+    return np.vstack([facets_where(mesh, on_plane(0, 1.5)), facets_where(mesh, on_plane(1, 1.0))])
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "linear_elastic"])
+def test_tangent_of_a_body(measure, kind):
+    cls = kinds("tactsim.materials", Material)[kind]
+    assert_taylor(body_map(patch(measure, cls.example())[1]), patch(measure, cls.example())[1])
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_tangent_of_a_linear_body_has_no_remainder(measure):
+    _, body = patch(measure, kinds("tactsim.materials", Material)["linear_elastic"].example())
+    unknowns, direction = state_and_direction(body)
+    map_ = body_map(body)
+    change = map_.value(unknowns + direction) - map_.value(unknowns)
+    assert_close(map_.slope(unknowns, direction), change, 1e-12)  # round-off
+    with pytest.raises(AssertionError):
+        assert_close(body_map(body, 3e-12).slope(unknowns, direction), change, 1e-12)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_tangent_of_a_follower_pressure(measure):
+    """In plane strain the force is linear in the displacement."""
+    mesh, body = patch(measure)
+    assert_taylor(
+        load_map(body, FollowerPressure(body.space, outer_faces(mesh), body.pattern, 0.7)), body, linear=measure == "plane_strain"
+    )
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_tangent_of_a_traction_that_depends_on_the_place(measure):
+    mesh, body = patch(measure)
+    assembly = SurfaceAssembly(body.space.surface_points(outer_faces(mesh)), body.pattern, body.space.dim)
+    assert_taylor(traction_map(body, assembly), body)
+    with pytest.raises(AssertionError):
+        assert_taylor(traction_map(body, assembly, wrong_sign=True), body)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_tangent_wrong_by_a_thousandth_is_seen(measure):
+    _, body = patch(measure)
+    with pytest.raises(AssertionError):
+        assert_taylor(body_map(body, 0.001), body)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_pressure_that_does_not_follow_is_seen(measure):
+    """Twin: the tangent of a dead load."""
+    mesh, body = patch(measure)
+    following = load_map(body, FollowerPressure(body.space, outer_faces(mesh), body.pattern, 0.7))
+    with pytest.raises(AssertionError):
+        assert_taylor(Map(following.value, lambda x, d: 0 * d), body, linear=measure == "plane_strain")
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("bulk_modulus", [None, 50.0])
+def test_tangent_of_a_body_is_symmetric(measure, bulk_modulus):
+    _, body = patch(measure, MooneyRivlin2(c10=1.0, c01=0.25, bulk_modulus=bulk_modulus))
+    matrix = body.pattern.matrix(body.tangent(state_and_direction(body)[0])).toarray()
+    assert_close(matrix, matrix.T, 1e-14)  # round-off
+    broken = matrix.copy()
+    broken[0, 1] += 3e-14 * np.abs(matrix).max()
+    with pytest.raises(AssertionError):
+        assert_close(broken, matrix.T, 1e-14)
+
+
+@pytest.mark.parametrize("measure", ["plane_strain", "solid"])
+def test_tangent_of_a_pressure_on_a_closed_surface_is_symmetric(measure):
+    """A uniform pressure all around has the potential p V (Schweizerhof & Ramm 1984); on a part of the surface it has not."""
+    mesh, body = patch(measure)
+    displacement = body.space.split(state_and_direction(body)[0])[0]
+    for facets, symmetric in ((mesh.boundary_facets()[0], True), (outer_faces(mesh), False)):
+        matrix = body.pattern.matrix(FollowerPressure(body.space, facets, body.pattern, 0.7).stiffness(displacement)).toarray()
+        asymmetry = np.abs(matrix - matrix.T).max() / np.abs(matrix).max()
+        assert (asymmetry < 1e-13) == symmetric
