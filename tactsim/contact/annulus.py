@@ -52,6 +52,5 @@ class Annulus(Revolved):
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""
-        center = np.array([(self.inner_radius + self.outer_radius) / 2, self.height / 2])
-        half = np.array([(self.outer_radius - self.inner_radius) / 2, self.height / 2])
-        return rounded_box(p, center, half, self.fillet)
+        lower, upper = np.array([self.inner_radius, 0.0]), np.array([self.outer_radius, self.height])
+        return rounded_box(p, lower, upper, self.fillet)

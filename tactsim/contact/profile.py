@@ -35,23 +35,23 @@ class Revolved(RigidBody):
         return distance, np.einsum("in,ian->an", normal, basis), lifted
 
 
-def rounded_box(p: Array, center: Array, half: Array, fillet: float) -> tuple[Array, Array, Array]:
+def rounded_box(p: Array, lower: Array, upper: Array, fillet: float) -> tuple[Array, Array, Array]:
     """Signed distance, normal and Hessian of a rectangle with filleted corners in the plane.
 
     Parameters
     ----------
     p : (2, n) points in m
-    center, half : (2,) centre and half widths in m
-    fillet : radius of the corners in m, at most the smaller half width
+    lower, upper : (2,) opposite corners in m
+    fillet : radius of the corners in m, at most half the smaller side
     """
-    offset = p - center[:, None]
-    sign = np.where(offset < 0, -1.0, 1.0)
-    q = np.abs(offset) - (half - fillet)[:, None]
-    outside = np.maximum(q, 0.0)
+    below, above = lower[:, None] - p, p - upper[:, None]
+    sign = np.where(below > above, -1.0, 1.0)
+    beyond = np.maximum(below, above)
+    outside = np.maximum(beyond + fillet, 0.0)
     reach = np.hypot(*outside)
-    corner = (q > 0).all(axis=0)
-    distance = reach + np.minimum(q.max(axis=0), 0.0) - fillet
-    flat = np.stack([q[0] >= q[1], q[0] < q[1]]).astype(float)
+    corner = (outside > 0).all(axis=0)
+    distance = np.where(corner, reach - fillet, beyond.max(axis=0))
+    flat = np.stack([beyond[0] >= beyond[1], beyond[0] < beyond[1]]).astype(float)
     safe = np.where(corner, reach, 1.0)
     normal = sign * np.where(corner, outside / safe, flat)
     hessian = np.where(corner, 1.0 / safe, 0.0) * (np.eye(2)[:, :, None] - normal[:, None] * normal[None, :])

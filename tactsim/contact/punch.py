@@ -47,4 +47,5 @@ class Punch(Revolved):
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""
-        return rounded_box(p, np.array([0.0, self.height / 2]), np.array([self.radius, self.height / 2]), self.fillet)
+        lower, upper = np.array([-self.radius, 0.0]), np.array([self.radius, self.height])
+        return rounded_box(p, lower, upper, self.fillet)

@@ -36,4 +36,6 @@ class Sphere(RigidBody):
         safe = np.where(reach > 0, reach, self.radius)
         normal = offset / safe
         hessian = (np.eye(len(x))[:, :, None] - normal[:, None] * normal[None, :]) / safe
-        return reach - self.radius, normal, hessian
+        squared = np.einsum("in,in->n", x, x)
+        distance = (squared - 2 * self.radius * x[-1]) / (reach + self.radius)
+        return distance, normal, hessian

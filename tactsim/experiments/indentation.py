@@ -123,19 +123,26 @@ class Indentation(Experiment):
 
     def model(self) -> IndentationModel:
         """The finite element model."""
-        radii = [r for r in (getattr(self.body, "inner_radius", 0.0), self.contact_radius) if 0 < r < self.specimen.radius]
-        if self.body.kind == "sphere":
-            radii = [0.0]
-        settings, fillet = self.mesh, float(getattr(self.body, "fillet", 0.0))
-        finest = settings.finest or (fillet / 3 if fillet > 0 else self.contact_radius / 50)
+        settings, (rims, reach, finest) = self.mesh, self._focus()
+        finest = settings.finest or finest
         coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
-        edges = np.array([(r, 0.0) for r in radii or [self.specimen.radius]])
+        edges = np.array([(r, 0.0) for r in rims or [0.0]])
         n = settings.refinement
-        size = edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=fillet)
-        mesh = self.specimen.mesh(size, tuple(radii))
+        size = edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
+        mesh = self.specimen.mesh(size, rims)
         facets, _ = mesh.boundary_facets()
         flat_top = self._on_top(mesh.nodes[facets])
         return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=facets[flat_top])
+
+    def _focus(self) -> tuple[tuple[float, ...], float, float]:
+        """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
+        if self.body.kind == "sphere":
+            reach = 1.5 * float(np.sqrt(self.contact_radius * self.displacement))
+            return (), min(reach, self.specimen.radius), reach / 20
+        rims = (getattr(self.body, "inner_radius", 0.0), self.contact_radius)
+        fillet = float(getattr(self.body, "fillet", 0.0))
+        finest = fillet / 3 if fillet > 0 else self.contact_radius / 50
+        return tuple(r for r in rims if 0 < r < self.specimen.radius), fillet, finest
 
     def _on_top(self, corners: Array) -> Array:
         sign = -1.0 if self.specimen.surface == "concave" else 1.0

@@ -11,6 +11,9 @@ from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
 
+ROUND_OFF = 4 * np.finfo(float).eps
+"""Relative error of a position after interpolation and subtraction."""
+
 
 @dataclass(frozen=True)
 class PosedContact:
@@ -51,6 +54,11 @@ class PosedContact:
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa."""
         return self.at(displacement).traction
+
+    def rounding(self, displacement: Array) -> Array:
+        """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify."""
+        along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
+        return ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
 
     def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
         """Traction and derivative as the carried forces decide."""

@@ -111,13 +111,13 @@ class Body:
         )
         return data
 
-    def rounding_force(self) -> float:
-        """Largest nodal force in N that a stress as large as the shear modulus could make without cancellation."""
+    def rounding_forces(self) -> Array:
+        """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
         moduli = np.array([material.shear_modulus for material in self.materials])[self.regions]
         points = self.points
         size = np.abs(points.gradients).max(axis=-1) + points.hoop
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
-        return float(np.bincount(self.space.elements.ravel(), forces.ravel()).max())
+        return np.bincount(self.space.elements.ravel(), forces.ravel())
 
     def _tables(self) -> tuple[Array, ...]:
         """What the compiled loops read of the mesh and the materials."""

@@ -17,7 +17,7 @@ from tactsim.fem.surface import SurfaceAssembly
 Array = np.ndarray
 
 
-ROUND_OFF = 32 * np.finfo(float).eps
+ROUND_OFF = 128 * np.finfo(float).eps
 """Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
 
 
@@ -33,6 +33,9 @@ class Interface(Protocol):
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa that holds at displacements (d, n) of the points."""
+
+    def rounding(self, displacement: Array) -> Array:
+        """Traction (n,) in Pa that is lost in the round-off of the positions."""
 
     def linearised(self, displacement: Array, carried: Any) -> Any:
         """An object with ``traction`` (d, n) in Pa and ``derivative`` (d, d, n) in Pa/m."""
@@ -89,7 +92,7 @@ class Problem:
         self.solver = solver or direct_solver()
         self.options = options or NewtonOptions()
         self._volume_scale = body.points.weights.sum() / body.space.corner_count
-        self._noise = ROUND_OFF * body.rounding_force()
+        self._noise = ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim)
 
     def solve(
         self,
@@ -118,7 +121,8 @@ class Problem:
             internal -= self._nodal(unknowns, loads, nodal_force)
             moved = [self._displacement(unknowns, interface) for interface in interfaces]
             tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
-            history.append(self._residual_norm(internal, scale, interfaces, tractions))
+            noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
+            history.append(self._residual_norm(internal, scale, interfaces, (tractions, noise)))
             if history[-1] < options.tolerance:
                 return Equilibrium(unknowns, kinematics, tractions, tuple(history))
             if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
@@ -148,17 +152,18 @@ class Problem:
     def _displacement(self, unknowns: Array, interface: Interface) -> Array:
         return interface.surface.points.interpolate(self.body.space.split(unknowns)[0])
 
-    def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], tractions: Sequence[Array]) -> float:
-        """Largest unbalanced force over the largest force, or largest volume error over the mean nodal volume."""
+    def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]) -> float:
+        """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
+        error over the mean nodal volume."""
         residual, split = internal.copy(), self.body.space.displacement_size
-        scale = max(scale, float(np.abs(internal[:split]).max()))
-        for interface, traction in zip(interfaces, tractions, strict=True):
+        scale, noise = max(scale, float(np.abs(internal[:split]).max())), self._noise.copy()
+        for interface, traction, lost in zip(interfaces, *forces, strict=True):
             force = interface.surface.force(traction)
             scale = max(scale, float(np.abs(force).max()))
             residual -= force
+            noise += interface.surface.force(np.broadcast_to(lost, traction.shape))[:split]
         residual = self.constraints.free(residual)
-        scale = max(scale, self._noise / self.options.tolerance)
-        unbalanced = np.abs(residual[:split]).max() / scale
+        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, np.abs(noise) / self.options.tolerance)).max()
         return float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
 
     def _linear_step(self, unknowns: Array, kinematics: Kinematics, internal: Array, parts: tuple[Any, ...]) -> Array:

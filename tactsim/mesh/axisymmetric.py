@@ -14,35 +14,53 @@ from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 Array = np.ndarray
 Size = Callable[[Array], Array]
 """Wanted element size in m at points (n, 2)."""
+SLENDER = 4.0
+"""Largest ratio of width to height of a grid cell in the thinnest layer, before refinement."""
+MOST_BISECTIONS = 80
+MOST_ELEMENTS = 500_000
 
 
-def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, lines: Sequence[float] = ()) -> QuadraticMesh:
+def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, rings: Sequence[float] = ()) -> QuadraticMesh:
     """Triangles of a cylinder's section, at most as long as ``size`` says, by bisection of a coarse grid.
 
     Parameters
     ----------
     radius : outer radius in m
-    interfaces : heights in m, from the top of the specimen down to its base; a region lies between each two
+    interfaces : heights in m of the top, of each boundary between layers and of the base; a region lies between each two
     size : wanted element size at points in m
-    lines : radii in m where element edges must lie
+    rings : radii in m of circles on the top that must be nodes: the refined mesh is shifted by less than an element for them
     """
-    columns = _filled([0.0, *sorted(line for line in lines if 0 < line < radius), radius])
-    levels = _filled(sorted(interfaces), step=np.diff(columns).max())
-    mesh = MeshTri.init_tensor(columns, levels)
-    for _ in range(60):
+    heights = np.unique(np.asarray(interfaces, float))
+    step = min(radius, max(np.diff(heights).min() * SLENDER, np.ptp(heights) / 2))
+    columns = np.linspace(0.0, radius, max(2, round(radius / step)) + 1)
+    levels = [np.linspace(a, b, max(1, round((b - a) / step)) + 1)[:-1] for a, b in itertools.pairwise(heights)]
+    mesh = MeshTri.init_tensor(columns, np.append(np.concatenate(levels), heights[-1]))
+    for _ in range(MOST_BISECTIONS):
         corners = mesh.p.T[mesh.t.T]
         edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-        wanted = np.min([size(corners[:, i]) for i in range(3)] + [size(corners.mean(axis=1))], axis=0)
+        wanted = np.min([*(size(corners[:, i]) for i in range(3)), size(corners.mean(axis=1))], axis=0)
         marked = np.flatnonzero(edges.max(axis=1) > wanted)
         if not len(marked):
             break
+        if mesh.nelements > MOST_ELEMENTS:
+            raise InputError(f"the wanted element sizes need more than {MOST_ELEMENTS} elements; take larger ones")
         mesh = mesh.refined(marked)
     else:
         raise InputError("the mesh does not reach the wanted element size; is the size positive everywhere?")
-    middle = mesh.p[:, mesh.t].mean(axis=1)
-    top_down = np.sort(np.asarray(interfaces))[::-1]
-    regions = np.clip(np.searchsorted(-top_down, -middle[1]) - 1, 0, len(top_down) - 2)
-    return quadratic_mesh(mesh.p.T.copy(), mesh.t.T.astype(np.int64), regions)
+    middle = mesh.p[1, mesh.t].mean(axis=0)
+    regions = len(heights) - 1 - np.searchsorted(heights, middle)
+    return quadratic_mesh(_with_rings(mesh.p.T, rings), mesh.t.T.astype(np.int64), regions)
+
+
+def _with_rings(points: Array, rings: Sequence[float]) -> Array:
+    """Points (n, 2) stretched piecewise along r so that the nearest top node of each ring comes to lie on it."""
+    top = np.sort(points[points[:, 1] == points[:, 1].max(), 0])
+    near = [float(top[np.abs(top - ring).argmin()]) for ring in rings]
+    if len({0.0, *near, float(top[-1])}) < len(rings) + 2:
+        raise InputError("the mesh is too coarse for the edges of the body; take smaller elements")
+    out = points.copy()
+    out[:, 0] = np.interp(points[:, 0], [0.0, *near, top[-1]], [0.0, *rings, top[-1]])
+    return out
 
 
 def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, reach: float = 0.0) -> Size:
@@ -53,12 +71,3 @@ def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, 
         return np.clip(finest + growth * np.maximum(distance - reach, 0.0), finest, coarsest)
 
     return size
-
-
-def _filled(points: Sequence[float], step: float | None = None) -> Array:
-    """Add points between the given ones so that neighbouring intervals differ by at most a factor of two or so."""
-    given = np.unique(np.asarray(points, float))
-    gaps = np.diff(given)
-    target = step if step is not None else max(gaps.min() * 4, gaps.max() / 4)
-    pieces = [np.linspace(a, b, max(1, round((b - a) / target)) + 1)[:-1] for a, b in itertools.pairwise(given)]
-    return np.append(np.concatenate(pieces), given[-1])

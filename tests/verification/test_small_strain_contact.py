@@ -1,0 +1,153 @@
+"""Indentation at small displacement against exact linear contact: annulus, punch and sphere, half-space and layers."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.punch import Punch
+from tactsim.contact.sphere import Sphere
+from tactsim.experiments.indentation import Indentation, MeshSettings, StepSettings
+from tactsim.experiments.specimen import Specimen
+from tactsim.materials.linear_elastic import LinearElastic
+
+RADIUS = 3e-3
+SHEAR_MODULUS = 1000.0
+DISPLACEMENT = 1e-5 * RADIUS
+"""The contact is evaluated at the displaced surface; at 1e-3 the rim of a punch on a layer has slid out by 0.9 % of the force."""
+HALF_SPACE = 3000 * RADIUS
+"""A bonded cylinder of this radius and height is stiffer than the half-space by about RADIUS / HALF_SPACE = 0.03 %."""
+FORCE_TOLERANCE = 0.003
+"""Asked of the force; the sharp edge is singular, so the error is of the order of finest / RADIUS."""
+RISE_TOLERANCE = 0.005
+
+EXACT = Path(__file__).parent / "annular_punch.csv"
+"""Ring-load integral equation by Chebyshev collocation; 40 and 60 terms agree to 1e-12."""
+
+LAYERS = [
+    # a/h, base, b/a, P / (8 G a d), w(0)/d: incompressible layer, reference solution converged to the digits given
+    (0.5, "fixed", 0.25, 1.9225, 0.775),
+    (0.5, "fixed", 0.50, 1.8464, 0.554),
+    (0.5, "fixed", 0.75, 1.6183, 0.344),
+    (1.0, "fixed", 0.25, 3.5535, 0.443),
+    (1.0, "fixed", 0.50, 3.1677, 0.030),
+    (1.0, "fixed", 0.75, 2.4056, -0.132),
+    (1.0, "slipping", 0.25, 2.1815, None),
+    (1.0, "slipping", 0.50, 2.0647, None),
+]
+QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "fixed", 0.50), (1.0, "slipping", 0.50)]
+PUNCH_LAYERS = [(0.2, "fixed", 1.2806), (1.0, "fixed", 3.6187), (2.0, "fixed", 9.1495), (1.0, "slipping", 2.1986)]
+
+
+def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=0.0, poisson_ratio=0.5, finest=1e-3 * RADIUS):
+    """Dimensionless force P / (8 G a d) and height of the axis over the displacement."""
+    material = LinearElastic(youngs_modulus=2 * (1 + poisson_ratio) * SHEAR_MODULUS, poisson_ratio=poisson_ratio)
+    width = thickness if thickness >= HALF_SPACE else 20 * max(thickness, RADIUS)
+    experiment = Indentation(
+        specimen=Specimen(material=material, thickness=thickness, radius=width, base=base),
+        body=body,
+        contact=Coulomb(friction=friction),
+        recess=thickness / 2 if body.kind == "annulus" else None,
+        stop="displacement",
+        displacement=displacement,
+        penetration_tolerance=1e-2 * displacement,
+        mesh=MeshSettings(finest=finest, growth=0.3),
+        steps=StepSettings(first=displacement, largest=displacement),
+    )
+    result = experiment.run(lambda step: None)
+    assert result.status == "converged", result.reason
+    values = {name: quantity.value for name, quantity in result.quantities.items()}
+    assert values["max_penetration"] <= 1e-2 * displacement, "only at the singular edge; a hundredth of it elsewhere"
+    balance = 1e-8 if thickness < HALF_SPACE else 1e-3
+    assert values["base_force"] == pytest.approx(values["reaction_force"], rel=balance), "9 m wide base: round-off of F = 1"
+    return values["reaction_force"], values.get("tissue_rise_axis", 0.0)
+
+
+def normalised(force, displacement=DISPLACEMENT):
+    return force / (8 * SHEAR_MODULUS * RADIUS * displacement)
+
+
+def annulus(ratio):
+    return Annulus(inner_radius=ratio * RADIUS, outer_radius=RADIUS, fillet=0)
+
+
+def exact_rows():
+    lines = [line for line in EXACT.read_text().splitlines() if not line.startswith("#")]
+    return [(float(r["beta"]), float(r["kappa"]), float(r["u0_over_eps"])) for r in csv.DictReader(lines)]
+
+
+REPRESENTATIVE = (0.1, 0.5, 0.9)
+
+
+@pytest.mark.parametrize(
+    ("beta", "kappa", "axis"),
+    [
+        pytest.param(*row, marks=() if row[0] in REPRESENTATIVE else pytest.mark.slow, id=f"beta={row[0]}")
+        for row in exact_rows()
+        if 0.1 <= row[0] <= 0.9
+    ],
+)
+def test_annulus_on_half_space(beta, kappa, axis):
+    force, rise = press(annulus(beta), HALF_SPACE)
+    assert normalised(force) == pytest.approx(kappa, rel=FORCE_TOLERANCE)
+    assert rise == pytest.approx((1 - axis) * DISPLACEMENT, rel=RISE_TOLERANCE)
+    assert normalised(force) != pytest.approx(kappa * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    assert rise != pytest.approx((1 - axis) * DISPLACEMENT * (1 + 3 * RISE_TOLERANCE), rel=RISE_TOLERANCE)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "base", "beta", "factor", "axis"),
+    [pytest.param(*row, marks=() if row[:3] in QUICK_LAYERS else pytest.mark.slow) for row in LAYERS],
+)
+def test_annulus_on_layer(ratio, base, beta, factor, axis):
+    force, rise = press(annulus(beta), RADIUS / ratio, base=base)
+    assert normalised(force) == pytest.approx(factor, rel=FORCE_TOLERANCE)
+    assert normalised(force) != pytest.approx(factor * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    if axis is not None:
+        printed = 0.5e-3 / (1 - axis)
+        assert rise == pytest.approx((1 - axis) * DISPLACEMENT, rel=RISE_TOLERANCE + printed)
+
+
+@pytest.mark.parametrize(("ratio", "base", "factor"), PUNCH_LAYERS)
+def test_punch_on_layer(ratio, base, factor):
+    force, _ = press(Punch(radius=RADIUS), RADIUS / ratio, base=base)
+    assert normalised(force) == pytest.approx(factor, rel=FORCE_TOLERANCE)
+    assert normalised(force) != pytest.approx(factor * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+
+
+@pytest.mark.parametrize(("poisson_ratio", "factor"), [(0.49, 3.4840), (0.30, 2.4835)])
+def test_punch_on_compressible_layer(poisson_ratio, factor):
+    force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
+    expected = factor / (2 * (1 - poisson_ratio))
+    assert normalised(force) == pytest.approx(expected, rel=FORCE_TOLERANCE)
+    assert normalised(force) != pytest.approx(3.6187, rel=FORCE_TOLERANCE)
+
+
+def test_punch_on_half_space():
+    force, _ = press(Punch(radius=RADIUS), HALF_SPACE)
+    assert normalised(force) == pytest.approx(1.0, rel=FORCE_TOLERANCE)
+
+
+def test_sphere_follows_hertz():
+    displacement = 1e-3 * RADIUS
+    force, _ = press(Sphere(radius=RADIUS), HALF_SPACE, displacement=displacement, finest=4e-3 * RADIUS)
+    hertz = 16 / 3 * SHEAR_MODULUS * RADIUS**0.5 * displacement**1.5
+    assert force == pytest.approx(hertz, rel=FORCE_TOLERANCE)
+    assert force != pytest.approx(hertz * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+
+
+@pytest.mark.parametrize("beta", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
+def test_friction_leaves_the_incompressible_half_space_alone(beta):
+    free, _ = press(annulus(beta), HALF_SPACE)
+    rough, _ = press(annulus(beta), HALF_SPACE, friction=1.0)
+    assert rough == pytest.approx(free, rel=1e-3), "a normal load moves an incompressible surface only along its normal"
+
+
+def test_friction_matters_on_a_compressible_half_space():
+    free, _ = press(Punch(radius=RADIUS), HALF_SPACE, poisson_ratio=0.3)
+    rough, _ = press(Punch(radius=RADIUS), HALF_SPACE, poisson_ratio=0.3, friction=1.0)
+    assert rough > free * 1.01
