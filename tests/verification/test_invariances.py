@@ -1,0 +1,185 @@
+"""Properties of the solver that need no reference: scaling laws, units, objectivity (verification.md, 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from solids import assert_close, body_of, box, facets_where, held
+
+from tactsim.fem.body import Body
+from tactsim.fem.linear import direct_solver
+from tactsim.fem.newton import Problem
+from tactsim.fem.pressure import FollowerPressure
+from tactsim.interfaces import Material
+from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
+from tactsim.mesh.quadratic import QuadraticMesh
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+Array = np.ndarray
+MEASURES = ["axisymmetric", "plane_strain", "solid"]
+TOLERANCE = 1e-9
+"""Of displacements, pressures and forces: Newton's tolerance of 1e-10 times the condition of the problem."""
+MODULI = {"c10": 3e3, "c01": 1e3, "c20": 2e3, "c11": 500.0, "c02": 100.0, "bulk_modulus": 2e5}
+
+
+@dataclass(frozen=True)
+class Squeezed:
+    """What a squeezed block shows: displacement (n, d), pressure at the corners, reaction (d,) on its base."""
+
+    displacement: Array
+    pressure: Array
+    reaction: Array
+
+
+def block(measure: str, *, length: float = 1.0) -> QuadraticMesh:
+    """An unstructured block of 20 mm, times ``length``."""
+    dim = 3 if measure == "solid" else 2
+    mesh = box([0.02] * dim, [3, 3, 2][:dim], jitter=0.2, seed=4)
+    return mesh.moved(mesh.nodes * length)
+
+
+def squeeze(
+    measure: str, *, modulus: float = 1.0, length: float = 1.0, solver: str | None = None, spoil: float = 0.0
+) -> Squeezed:
+    """A block of moduli times ``modulus`` glued to its base, its top pushed down by 15 % and its side under pressure.
+
+    ``spoil`` changes c01 by that part.
+    """
+    mesh = block(measure, length=length)
+    material = MooneyRivlin5(**{name: value * modulus for name, value in MODULI.items()})
+    material = material.model_copy(update={"c01": material.c01 * (1 + spoil)})
+    body, top, dim = body_of(mesh, measure, material), 0.02 * length, mesh.dim
+    base = np.concatenate([held(mesh, axis, lambda nodes: nodes[:, 1] == 0.0) for axis in range(dim)])
+    axis_unknowns = held(mesh, 0, lambda nodes: nodes[:, 0] == 0.0)
+    pushed = held(mesh, 1, lambda nodes: np.isclose(nodes[:, 1], top))
+    side = facets_where(mesh, lambda nodes: np.isclose(nodes[:, 0], top))
+    load = FollowerPressure(body.space, side, body.pattern, 0.0)
+    problem = Problem(body, np.concatenate([base, axis_unknowns, pushed]), solver=direct_solver(solver))
+    unknowns = np.zeros(body.space.size)
+    for share in (1 / 3, 2 / 3, 1.0):
+        unknowns = unknowns.copy()
+        unknowns[pushed], load.pressure = -0.15 * top * share, 500.0 * modulus * share
+        unknowns = problem.solve(unknowns, loads=[load]).unknowns
+    problem.solver.close()
+    u, p = body.space.split(unknowns)
+    forces = body.space.split(body.residual(unknowns))[0]
+    return Squeezed(u, p, forces[mesh.nodes[:, 1] == 0.0].sum(axis=0))
+
+
+def assert_same(actual: Squeezed, expected: Squeezed, *, length: float = 1.0, pressure: float = 1.0, force: float = 1.0) -> None:
+    """Equal up to the given factors."""
+    assert_close(actual.displacement, expected.displacement * length, TOLERANCE)
+    assert_close(actual.pressure, expected.pressure * pressure, TOLERANCE)
+    assert_close(actual.reaction, expected.reaction * force, TOLERANCE)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_moduli_scale_pressures_and_forces(measure):
+    scaled, plain = squeeze(measure, modulus=7.0), squeeze(measure)
+    assert_same(scaled, plain, pressure=7.0, force=7.0)
+    with pytest.raises(AssertionError):
+        assert_same(scaled, plain, pressure=7.0, force=7.0 * (1 + 3 * TOLERANCE))
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_lengths_scale_forces_by_their_square(measure):
+    """Force per unit thickness, in plane strain, by the first power."""
+    power = 1 if measure == "plane_strain" else 2
+    scaled, plain = squeeze(measure, length=3.0), squeeze(measure)
+    assert_same(scaled, plain, length=3.0, force=3.0**power)
+    with pytest.raises(AssertionError):
+        assert_same(scaled, plain, length=3.0, force=3.0 ** (3 - power))
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_millimetres_and_megapascals_give_what_metres_and_pascals_give(measure):
+    force = 1e-3 if measure == "plane_strain" else 1.0  # N/mm there
+    millimetres = squeeze(measure, length=1e3, modulus=1e-6)
+    assert_same(millimetres, squeeze(measure), length=1e3, pressure=1e-6, force=force)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_superlu_gives_what_pardiso_gives(measure):
+    assert_same(squeeze(measure, solver="superlu"), squeeze(measure, solver="pardiso"))
+    with pytest.raises(AssertionError):
+        assert_same(squeeze(measure, solver="superlu", spoil=1e-7), squeeze(measure, solver="pardiso"))
+
+
+def rotation(dim: int) -> Array:
+    """A rotation by 70 degrees in the plane, or about a skew axis."""
+    if dim == 2:
+        angle = np.radians(70)
+        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    Q, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))
+    return Q * np.linalg.det(Q)
+
+
+def forces_and_state(measure: str, material: Material) -> tuple[Body, Array, Array]:
+    """A body, a deformed state with pressure, and its internal forces (n, d)."""
+    body = body_of(block(measure), measure, material)
+    unknowns = np.zeros(body.space.size)
+    u, p = body.space.split(unknowns)
+    generator = np.random.default_rng(1)
+    u[:] = generator.uniform(-2e-4, 2e-4, u.shape) + body.space.nodes * 0.1
+    p[:] = generator.normal(size=p.shape) * material.shear_modulus
+    return body, unknowns, body.space.split(body.residual(unknowns))[0]
+
+
+def rotated_forces(body: Body, unknowns: Array, Q: Array) -> Array:
+    """Internal forces (n, d) after the deformed body was turned by Q."""
+    turned = unknowns.copy()
+    u, _ = body.space.split(turned)
+    u[:] = (body.space.nodes + u) @ Q.T - body.space.nodes
+    return body.space.split(body.residual(turned))[0]
+
+
+def assert_objective(measure: str, material: Material) -> None:
+    """The forces of a turned body are the turned forces."""
+    body, unknowns, forces = forces_and_state(measure, material)
+    Q = rotation(body.space.dim)
+    assert_close(rotated_forces(body, unknowns, Q), forces @ Q.T, 1e-12)  # round-off
+
+
+@pytest.mark.parametrize("measure", ["plane_strain", "solid"])
+def test_the_forces_of_a_turned_body_are_the_turned_forces(measure):
+    assert_objective(measure, MooneyRivlin5(**MODULI))
+    with pytest.raises(AssertionError):  # small strains are not objective
+        assert_objective(measure, LinearElastic(youngs_modulus=1e4, poisson_ratio=0.4))
+
+
+@pytest.mark.parametrize("measure", ["plane_strain", "solid"])
+def test_the_forces_of_a_body_cut_in_another_direction_are_the_same(measure):
+    """Isotropy: the reference turned by Q, the same place of every particle."""
+    body, unknowns, forces = forces_and_state(measure, MooneyRivlin5(**MODULI))
+    turned = body.space.nodes @ rotation(body.space.dim).T
+    other = body_of(QuadraticMesh(turned, body.space.elements, body.regions), measure, body.materials[0])
+    state = unknowns.copy()
+    other.space.split(state)[0][:] += body.space.nodes - turned
+    assert_close(other.space.split(other.residual(state))[0], forces, 1e-12)  # round-off
+    other.space.split(state)[0][0] += 1e-9
+    with pytest.raises(AssertionError):
+        assert_close(other.space.split(other.residual(state))[0], forces, 1e-12)
+
+
+def test_an_axisymmetric_body_does_not_feel_a_shift_along_its_axis():
+    body, unknowns, forces = forces_and_state("axisymmetric", MooneyRivlin5(**MODULI))
+    shifted = unknowns.copy()
+    body.space.split(shifted)[0][:, 1] += 0.3
+    assert_close(body.space.split(body.residual(shifted))[0], forces, 1e-12)  # round-off
+    body.space.split(shifted)[0][:, 0] += 1e-6
+    with pytest.raises(AssertionError):
+        assert_close(body.space.split(body.residual(shifted))[0], forces, 1e-12)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_the_forces_of_a_body_balance(measure):
+    """No net force in any direction that a rigid shift may take, whatever the deformation."""
+    _, _, forces = forces_and_state(measure, MooneyRivlin5(**MODULI))
+    along = forces[:, 1:] if measure == "axisymmetric" else forces
+    assert_close(along.sum(axis=0), 0.0, 1e-13, scale=np.abs(forces).sum())  # round-off
+    along[0] += 3e-13 * np.abs(forces).sum()
+    with pytest.raises(AssertionError):
+        assert_close(along.sum(axis=0), 0.0, 1e-13, scale=np.abs(forces).sum())
