@@ -87,18 +87,20 @@ class PathFollower(Generic[State]):
             load = min(now.load + step, target)
             try:
                 reached = self._advance(now, load, _predicted(before, now, load))
+                happened = event is not None and event.value(reached) >= 0
+                if event is not None and happened:
+                    reached = self._located(event, now, reached)
             except ConvergenceError as error:
                 self.rejected += 1
                 step = (load - now.load) * self._control.cut
                 if step < self._control.smallest:
                     raise ConvergenceError(f"gave up at {now.load:.6g} of {target:.6g}: {error}", error.history) from error
                 continue
-            if event is not None and event.value(reached) >= 0:
-                yield self._located(event, now, reached), True
-                return
             step = self._control.next_step(max(step, load - now.load), reached.iterations)
             before, now = now, reached
-            yield now, False
+            yield now, happened
+            if happened:
+                return
 
     def _located(self, event: Event[State], before: State, after: State) -> State:
         """The state at the event, which lies between the two."""

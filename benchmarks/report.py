@@ -1,0 +1,58 @@
+"""Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
+
+python benchmarks/report.py [--readme]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import sys
+from pathlib import Path
+
+import assembly
+import commands
+
+README = Path(__file__).parents[1] / "README.md"
+START = "<!-- performance table: written by `python benchmarks/report.py --readme` -->"
+END = "<!-- end of performance table -->"
+
+
+def table(figures: dict[str, dict[str, float]]) -> str:
+    """Markdown table of what was asked and what was measured."""
+    job, speed = figures["commands"], figures["assembly"]
+    rows = [
+        ("first run of the main job, compilation included", "under 60 s", f"{job['first_run_seconds']:.1f} s"),
+        ("later runs of the main job", "under 20 s", f"{job['later_run_seconds']:.1f} s"),
+        ("`tactsim --help`", "under 0.3 s", f"{job['help_seconds']:.2f} s"),
+        (
+            "assembly, residual and tangent, P2/P1 tetrahedra",
+            "80 000 per second",
+            f"{round(speed['tetrahedra_per_second'], -3):,.0f} per second".replace(",", " "),
+        ),
+        *(
+            (f"`{name}.yaml`", "under 120 s", f"{job[f'{name}_seconds']:.1f} s (exit {job[f'{name}_exit_code']:.0f})")
+            for name in commands.CASES[1:]
+        ),
+    ]
+    lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
+    return "\n".join([*lines, "", f"On {os.cpu_count()} cores, Python {platform.python_version()}, {platform.machine()}."])
+
+
+def main() -> None:
+    """Measure, print, and on request rewrite the table of the README."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--readme", action="store_true", help="write the table into README.md")
+    arguments = parser.parse_args()
+    figures = {"assembly": assembly.measure(), "commands": commands.measure()}
+    text = table(figures)
+    sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
+    if arguments.readme:
+        before, rest = README.read_text().split(START)
+        README.write_text(f"{before}{START}\n{text}\n{END}{rest.split(END)[1]}")
+
+
+if __name__ == "__main__":
+    main()

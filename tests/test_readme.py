@@ -1,0 +1,51 @@
+"""Every code block of the README is executed as it stands; the two set-up commands are what CI itself calls."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+SETUP = "scripts/run"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A clone's folder as the commands of the README see it."""
+    place = tmp_path_factory.mktemp("readme")
+    shutil.copytree(ROOT / "cases", place / "cases")
+    (place / ".venv").mkdir()
+    (place / ".venv" / "bin").symlink_to(Path(sys.executable).parent)
+    return place
+
+
+def test_setup_commands_are_those_of_ci():
+    commands = [line.split("#")[0].strip() for line in BLOCKS[0][1].splitlines()]
+    assert commands == ["scripts/run", "scripts/test"]
+    called = (ROOT / ".ci" / "run").read_text().splitlines()
+    assert called[-2:] == commands
+
+
+def test_no_block_is_left_out():
+    assert len(BLOCKS) >= 6
+    assert {language for language, _ in BLOCKS} == {"sh", "yaml", "python"}
+
+
+@pytest.mark.parametrize("number", range(1, len(BLOCKS)))
+def test_block(number, folder):
+    language, text = BLOCKS[number]
+    if language == "yaml":
+        (folder / "my_case.yaml").write_text(text)
+        return
+    command = ["sh", "-e", "-c", text] if language == "sh" else [sys.executable, "-c", text]
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=600, env={**os.environ, "HOME": str(folder)}
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
