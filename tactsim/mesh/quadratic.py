@@ -11,6 +11,8 @@ from tactsim.errors import InputError
 
 Array = np.ndarray
 
+FLAT = 1e-12
+"""Determinant of an element's sides over a power of the longest below which it is flat: round-off of its coordinates."""
 _EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
 _MIRROR = {2: [0, 2, 1, 5, 4, 3], 3: [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
 _FACETS = {2: ((0, 1), (1, 2), (2, 0)), 3: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))}
@@ -72,9 +74,11 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
     Raises
     ------
     InputError
-        If an element is flat, a coordinate is not finite or an index has no coordinates.
+        If there is no element, one is flat, a coordinate is not finite or an index has no coordinates.
     """
     dim = corners.shape[1]
+    if not len(simplices):
+        raise InputError("the mesh has no elements")
     if simplices.min() < 0 or simplices.max() >= len(corners):
         raise InputError(f"element indices run from {simplices.min()} to {simplices.max()}; allowed: 0 to {len(corners) - 1}")
     if not np.isfinite(corners).all():
@@ -85,9 +89,11 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
     unique, number = np.unique(edges, axis=0, return_inverse=True)
     middles = len(corners) + number.reshape(len(_EDGES[dim]), -1).T
     elements = np.hstack([simplices, middles]).astype(np.int64)
-    volume = np.linalg.det(np.moveaxis(corners[simplices[:, 1:]] - corners[simplices[:, :1]], 1, 2))
-    if not (volume != 0).all():
-        raise InputError(f"element {int(np.flatnonzero(volume == 0)[0])} of the mesh is flat")
+    sides = corners[simplices[:, 1:]] - corners[simplices[:, :1]]
+    volume = np.linalg.det(np.moveaxis(sides, 1, 2))
+    flat = np.abs(volume) <= FLAT * np.linalg.norm(sides, axis=2).max(axis=1) ** dim
+    if flat.any():
+        raise InputError(f"element {int(np.flatnonzero(flat)[0])} of the mesh is flat")
     mirrored = volume < 0
     elements[mirrored] = elements[mirrored][:, _MIRROR[dim]]
     nodes = np.vstack([corners, corners[unique].mean(axis=1)])

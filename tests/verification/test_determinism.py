@@ -1,0 +1,76 @@
+"""The same case gives the same numbers: twice in one process, and with one thread or two (design, decision 8)."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from solids import assert_close, body_of, box, facets_where, held, on_plane
+
+from tactsim.fem.newton import Problem
+from tactsim.fem.pressure import FollowerPressure
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+
+TESTS = Path(__file__).parents[1]
+MEASURES = {2: "axisymmetric", 3: "solid"}
+TOLERANCE = 1e-12
+"""Of unknowns between runs with different numbers of threads: the direct solver may add in another order."""
+
+
+def inflated_block(dim: int, spoil: float = 0.0) -> np.ndarray:
+    """Unknowns of a block glued to its base under pressure on its side; c01 is changed by the part ``spoil``."""
+    mesh = box([1.0] * dim, [12, 12] if dim == 2 else [4, 4, 4], jitter=0.2)
+    body = body_of(mesh, MEASURES[dim], MooneyRivlin2(c10=1.0, c01=0.25 * (1 + spoil)))
+    load = FollowerPressure(body.space, facets_where(mesh, on_plane(0, 1.0)), body.pattern, 0.4)
+    fixed = np.concatenate([held(mesh, axis, on_plane(1, 0.0)) for axis in range(dim)] + [held(mesh, 0, on_plane(0, 0.0))])
+    problem = Problem(body, fixed)
+    unknowns = problem.solve(np.zeros(body.space.size), loads=[load]).unknowns
+    problem.solver.close()
+    return unknowns
+
+
+def forces_and_tangent(dim: int, threads: int, spoil: float = 0.0) -> np.ndarray:
+    """Residual and tangent entries of a deformed body, assembled by so many threads."""
+    body = body_of(box([1.0] * dim, [8] * dim, jitter=0.2), MEASURES[dim], MooneyRivlin2(c10=1.0, c01=0.25 * (1 + spoil)))
+    unknowns = np.random.default_rng(3).uniform(-0.01, 0.01, body.space.size)
+    before = numba.get_num_threads()
+    numba.set_num_threads(min(threads, before))
+    found = np.concatenate([body.residual(unknowns), body.tangent(unknowns)])
+    numba.set_num_threads(before)
+    return found
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_forces_and_tangent_are_equal_bit_by_bit_whatever_the_threads(dim):
+    assert (forces_and_tangent(dim, 1) == forces_and_tangent(dim, 2)).all()
+    assert not (forces_and_tangent(dim, 1) == forces_and_tangent(dim, 1, spoil=1e-15)).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_two_solutions_in_one_process_are_equal(dim, one_thread):
+    first = inflated_block(dim)
+    assert_close(inflated_block(dim), first, TOLERANCE)
+    with pytest.raises(AssertionError):
+        assert_close(inflated_block(dim, spoil=1e-10), first, TOLERANCE)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_one_thread_and_two_give_the_same(dim, tmp_path):
+    program = f"import numpy, test_determinism as t; numpy.save('unknowns.npy', t.inflated_block({dim}))"
+    found = []
+    for threads in ("1", "2"):
+        environment = os.environ | {
+            "NUMBA_NUM_THREADS": threads,
+            "MKL_NUM_THREADS": threads,
+            "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS / "verification")]),
+        }
+        subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=environment, check=True)
+        found.append(np.load(tmp_path / "unknowns.npy"))
+    assert_close(*found, TOLERANCE)
+    with pytest.raises(AssertionError):
+        assert_close(found[0], inflated_block(dim, spoil=1e-10), TOLERANCE)
