@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import functools
 import importlib.util
 import platform
+import weakref
 from typing import Any, Protocol
 
 import numpy as np
@@ -35,69 +37,79 @@ class DirectSolver(Protocol):
 
 
 class Pardiso:
-    """MKL Pardiso for nonsymmetric matrices, through pypardiso's binding."""
+    """MKL Pardiso for nonsymmetric matrices, through pypardiso's binding; its memory goes when the object goes."""
 
     name = "pardiso"
 
     def __init__(self) -> None:
-        self._solver = _pardiso_module().PyPardisoSolver(mtype=11)
-        self._pattern: tuple[Array, Array] | None = None
-        self._matrix: csr_matrix | None = None
+        self._solver = _fresh_binding()
+        self._system: tuple[Array, Array, Array] | None = None
 
     def factor(self, matrix: csr_matrix) -> None:
         """Factor; analyses the pattern on the first call."""
-        if self._pattern is None:
-            self._pattern = (matrix.indptr.astype(np.int32) + 1, matrix.indices.astype(np.int32) + 1)
+        if self._system is None:
+            indptr, indices = matrix.indptr.astype(np.int32) + 1, matrix.indices.astype(np.int32) + 1
+            self._release = weakref.finalize(self, _call_pardiso, self._solver, -1, (np.zeros(0),) * 3, np.zeros(0))
             phase = 12
         else:
+            _, indptr, indices = self._system
             phase = 22
-        self._matrix = matrix
-        self._call(phase, np.zeros(matrix.shape[0]))
+        self._system = (matrix.data, indptr, indices)
+        _call_pardiso(self._solver, phase, self._system, np.zeros(matrix.shape[0]))
 
     def solve(self, right: Array) -> Array:
         """Solution for one right-hand side (n,)."""
-        return self._call(33, right)
+        if self._system is None:
+            raise InputError("factor a matrix before solving")
+        return _call_pardiso(self._solver, 33, self._system, right)
 
     def close(self) -> None:
-        """Release MKL's memory."""
-        if self._pattern is not None:
-            self._call(-1, np.zeros(0))
-            self._pattern = self._matrix = None
+        """Release MKL's memory; the next matrix may have another pattern."""
+        if self._system is not None:
+            self._release()
+            self._system = None
 
-    def _call(self, phase: int, right: Array) -> Array:
-        solver, matrix = self._solver, self._matrix
-        if self._pattern is None or matrix is None:
-            raise InputError("factor a matrix before solving")
-        right = np.ascontiguousarray(right, dtype=float)
-        solution = np.zeros_like(right)
-        error = ctypes.c_int32(0)
-        integer = ctypes.POINTER(ctypes.c_int32)
-        real = ctypes.POINTER(ctypes.c_double)
 
-        def number(value: int) -> Any:
-            return ctypes.byref(ctypes.c_int32(value))
+def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array) -> Array:
+    """One phase of Pardiso: 12 analyse and factor, 22 factor, 33 solve, -1 release; ``system`` is data, indptr and indices."""
+    right = np.ascontiguousarray(right, dtype=float)
+    solution = np.zeros_like(right)
+    error = ctypes.c_int32(0)
+    integer, real = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_double)
 
-        solver._mkl_pardiso(
-            solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0])),
-            number(1),
-            number(1),
-            number(solver.mtype),
-            number(phase),
-            number(matrix.shape[0]),
-            matrix.data.ctypes.data_as(real),
-            self._pattern[0].ctypes.data_as(integer),
-            self._pattern[1].ctypes.data_as(integer),
-            solver.perm.ctypes.data_as(integer),
-            number(1),
-            solver.iparm.ctypes.data_as(integer),
-            number(0),
-            right.ctypes.data_as(real),
-            solution.ctypes.data_as(real),
-            ctypes.byref(error),
-        )
-        if error.value != 0:
-            raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
-        return solution
+    def number(value: int) -> Any:
+        return ctypes.byref(ctypes.c_int32(value))
+
+    data, indptr, indices = system
+    solver._mkl_pardiso(
+        solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0])),
+        number(1),
+        number(1),
+        number(solver.mtype),
+        number(phase),
+        number(len(right)),
+        data.ctypes.data_as(real),
+        indptr.ctypes.data_as(integer),
+        indices.ctypes.data_as(integer),
+        solver.perm.ctypes.data_as(integer),
+        number(1),
+        solver.iparm.ctypes.data_as(integer),
+        number(0),
+        right.ctypes.data_as(real),
+        solution.ctypes.data_as(real),
+        ctypes.byref(error),
+    )
+    if error.value != 0:
+        raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
+    return solution
+
+
+def _fresh_binding() -> Any:
+    """pypardiso's binding with handles of its own."""
+    binding = _pardiso_binding()
+    fresh = copy.copy(binding)
+    fresh.pt, fresh.iparm, fresh.perm = np.zeros_like(binding.pt), np.zeros_like(binding.iparm), np.zeros_like(binding.perm)
+    return fresh
 
 
 class SuperLU:
@@ -160,7 +172,8 @@ def direct_solver(name: str | None = None) -> DirectSolver:
 
 
 @functools.cache
-def _pardiso_module() -> Any:
+def _pardiso_binding() -> Any:
+    """A solver that has never been used, to copy: making one searches the disk for MKL, which takes 0.2 s."""
     import pypardiso
 
-    return pypardiso
+    return pypardiso.PyPardisoSolver(mtype=11)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 from solids import assert_close, body_of, box, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem import linear
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -72,6 +75,31 @@ def test_solving_before_factoring_or_after_closing_is_refused(name):
     solver.close()
     with pytest.raises(InputError, match="factor a matrix"):
         solver.solve(right)
+
+
+def test_a_closed_solver_takes_a_matrix_of_another_pattern():
+    solver = direct_solver("pardiso")
+    for dim in (2, 3):
+        matrix, right = tangent_of(dim, axes=dim)
+        assert_close(solved(solver, matrix, right), solved(direct_solver("superlu"), matrix, right), 1e-9)
+        solver.close()
+
+
+def test_pardiso_releases_its_memory_when_it_is_forgotten(monkeypatch):
+    phases = []
+    call = linear._call_pardiso
+
+    def noted(solver, phase, system, right):
+        phases.append(phase)
+        return call(solver, phase, system, right)
+
+    monkeypatch.setattr(linear, "_call_pardiso", noted)
+    solver = direct_solver("pardiso")
+    solved(solver, *tangent_of(2, axes=2))
+    assert phases == [12, 33]
+    del solver
+    gc.collect()
+    assert phases == [12, 33, -1]
 
 
 def test_an_unknown_solver_is_refused_by_name():
