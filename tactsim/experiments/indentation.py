@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -11,15 +10,14 @@ from pydantic import Field, model_validator
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
-from tactsim.contact.penalty import Regularisation
-from tactsim.contact.punch import Punch
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.indentation_model import IndentationModel
+from tactsim.experiments.indentation_path import indentation_path
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.specimen import Specimen
-from tactsim.fem.loading import Event, PathFollower, StepControl
+from tactsim.fem.loading import StepControl
 from tactsim.interfaces import ContactLaw, Experiment, Progress, RigidBody
-from tactsim.mesh.axisymmetric import edge_graded
+from tactsim.mesh.axisymmetric import Size, edge_graded
 from tactsim.registry import tagged_union
 from tactsim.results.result import Result, Status
 from tactsim.units import FrozenModel, Length, format_quantity
@@ -28,8 +26,6 @@ Array = np.ndarray
 
 AnyBody: Any = tagged_union("tactsim.contact", RigidBody)
 AnyLaw: Any = tagged_union("tactsim.contact", ContactLaw)
-EVENT_TOLERANCE = 1e-5
-"""Tolerance of the displacement at the threshold, as a part of the recess."""
 
 
 class MeshSettings(FrozenModel):
@@ -43,6 +39,8 @@ class MeshSettings(FrozenModel):
     """Largest element size; by default a fifth of the specimen's thickness."""
     refinement: Annotated[float, Field(gt=0)] = 1.0
     """Divides every size: 2 halves the elements."""
+    adaptive: bool = True
+    """Whether elements that sliding and stretching make too long are split on the way."""
 
 
 class StepSettings(FrozenModel):
@@ -121,15 +119,18 @@ class Indentation(Experiment):
         """Largest penetration in m."""
         return self.penetration_tolerance or 1e-4 * self.contact_radius
 
-    def model(self) -> IndentationModel:
-        """The finite element model."""
+    def size(self) -> Size:
+        """Wanted element size in m, at points in the frame of the body at first touch."""
         settings, (rims, reach, finest) = self.mesh, self._focus()
         finest = settings.finest or finest
         coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
         edges = np.array([(r, 0.0) for r in rims or [0.0]])
         n = settings.refinement
-        size = edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
-        mesh = self.specimen.mesh(size, rims)
+        return edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
+
+    def model(self) -> IndentationModel:
+        """The finite element model."""
+        mesh = self.specimen.mesh(self.size(), self._focus()[0])
         facets, _ = mesh.boundary_facets()
         flat_top = self._on_top(mesh.nodes[facets])
         return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=facets[flat_top])
@@ -155,7 +156,7 @@ class Indentation(Experiment):
         model = self.model()
         record = IndentationRecord(self, model, begin)
         try:
-            for state, event in self._path(model, record):
+            for state, event in indentation_path(self, model, record):
                 progress(record.accept(state, threshold=event))
         except ConvergenceError as error:
             return record.result(Status.FAILED, f"stopped converging: {error}")
@@ -166,29 +167,8 @@ class Indentation(Experiment):
             return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")
         return record.result(Status.CONVERGED, "threshold reached" if self.stop == "threshold" else "displacement reached")
 
-    def _path(self, model: IndentationModel, record: IndentationRecord) -> Iterator[tuple[IndentationState, bool]]:
-        """Accepted states, each with whether it is the threshold."""
-        height = model.touching_height(self.body)
-        record.starting_height = height
-        softest = min(material.shear_modulus for material in self.specimen.materials)
-        scale = Regularisation(self.tolerance, softest, switch_length=0.03 * self.contact_radius)
-        state = model.start([(self.body, height)], self.contact, scale)
-        follower = PathFollower(model.advance, self._control())
-        record.follower = follower
-        recess = self.recess
-        event: Event[IndentationState] | None = None
-        if recess is not None:
-            event = Event(lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
-        touched = False
-        start = state
-        for state, touched in follower.follow(start, self.displacement, event):
-            yield state, touched
-        if recess is not None and touched and self.stop == "displacement" and state.load < self.displacement:
-            sensor = Punch(radius=self.body.inner_radius, height=self.body.height)
-            state = model.with_contact(state, model.contact(sensor, self.contact, height - state.load + recess))
-            yield from follower.follow(state, self.displacement)
-
-    def _control(self) -> StepControl:
+    def control(self) -> StepControl:
+        """Lengths of the load steps in m."""
         first = self.steps.first or 1e-3 * self.contact_radius
         largest = self.steps.largest or 0.05 * self.contact_radius
         return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first)

@@ -16,6 +16,8 @@ from tactsim.fem.newton import Problem
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody
+from tactsim.mesh.adaptation import Refinement, refined
+from tactsim.mesh.axisymmetric import Size
 from tactsim.mesh.quadratic import QuadraticMesh
 
 Array = np.ndarray
@@ -49,7 +51,7 @@ class IndentationModel:
     """
 
     def __init__(self, mesh: QuadraticMesh, materials: Sequence[Material], *, base: str, top: Array):
-        self.mesh, self.top = mesh, top
+        self.mesh, self.top, self.base = mesh, top, base
         self.space = TaylorHood(mesh.nodes, mesh.elements, "axisymmetric")
         self.body = Body(self.space, materials, mesh.regions)
         self.points = self.space.surface_points(top)
@@ -121,6 +123,28 @@ class IndentationModel:
                 )
             guess = solved.unknowns
         raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+
+    def too_coarse(self, state: IndentationState, size: Size, factor: float) -> Array:
+        """Elements (numbers) whose longest deformed edge exceeds ``factor`` times the size wanted where it is now."""
+        place = state.contacts[0].place
+        deformed = self.mesh.nodes + self.space.split(state.unknowns)[0] - place
+        corners = deformed[self.mesh.elements[:, :3]]
+        edges = corners - np.roll(corners, 1, axis=1)
+        middles = corners - edges / 2
+        wanted = size(middles.reshape(-1, 2)).reshape(-1, 3)
+        return np.flatnonzero((np.linalg.norm(edges, axis=2) > factor * wanted).any(axis=1))
+
+    def refined(self, state: IndentationState, marked: Array) -> tuple[IndentationModel, IndentationState, Refinement]:
+        """A model with these elements split, and the same state on it: nested spaces lose nothing of the displacement."""
+        u, p = self.space.split(state.unknowns)
+        split = refined(self.mesh, marked, self.mesh.nodes + u)
+        top = split.facets_on(self.mesh, self.top)
+        model = IndentationModel(split.mesh, self.body.materials, base=self.base, top=top)
+        unknowns = np.concatenate([(split.nodal @ u).ravel(), split.corner @ p])
+        displacement = model.displacement(unknowns)
+        contacts = tuple(contact.on(model.surface, model.reference, displacement) for contact in state.contacts)
+        kinematics = model.body.kinematics(unknowns)
+        return model, replace(state, unknowns=unknowns, contacts=contacts, kinematics=kinematics), split
 
     def displacement(self, unknowns: Array) -> Array:
         """Displacements (2, n) in m of the surface points."""

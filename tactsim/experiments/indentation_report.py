@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.experiments.indentation_model import IndentationModel, IndentationState
 from tactsim.materials.stability import strongly_elliptic
+from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
 
@@ -37,10 +38,11 @@ class IndentationRecord:
     def __init__(self, experiment: Indentation, model: IndentationModel, begin: float):
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
-        self.follower: Any = None
         self.steps: list[StepRecord] = []
         self.frames: list[FieldFrame] = []
         self.threshold: dict[str, float] = {}
+        self.adaptations = 0
+        self.rejected_steps = 0
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._setup_time = time.perf_counter() - begin
 
@@ -54,6 +56,15 @@ class IndentationRecord:
         face = self.starting_height - state.load
         highest, axis = self.model.highest(state.unknowns, self.experiment.body.inner_radius)
         return highest - face, axis - face
+
+    def adapted(self, model: IndentationModel, split: Refinement) -> None:
+        """Go on with a refined model: a child has left ellipticity where the nearest point of its parent has."""
+        old = model.body.points.pressure_values.T
+        new = np.einsum("ekv,kq->evq", split.barycentric, old)
+        nearest = np.linalg.norm(new[:, :, :, None] - old[None, :, None, :], axis=1).argmin(axis=2)
+        self._unstable = np.take_along_axis(self._unstable[split.parents], nearest, axis=1)
+        self.model = model
+        self.adaptations += 1
 
     def accept(self, state: IndentationState, *, threshold: bool) -> StepRecord:
         """Record an accepted state."""
@@ -191,8 +202,10 @@ class IndentationRecord:
             "unknowns": space.size,
             "elements": len(space.elements),
             "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self.follower.rejected if self.follower else 0,
+            "rejected_steps": self.rejected_steps,
             "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "remeshings": 0,
+            "mesh_adaptations": self.adaptations,
             "starting_height": self.starting_height,
+            "body": self.experiment.body.model_dump(mode="json"),
+            "recess": self.experiment.recess,
         }

@@ -43,6 +43,22 @@ class PosedContact:
         """The pair after a step was accepted at displacements (d, n) of the points."""
         return replace(self, state=self.at(displacement).commit())
 
+    def on(self, surface: SurfaceAssembly, reference: Array, displacement: Array) -> PosedContact:
+        """The same contact on the finer points of another mesh: forces interpolated along the surface, by the undeformed radius.
+
+        ``displacement`` (2, m) are those of the new points at the accepted state.
+        """
+        old = np.argsort(self.reference[0])
+        pressure, *tangential = (
+            np.interp(reference[0], self.reference[0, old], values[old])
+            for values in (self.state.pressure, *self.state.tangential)
+        )
+        points = reference + displacement - self.place[:, None]
+        normals = self.pair.body.signed_distance(points)[1]
+        traction = np.array(tangential)
+        traction = traction - np.einsum("in,in->n", traction, normals) * normals
+        return replace(self, surface=surface, reference=reference, state=ContactState(pressure, traction, points, normals))
+
     def at(self, displacement: Array) -> ContactTraction:
         """Contact that holds at displacements (d, n) of the points."""
         return self.pair.converged(self._points(displacement), self.state)
