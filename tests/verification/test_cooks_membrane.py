@@ -84,7 +84,7 @@ def assert_printed(values: tuple[float, ...], printed: tuple[float, ...]) -> Non
     assert np.abs(np.subtract(values, printed)).max() <= 0.51e-4, f"{values}, printed {printed}"
 
 
-@pytest.mark.parametrize("count", LADDER)
+@pytest.mark.parametrize("count", [pytest.param(count, marks=[pytest.mark.slow] * (count > 16)) for count in LADDER])
 def test_uniform_ladder_to_the_printed_digits(count):
     values = tip_displacements(quadratic(uniform_mesh(count)))
     assert_printed(values, LADDER[count])

@@ -24,7 +24,7 @@ TOLERANCE = 1e-12
 
 def inflated_block(dim: int, spoil: float = 0.0) -> np.ndarray:
     """Unknowns of a block glued to its base under pressure on its side; c01 is changed by the part ``spoil``."""
-    mesh = box([1.0] * dim, [12, 12] if dim == 2 else [4, 4, 4], jitter=0.2)
+    mesh = box([1.0] * dim, [12, 12] if dim == 2 else [3, 3, 3], jitter=0.2)
     body = body_of(mesh, MEASURES[dim], MooneyRivlin2(c10=1.0, c01=0.25 * (1 + spoil)))
     load = FollowerPressure(body.space, facets_where(mesh, on_plane(0, 1.0)), body.pattern, 0.4)
     fixed = np.concatenate([held(mesh, axis, on_plane(1, 0.0)) for axis in range(dim)] + [held(mesh, 0, on_plane(0, 0.0))])
