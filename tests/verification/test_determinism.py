@@ -60,7 +60,7 @@ def test_two_solutions_in_one_process_are_equal(dim, one_thread):
         assert_close(inflated_block(dim, spoil=1e-10), first, TOLERANCE)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_one_thread_and_two_give_the_same(dim, tmp_path):
     program = f"import numpy, test_determinism as t; numpy.save('unknowns.npy', t.inflated_block({dim}))"
     found = []

@@ -106,7 +106,10 @@ def test_orders_of_convergence(name):
         assert_orders([order - 3 * TOLERANCE for order in orders])
 
 
-@pytest.mark.parametrize("name", ["axisymmetric-incompressible", "plane_strain-compressible", "solid-incompressible"])
+@pytest.mark.parametrize(
+    "name",
+    ["axisymmetric-incompressible", pytest.param("solid-incompressible", marks=pytest.mark.slow), "plane_strain-compressible"],
+)
 def test_loads_of_a_material_with_c01_wrong_by_a_percent_are_seen(name):
     wrong = CASES[name].material.model_copy(update={"c01": 0.505})
     with pytest.raises(AssertionError):
