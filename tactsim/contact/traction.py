@@ -105,7 +105,8 @@ class ContactPair:
     def linearised(self, points: Array, state: ContactState, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative at points (d, n), each point open, sticking or slipping as the iterate decides.
 
-        The pressure of a closed point may come out negative on the way; it opens in the next iteration.
+        The pressure of a closed point may come out negative on the way; it opens in the next iteration. A slipping point takes
+        the direction of its slip, unless that has turned back against the force it carries.
         """
         gap, normal, hessian = self.body.signed_distance(points)
         closed = (iterate.pressure > 0) | (gap < 0)
@@ -114,10 +115,12 @@ class ContactPair:
         slope = np.where(closed, -self.penalty, 0.0) * normal
         trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
         decider, decider_slope = self._decider(iterate.tangential, normal, hessian, (trial, trial_slope))
-        size = np.linalg.norm(decider, axis=0)
         limit = self.law.traction_limit(weight)
-        slips = closed & (size > limit)
+        slips = closed & (np.linalg.norm(decider, axis=0) > limit)
         sticks = closed & ~slips
+        forward = np.einsum("in,in->n", decider, trial) > 0
+        decider, decider_slope = np.where(forward, trial, decider), np.where(forward, trial_slope, decider_slope)
+        size = np.linalg.norm(decider, axis=0)
         direction = np.where(slips, decider / np.where(size > 0, size, 1.0), 0.0)
         across = np.eye(len(points))[:, :, None] - direction[:, None] * direction[None, :]
         spread = np.where(slips, limit, 0.0) / np.where(slips, size, 1.0)
@@ -139,8 +142,10 @@ class ContactPair:
         return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
 
     def _decider(self, carried: Array, normal: Array, hessian: Array, trial: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Traction (d, n) whose size decides between stick and slip and whose direction is that of slip, and its derivative:
-        the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it."""
+        """Traction (d, n) whose size decides between stick and slip, and its derivative.
+
+        It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
+        """
         share = min(1.0, self.switch_stiffness / self.tangential_penalty)
         across = np.einsum("in,in->n", carried, normal)
         plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]

@@ -17,6 +17,9 @@ from tactsim.fem.surface import SurfaceAssembly
 Array = np.ndarray
 
 
+CYCLE_AFTER = 10
+CYCLE_RATIO = 0.9
+"""A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, goes in a circle."""
 ROUND_OFF = 128 * np.finfo(float).eps
 """Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
 
@@ -62,6 +65,8 @@ class NewtonOptions:
     """Largest residual over the largest nodal force (not below round-off), and over the mean nodal volume."""
     max_iterations: int = 25
     smallest_damping: float = 1 / 256
+    relaxation: float = 0.5
+    """Step length once the residual moves in circles."""
     patience: int = 8
     """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
     volume_floor: float = 0.2
@@ -129,13 +134,19 @@ class Problem:
                 break
             now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
             step = self._linear_step(unknowns, kinematics, internal, (interfaces, now, loads))
-            damping, kinematics = self._damped(unknowns, step, kinematics)
+            largest = options.relaxation if self._cycles(history) else 1.0
+            damping, kinematics = self._damped(unknowns, step, kinematics, largest)
             unknowns = unknowns + damping * step
             carried = [
                 interface.advanced(n, c, self._displacement(step, interface), damping)
                 for interface, n, c in zip(interfaces, now, carried, strict=True)
             ]
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
+
+    @staticmethod
+    def _cycles(history: list[float]) -> bool:
+        """Whether the residual is back where it was: contact points that switch together in a circle need shorter steps."""
+        return len(history) > CYCLE_AFTER and history[-1] > CYCLE_RATIO * min(history[-5:-1])
 
     def _stagnates(self, history: list[float]) -> bool:
         """Whether the last iterations brought nothing, as when contact points switch to and fro."""
@@ -161,9 +172,9 @@ class Problem:
             force = interface.surface.force(traction)
             scale = max(scale, float(np.abs(force).max()))
             residual -= force
-            noise += interface.surface.force(np.broadcast_to(lost, traction.shape))[:split]
+            noise += interface.surface.largest_force(lost)[:split]
         residual = self.constraints.free(residual)
-        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, np.abs(noise) / self.options.tolerance)).max()
+        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.options.tolerance)).max()
         return float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
 
     def _linear_step(self, unknowns: Array, kinematics: Kinematics, internal: Array, parts: tuple[Any, ...]) -> Array:
@@ -178,10 +189,9 @@ class Problem:
         matrix = self.body.pattern.matrix(self.constraints.apply(data))
         return solved(self.solver, matrix, -self.constraints.free(residual))
 
-    def _damped(self, unknowns: Array, step: Array, before: Kinematics) -> tuple[float, Kinematics]:
-        """Largest step length, halving from 1, that keeps every element right side out."""
+    def _damped(self, unknowns: Array, step: Array, before: Kinematics, damping: float) -> tuple[float, Kinematics]:
+        """Largest step length, halving from ``damping``, that keeps every element right side out."""
         floor = self.options.volume_floor * min(1.0, float(before.J.min()))
-        damping = 1.0
         while damping >= self.options.smallest_damping:
             after = self._admissible(unknowns + damping * step, floor)
             if after is not None:

@@ -1,0 +1,103 @@
+"""Every registered rigid body and contact law, in the section and in space: distances, derivatives, the friction cone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.contact.traction import ContactPair, ContactState
+from tactsim.interfaces import ContactLaw, RigidBody
+from tactsim.registry import kinds
+
+BODIES = kinds("tactsim.contact", RigidBody)
+LAWS = kinds("tactsim.contact", ContactLaw)
+
+
+def near(body, dim, count=400):
+    """Random points (dim, n) of the scale of the body, away from where the distance has kinks, with their distance."""
+    generator = np.random.default_rng(7)
+    scale = float(getattr(body, "outer_radius", getattr(body, "radius", 1e-3)))
+    points = generator.uniform(-1.5, 1.5, (dim, 20 * count)) * scale
+    if dim == 2:
+        points[0] = np.abs(points[0])
+    distance = body.signed_distance(points)[0]
+    fillet = float(getattr(body, "fillet", 0.0))
+    keep = np.abs(distance) < max(0.3 * fillet, 0.02 * scale)
+    return points[:, keep][:, :count], scale
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("kind", sorted(BODIES))
+def test_normal_and_hessian_are_the_derivatives_of_the_distance(kind, dim):
+    body = BODIES[kind].example()
+    points, scale = near(body, dim)
+    _, normal, hessian = body.signed_distance(points)
+    step = 1e-7 * scale
+    smooth = np.ones(points.shape[1], bool)
+    for axis in range(dim):
+        shift = np.zeros((dim, 1))
+        shift[axis] = step
+        above, below = body.signed_distance(points + shift), body.signed_distance(points - shift)
+        smooth &= np.linalg.norm(above[1] - below[1], axis=0) < 1e-4
+        np.testing.assert_allclose(((above[0] - below[0]) / (2 * step))[smooth], normal[axis][smooth], atol=1e-6)
+        slope = (above[1] - below[1]) / (2 * step) * scale
+        np.testing.assert_allclose(slope[:, smooth], hessian[:, axis][:, smooth] * scale, atol=2e-4)
+    assert smooth.mean() > 0.8
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=0), 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", sorted(BODIES))
+def test_section_and_space_agree(kind):
+    body = BODIES[kind].example()
+    flat, _ = near(body, 2)
+    turned = np.stack([flat[0] * np.cos(0.7), flat[0] * np.sin(0.7), flat[1]])
+    np.testing.assert_allclose(body.signed_distance(turned)[0], body.signed_distance(flat)[0], atol=1e-15)
+
+
+def pressed(body, law, dim):
+    """A pair, a state with friction, and points that have moved on from it."""
+    generator = np.random.default_rng(3)
+    points, scale = near(body, dim)
+    gap, normal, _ = body.signed_distance(points)
+    points = points - (gap + generator.uniform(-1e-6, 2e-6, gap.shape)) * normal
+    normal = body.signed_distance(points)[1]
+    pair = ContactPair(body, law, penalty=1e9, tangential_penalty=2e8, switch_stiffness=1e9)
+    moved = points + generator.normal(size=points.shape) * 1e-7 * scale / 1e-3
+    old = generator.normal(size=points.shape) * 200
+    old = old - np.einsum("in,in->n", old, normal) * normal
+    return pair, ContactState(np.zeros(points.shape[1]), old, points, normal), moved
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("law", sorted(LAWS))
+@pytest.mark.parametrize("kind", sorted(BODIES))
+def test_tractions_stay_in_the_cone_and_never_pull(kind, law, dim):
+    law = LAWS[law].example()
+    pair, state, moved = pressed(BODIES[kind].example(), law, dim)
+    found = pair.converged(moved, state)
+    assert (found.pressure >= 0).all()
+    assert (found.pressure > 0).any()
+    size = np.linalg.norm(found.tangential, axis=0)
+    assert (size <= law.traction_limit(found.pressure) * (1 + 1e-8)).all()
+    np.testing.assert_allclose(np.einsum("in,in->n", found.tangential, found.normal), 0, atol=1e-9 * max(size.max(), 1))
+    if np.isfinite(law.traction_limit(found.pressure)).all():
+        assert not (size * (1 + 3e-8) <= law.traction_limit(found.pressure) * (1 - 1e-8)).all(), "some points slip"
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("law", sorted(LAWS))
+@pytest.mark.parametrize("kind", sorted(BODIES))
+def test_newton_sees_the_derivative_of_the_traction(kind, law, dim):
+    pair, state, moved = pressed(BODIES[kind].example(), LAWS[law].example(), dim)
+    carried = pair.iterate(pair.converged(moved, state).commit())
+    now = pair.linearised(moved, state, carried)
+    np.testing.assert_allclose(now.traction, pair.converged(moved, state).traction, atol=1e-6 * np.abs(now.traction).max())
+    step = 1e-12
+    for axis in range(dim):
+        shift = np.zeros((dim, 1))
+        shift[axis] = step
+        above = pair.linearised(moved + shift, state, carried).traction
+        below = pair.linearised(moved - shift, state, carried).traction
+        slope = (above - below) / (2 * step)
+        kink = np.abs(slope - now.derivative[:, axis]).max(axis=0) > 1e-3 * pair.penalty
+        assert kink.mean() < 0.05

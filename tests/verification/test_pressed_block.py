@@ -1,0 +1,102 @@
+"""A block squeezed by a rigid plane: the exact homogeneous state without friction, the cone and balance with it; 2D and 3D."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from skfem import MeshTet, MeshTri
+
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.plane import Plane
+from tactsim.contact.stick import Stick
+from tactsim.contact.traction import ContactPair
+from tactsim.experiments.posed_contact import PosedContact
+from tactsim.fem.body import Body
+from tactsim.fem.newton import Problem
+from tactsim.fem.space import TaylorHood
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mesh.quadratic import from_skfem
+
+NOMINAL = {0.9: 0.855007, 0.8: 2.001562, 0.7: 3.639359}
+"""Nominal pressure at c10 = 1, c01 = 0.25 in uniaxial compression, -2 (l - l^-2)(c10 + c01 / l), to the digits given."""
+MATERIAL = MooneyRivlin2(c10=1.0, c01=0.25)
+MEASURES = ("axisymmetric", "solid")
+
+
+class Press:
+    """A unit cylinder or cube on rollers (or glued) under a plane that comes down."""
+
+    def __init__(self, measure, law, *, glued=False, cells=3, tolerance=1e-7):
+        lines = np.linspace(0, 1, cells + 1)
+        mesh = from_skfem(MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines))
+        dim = mesh.dim
+        self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
+        self.body = Body(self.space, [MATERIAL], mesh.regions)
+        facets, _ = mesh.boundary_facets()
+        top = facets[(mesh.nodes[facets][..., -1] == 1).all(axis=1)]
+        points = self.space.surface_points(top)
+        self.surface = SurfaceAssembly(points, self.body.pattern, dim)
+        base = np.flatnonzero(mesh.nodes[:, -1] == 0)
+        held = [base * dim + axis for axis in range(dim)] if glued else [base * dim + dim - 1]
+        held += [np.flatnonzero(mesh.nodes[:, axis] == 0) * dim + axis for axis in range(dim - 1)]
+        self.base, self.problem = base * dim + dim - 1, Problem(self.body, np.concatenate(held))
+        self.scale = Regularisation(tolerance=tolerance, softest=MATERIAL.shear_modulus, switch_length=0.1)
+        place = np.zeros(dim)
+        place[-1] = 1.0
+        pair = self.scale.applied(ContactPair(Plane(), law))
+        self.contact = PosedContact.apart(self.surface, points.interpolate(mesh.nodes), pair, place)
+        self.unknowns = np.zeros(self.space.size)
+
+    def to(self, height, steps=4):
+        start = self.contact.place[-1]
+        for level in np.linspace(start, height, steps + 1)[1:]:
+            place = self.contact.place.copy()
+            place[-1] = level
+            moved = self.contact.moved(place, self.scale.applied(self.contact.pair))
+            solved = self.problem.solve(self.unknowns, interfaces=[moved])
+            self.unknowns = solved.unknowns
+            displacement = self.displacement
+            self.found = moved.at(displacement)
+            self.contact, self.scale = moved.committed(displacement), self.scale.seen(self.found.pressure.max())
+        return self
+
+    @property
+    def displacement(self):
+        return self.surface.points.interpolate(self.space.split(self.unknowns)[0])
+
+    def base_force(self):
+        return self.body.residual(self.unknowns)[self.base].sum()
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("stretch", sorted(NOMINAL))
+def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
+    press = Press(measure, Coulomb(friction=0.0), cells=2).to(stretch)
+    nominal = 2 * (stretch**-2 - stretch) * (1 + 0.25 / stretch)
+    assert nominal == pytest.approx(NOMINAL[stretch], abs=5e-7), "the table prints six decimals"
+    np.testing.assert_allclose(
+        press.found.pressure, nominal, rtol=3e-6, err_msg="penetration 1e-7 of the height shifts the stretch"
+    )
+    assert press.found.pressure.mean() != pytest.approx(nominal / stretch, rel=1e-2), "Cauchy and nominal pressure differ"
+    assert -press.found.gap.min() <= 1e-7
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("law", [Coulomb(friction=0.3), Stick()], ids=["coulomb", "stick"])
+def test_friction_stays_in_its_cone_and_forces_balance(measure, law):
+    press = Press(measure, law, glued=True, tolerance=1e-4).to(0.85)
+    size = np.linalg.norm(press.found.tangential, axis=0)
+    assert (size <= law.traction_limit(press.found.pressure) * (1 + 1e-8)).all()
+    total = press.surface.total(press.found.traction)
+    assert press.base_force() == pytest.approx(-total[-1], rel=1e-8)
+    smooth = Press(measure, Coulomb(friction=0.0), glued=True, tolerance=1e-4).to(0.85)
+    assert press.surface.total(press.found.pressure[None])[0] > smooth.surface.total(smooth.found.pressure[None])[0]
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_unloading_returns_the_block(measure):
+    press = Press(measure, Coulomb(friction=0.0), cells=2).to(0.9).to(1.0 + 1e-6)
+    assert press.found.pressure.max() == 0.0
+    assert np.abs(press.displacement).max() < 1e-9
