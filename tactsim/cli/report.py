@@ -52,9 +52,14 @@ def format_values(quantity: Quantity) -> str:
     return f"{shape} values, {low} to {high}"
 
 
+VALUES_IN_A_LINE = 4
+"""How many history values a progress line shows."""
+
+
 def step_line(record: StepRecord, units: Mapping[str, str]) -> str:
-    """One line per accepted step; a value whose unit is not known is in SI."""
-    values = [f"{name} {format_quantity(value, units.get(name, ''))}" for name, value in record.values.items()]
+    """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``."""
+    shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
+    values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
     effort = f"{record.newton_iterations} iterations, residual {record.residual:.1e}"
     return "  ".join([f"step {record.step:4d}", *values, effort])
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from tactsim.identification.uniaxial import UniaxialFit, uniaxial_nominal_stress
+from tactsim.identification.uniaxial import UniaxialFit, relative_errors, uniaxial_nominal_stress
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Array, Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
@@ -53,12 +53,10 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
         curve.stretch, curve.nominal_stress * factor, "o", color="0.6", markersize=4, markevery=_every(curve), label="data"
     )
     stretch = np.linspace(curve.stretch.min(), curve.stretch.max(), CURVE_POINTS)
-    loaded = curve.nominal_stress != 0
     for style, fit in zip(_line_styles(), fits, strict=False):
         label = f"{fit.form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
         upper.plot(stretch, uniaxial_nominal_stress(fit.material, stretch) * factor, style, label=label)
-        fitted = uniaxial_nominal_stress(fit.material, curve.stretch[loaded])
-        lower.plot(curve.stretch[loaded], 100 * (fitted / curve.nominal_stress[loaded] - 1), style)
+        lower.plot(curve.stretch, 100 * relative_errors(fit.material, curve), style)
     upper.set_ylabel(f"nominal stress in {unit}")
     upper.set_title(f"{name}: uniaxial curve and fits")
     upper.legend(frameon=False)

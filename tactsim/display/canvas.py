@@ -1,0 +1,57 @@
+"""Figures without a window: made, styled and turned into PNG."""
+
+from __future__ import annotations
+
+import io
+from contextlib import AbstractContextManager
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+RESOLUTION = 160
+"""In dots per inch."""
+
+STYLE = {"font.size": 9.0, "axes.titlesize": 9.5, "axes.linewidth": 0.7, "legend.frameon": False, "lines.linewidth": 1.5}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of a size in inches."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def png(figure: Figure) -> bytes:
+    """The figure as PNG."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=RESOLUTION)
+    return content.getvalue()
+
+
+def styled() -> AbstractContextManager[Any]:
+    """A context in which new axes take the style of tactsim."""
+    return rc_context(STYLE)  # type: ignore[arg-type]
+
+
+def scale_of(largest: float, unit: str) -> tuple[float, str]:
+    """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``."""
+    for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ")):
+        if largest >= 10.0**exponent:
+            return 10.0**-exponent, f"{prefix}{unit}"
+    return 1.0, unit
+
+
+def despined(axis: Axes) -> None:
+    """Takes away the upper and right line of the frame."""
+    axis.spines[["top", "right"]].set_visible(False)
+
+
+def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: tuple[float, ...]) -> np.ndarray:
+    """Values below which the given percentages of the weight lie."""
+    order = np.argsort(values)
+    share = np.cumsum(weights[order]) / weights.sum()
+    return np.interp(np.asarray(percentiles) / 100, share, values[order])

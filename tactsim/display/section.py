@@ -1,0 +1,86 @@
+"""The deformed section of an axisymmetric body, mirrored about its axis so that both halves are seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.tri import Triangulation
+
+from tactsim.results import FieldFrame
+
+Array = np.ndarray
+
+_CORNERS_OF_QUARTERS = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
+_EDGES = [[0, 3, 1], [1, 4, 2], [2, 5, 0]]
+_PARABOLA = np.linspace(0, 1, 7)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Six-node triangles in the (r, z) half-plane with their deformation, in mm."""
+
+    frame: FieldFrame
+
+    @cached_property
+    def places(self) -> Array:
+        """Deformed nodes (n, 2) in mm."""
+        return 1e3 * (self.frame.points + self.frame.point_data["displacement [m]"])[:, :2]
+
+    @property
+    def elements(self) -> Array:
+        """Triangles (E, 6) in the order of VTK."""
+        return self.frame.cells["triangle6"]
+
+    def weights(self) -> Array:
+        """Area in mm^2 that belongs to each node, (n,)."""
+        corners = self.places[self.elements[:, :3]]
+        (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+        return np.bincount(self.elements.ravel(), np.repeat(np.abs(ax * by - ay * bx) / 12, 6), len(self.places))
+
+    def curves(self, edges: Array) -> Array:
+        """Points (k, 7, 2) in mm of edges given as (k, 3): first, middle and last node of a parabola."""
+        t = _PARABOLA[:, None]
+        first, middle, last = (self.places[edges[:, [k]]] for k in range(3))
+        return (1 - t) * (1 - 2 * t) * first + 4 * t * (1 - t) * middle + t * (2 * t - 1) * last
+
+    def edges(self) -> tuple[Array, Array]:
+        """Every edge once (k, 3), and whether it bounds the body or parts two regions."""
+        found = self.elements[:, _EDGES].reshape(-1, 3)
+        regions = self.frame.cell_data.get("region [1]", np.zeros(len(self.elements)))
+        owners = np.repeat(np.asarray(regions).ravel(), 3)
+        _, first, group, count = np.unique(found[:, 1], return_index=True, return_inverse=True, return_counts=True)
+        spread = np.zeros(len(first), bool)
+        np.logical_or.at(spread, group, owners != owners[first][group])
+        on_axis = np.abs(self.frame.points[found[first, 1], 0]) < 1e-12
+        return found[first], ((count == 1) & ~on_axis) | spread
+
+
+def draw_field(axis: Axes, section: Section, values: Array, **style: Any) -> Any:
+    """Colours both halves by nodal values; returns the mappable of the right half."""
+    quarters = section.elements[:, _CORNERS_OF_QUARTERS].reshape(-1, 3)
+    r, z = section.places.T
+    for side in (-1, 1):
+        drawn = axis.tripcolor(Triangulation(side * r, z, quarters), values, shading="gouraud", rasterized=True, **style)
+    return drawn
+
+
+def draw_mesh(axis: Axes, section: Section) -> None:
+    """Boundary and interfaces on both sides, the elements faintly on the left."""
+    edges, outline = section.edges()
+    mirror = np.array([-1.0, 1.0])
+    axis.add_collection(LineCollection(list(section.curves(edges) * mirror), colors="k", linewidths=0.25, alpha=0.35))
+    for side in (mirror, 1.0):
+        axis.add_collection(LineCollection(list(section.curves(edges[outline]) * side), colors="k", linewidths=0.9))
+
+
+def draw_body(axis: Axes, profile_distance: Array, grid: tuple[Array, Array]) -> None:
+    """A rigid body filled from its signed distance on a grid (r, z) in mm, mirrored."""
+    r, z = grid
+    for side in (-1, 1):
+        axis.contourf(side * r, z, profile_distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
+        axis.contour(side * r, z, profile_distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
