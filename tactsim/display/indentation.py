@@ -126,15 +126,15 @@ def _draw_sensor(axis: Axes, result: Result, body: RigidBody, height: float) -> 
     level, edge = height + 1e3 * recess, 1e3 * inner
     axis.plot([-edge, edge], [level, level], color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
     axis.annotate(
-        f"inner sensor\n{format_quantity(recess, 'm')} above the face",
+        f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face",
         (0.0, level),
-        (0.0, 58.0),
+        (0.0, 3.0),
         textcoords="offset points",
         ha="center",
         va="bottom",
         color=SENSOR_COLOUR,
+        fontsize=7,
         zorder=5,
-        arrowprops={"arrowstyle": "-", "color": SENSOR_COLOUR, "linewidth": 0.8},
     )
 
 
@@ -174,8 +174,13 @@ def _mark_threshold(axis: Axes, result: Result, along: float, up: float) -> None
     at, force, pressure = (result.quantities[name] for name in names)
     axis.plot(at.value * along, force.value * up, "o", color=FORCE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
     told = [format_quantity(q.value, q.unit) for q in (pressure, force, at)]
-    _label(
-        axis, (at.value * along, force.value * up), f"threshold\n{told[0]} on the annulus\n{told[1]} at {told[2]}", FORCE_COLOUR
+    axis.text(
+        0.04,
+        0.86,
+        f"threshold\n{told[0]} on the annulus\n{told[1]} at {told[2]}",
+        transform=axis.transAxes,
+        va="top",
+        color=FORCE_COLOUR,
     )
 
 

@@ -13,12 +13,16 @@ from tactsim.identification.uniaxial import UniaxialFit, relative_errors, uniaxi
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Array, Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
+from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.stability_range import PathStability, stability_range
+from tactsim.units import format_quantity
 
 SHOWN = (0.5, 2.0)
 """Stretches on the axis."""
 
 CURVE_POINTS = 301
+RANGE_IN_VIEW = (0.6, 1.75)
+"""Stretches whose stress the vertical axis holds: further out the curves are so steep that nothing else would be seen."""
 STABLE_COLOUR = "#e3f1e3"
 LOST_COLOUR = "#d62728"
 
@@ -39,7 +43,8 @@ def material_figure(material: Material, name: str) -> Figure:
     axes[0].set_ylabel(f"nominal stress in {unit}")
     labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
-    figure.suptitle(f"{name} ({material.kind}), incompressible, G = {material.shear_modulus * factor:.4g} {unit}")
+    volume = ", incompressible" if isinstance(material, Hyperelastic) else ""
+    figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}")
     return figure
 
 
@@ -95,8 +100,9 @@ def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStabili
     axis.axhline(0, color="0.6", linewidth=0.8)
     axis.axvline(1, color="0.6", linewidth=0.8)
     axis.set_xlim(*SHOWN)
-    spread = 2.5 * float(np.quantile(np.abs(stress), 0.6))
-    axis.set_ylim(max(float(stress.min()), -spread) * 1.05, min(float(stress.max()), spread) * 1.05)
+    seen = stress[(stretch >= RANGE_IN_VIEW[0]) & (stretch <= RANGE_IN_VIEW[1])]
+    margin = 0.05 * float(np.ptp(seen))
+    axis.set_ylim(seen.min() - margin, seen.max() + margin)
 
 
 def _every(curve: UniaxialCurve) -> int:

@@ -48,5 +48,13 @@ def test_an_empty_result_can_be_told() -> None:
 
 def test_a_step_is_one_line() -> None:
     record = StepRecord(12, 4, 2.1e-10, {"displacement": 6.2e-4, "share": 0.5})
-    line = step_line(record, {"displacement": "m"})
+    line = step_line(record, {"displacement": "m", "share": "1"})
     assert line == "step   12  displacement 620 µm  share 0.5  4 iterations, residual 2.1e-10"
+    assert "share 0.5" in step_line(record, {}), "without units every value is told, in SI"
+
+
+def test_a_line_shows_the_first_values_that_the_units_name() -> None:
+    names = [f"value_{number}" for number in range(7)]
+    line = step_line(StepRecord(1, 2, 0.0, dict.fromkeys(names, 1.0)), dict.fromkeys(names, "1"))
+    assert "value_3" in line
+    assert "value_4" not in line
