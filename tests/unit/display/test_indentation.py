@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from tactsim.display import figures_for
 from tactsim.display.indentation import indentation_figure
@@ -31,7 +32,7 @@ def made_up(status=Status.CONVERGED):
 
 
 def texts(figure):
-    return " ".join(text.get_text() for text in figure.findobj(lambda artist: hasattr(artist, "get_text")))
+    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def test_threshold_and_title_are_told():
