@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Array
-from tactsim.materials.homogeneous import nominal_stress, principal_invariants, uniaxial
+from tactsim.materials.homogeneous import cauchy_stress, nominal_stress, principal_invariants, uniaxial
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.invariant_polynomial import InvariantPolynomial, monomial_derivative, powers_of
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -43,6 +43,10 @@ SMALLEST_SHEAR_FRACTION = 0.2
 
 STRETCH_STATES = 31
 """Values per principal stretch at which a stable fit imposes its conditions, even in the logarithm."""
+
+
+STRESS_FLOOR = 1e-4
+"""Assumption: a relative error is taken of at least this part of the largest stress: what a load cell resolves."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,12 @@ def uniaxial_stress_as_printed(c10: float, c01: float, stretch: Array) -> Array:
 
 
 def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool = True) -> UniaxialFit:
-    """Least-squares fit of a form of ``FORMS`` to a curve, in relative or absolute stress; points without stress are left out.
+    r"""Least-squares fit of a form of ``FORMS`` to a curve; points at a stretch of exactly 1 tell nothing and are left out.
+
+    .. math:: \min_c \sum_k w_k^2 (P(\lambda_k; c) - P_k)^2, \quad w_k = 1 / \max(|P_k|, \epsilon \max_j |P_j|)
+
+    with :math:`\epsilon` = ``STRESS_FLOOR``, so that a point near rest, all noise, does not rule the fit. With ``relative`` false
+    :math:`w_k = 1 / \max_j |P_j|`. The errors of the result are relative, by the first form of :math:`w_k`.
 
     Raises
     ------
@@ -94,30 +103,44 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
     if form not in FORMS:
         raise UnknownName("form of the energy", form, FORMS)
     names = FORMS[form].coefficients
-    loaded = (curve.nominal_stress != 0) & (curve.stretch != 1)
+    loaded = curve.stretch != 1
     stretch, stress = curve.stretch[loaded], curve.nominal_stress[loaded]
-    weight = 1 / np.abs(stress) if relative else np.full_like(stress, 1 / np.abs(stress).max())
+    weight = 1 / (stress_size(curve)[loaded] if relative else np.full_like(stress, np.abs(stress).max()))
     design, target = weight[:, None] * unit_stresses(stretch, names), weight * stress
     if np.linalg.matrix_rank(design) < len(names):
         raise InvalidQuantity(f"{curve.source}: {stretch.size} points do not determine {len(names)} constants")
     fit = _elliptic_least_squares if FORMS[form].strongly_elliptic else _least_squares
     values = fit(design, target, names)
     material = _material(FORMS[form], values, curve.source)
-    error = uniaxial_nominal_stress(material, stretch) / stress - 1
+    error = relative_errors(material, curve)[loaded]
     report = stability_range(material)
     if FORMS[form].strongly_elliptic and not report.strongly_elliptic:
-        raise ConvergenceError(f"{curve.source}: the {form} fit is not strongly elliptic at every stretch from {SCANNED[0]:g}")
+        raise ConvergenceError(
+            f"{curve.source}: the {form} fit is not strongly elliptic for all stretches {SCANNED[0]:g} to {SCANNED[1]:g}"
+        )
     return UniaxialFit(form, material, curve, float(np.abs(error).max()), float(np.sqrt(np.mean(error**2))), report)
+
+
+def stress_size(curve: UniaxialCurve) -> Array:
+    """Stress in Pa that an error is relative to: |P|, at least ``STRESS_FLOOR`` of the largest, of the shape of the curve."""
+    size = np.abs(curve.nominal_stress)
+    return np.maximum(size, STRESS_FLOOR * size.max())
+
+
+def relative_errors(material: Hyperelastic, curve: UniaxialCurve) -> Array:
+    """Error of the nominal stress over ``stress_size``, dimensionless, of the shape of the curve."""
+    return (uniaxial_nominal_stress(material, curve.stretch) - curve.nominal_stress) / stress_size(curve)
 
 
 def unit_stresses(stretch: Array, names: tuple[str, ...]) -> Array:
     """Nominal stress per unit of each named coefficient, dimensionless, shape (stretches, names)."""
-    I1, I2 = principal_invariants(uniaxial(stretch))
+    stretches = uniaxial(stretch)
+    I1, I2 = principal_invariants(stretches)
     columns = [
-        monomial_derivative(I1, I2, power, (1, 0)) + monomial_derivative(I1, I2, power, (0, 1)) / stretch
+        cauchy_stress(monomial_derivative(I1, I2, power, (1, 0)), monomial_derivative(I1, I2, power, (0, 1)), stretches)
         for power in powers_of(dict.fromkeys(names, 1.0))
     ]
-    return 2 * (stretch - stretch**-2)[:, None] * np.stack(columns, axis=-1)
+    return np.stack(columns, axis=-1) / stretch[:, None]
 
 
 def _least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:

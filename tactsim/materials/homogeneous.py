@@ -37,8 +37,8 @@ def principal_invariants(stretches: Array) -> tuple[Array, Array]:
     return squared.sum(axis=0), (1 / squared).sum(axis=0)
 
 
-def cauchy_stress(material: Hyperelastic, stretches: Array) -> Array:
-    r"""True stress in Pa along direction 1 when direction 3 is free of stress.
+def cauchy_stress(W1: Array, W2: Array, stretches: Array) -> Array:
+    r"""True stress in Pa along direction 1 when direction 3 is free of stress, from the energy's derivatives in Pa.
 
     .. math:: \sigma_1 = 2 (\lambda_1^2 - \lambda_3^2)(W_1 + \lambda_2^2 W_2)
 
@@ -46,7 +46,6 @@ def cauchy_stress(material: Hyperelastic, stretches: Array) -> Array:
 
     Source: Rivlin 1948, doi:10.1098/rsta.1948.0024; thesis 3.1.2 with 3.1.9 corrected (c11 kept, pressure from the free face).
     """
-    W1, W2 = material.energy_gradient(*principal_invariants(stretches))
     return 2 * (stretches[0] ** 2 - stretches[2] ** 2) * (W1 + stretches[1] ** 2 * W2)
 
 
@@ -62,7 +61,8 @@ def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
     """
     stretch = np.asarray(stretch, dtype=float)
     if isinstance(material, Hyperelastic):
-        return cauchy_stress(material, PATHS[path](stretch)) / stretch
+        stretches = PATHS[path](stretch)
+        return cauchy_stress(*material.energy_gradient(*principal_invariants(stretches)), stretches) / stretch
     if isinstance(material, LinearElastic):
         nu = material.poisson_ratio
         stiffening = {"uniaxial": 1.0, "equibiaxial": 1 / (1 - nu), "planar": 1 / (1 - nu**2)}[path]
