@@ -18,7 +18,7 @@ from tactsim.materials.kinematics import (
     isochoric_invariants,
     outer,
 )
-from tactsim.materials.moduli import BulkModulus, check_moduli
+from tactsim.materials.moduli import BulkModulus, check_moduli, youngs_modulus
 
 
 class Hyperelastic(Material):
@@ -62,9 +62,8 @@ class Hyperelastic(Material):
 
     @property
     def youngs_modulus(self) -> float:
-        """Small-strain Young's modulus E = 9KG / (3K + G) in Pa, 3G if incompressible."""
-        G, K = self.shear_modulus, self.bulk_modulus
-        return 3 * G if K is None else 9 * K * G / (3 * K + G)
+        """Small-strain Young's modulus in Pa."""
+        return youngs_modulus(self.shear_modulus, self.bulk_modulus)
 
     def stored_energy(self, F: Array) -> Array:
         """Energy W + K/2 (J - 1)^2 in J/m^3 for ``F`` of shape (3, 3, ...); W alone if incompressible."""

@@ -15,6 +15,12 @@ BulkModulus = Annotated[Pressure, Field(gt=0)]
 """Bulk modulus in Pa."""
 
 
+def youngs_modulus(shear_modulus: float, bulk_modulus: float | None) -> float:
+    """E = 9KG / (3K + G) in Pa from G and K in Pa, 3G if K is None (incompressible)."""
+    G, K = shear_modulus, bulk_modulus
+    return 3 * G if K is None else 9 * K * G / (3 * K + G)
+
+
 def check_moduli(shear_modulus: float, bulk_modulus: float | None) -> None:
     """Nothing, for moduli in Pa that a simulation can use.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tactsim.interfaces import Material
 from tactsim.materials.library import LIBRARY, MaterialSet
+from tactsim.materials.moduli import youngs_modulus
 from tactsim.materials.stability_range import Interval, StabilityReport, stability_range
 from tactsim.units import format_quantity
 
@@ -49,9 +50,8 @@ def _constants(material: Material) -> list[tuple[str, str]]:
 def _moduli_lines(material: Material) -> list[str]:
     """Shear, Young's and bulk modulus."""
     G, K = material.shear_modulus, material.bulk_modulus
-    E = 3 * G if K is None else 9 * K * G / (3 * K + G)
     bulk = "infinite (exactly incompressible)" if K is None else format_quantity(K, "Pa")
-    rows = (("shear G", format_quantity(G, "Pa")), ("Young's E", format_quantity(E, "Pa")), ("bulk K", bulk))
+    rows = (("shear G", format_quantity(G, "Pa")), ("Young's E", format_quantity(youngs_modulus(G, K), "Pa")), ("bulk K", bulk))
     return [f"  {label:<16} {value}" for label, value in rows]
 
 
