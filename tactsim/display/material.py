@@ -68,6 +68,7 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
     lower.axhline(0, color="0.6", linewidth=0.8)
     lower.set_ylabel("relative error in %")
     lower.set_xlabel("stretch")
+    figure.draw_without_rendering()  # settles the ticks, whose width the layout of the saved figure needs
     return figure
 
 
