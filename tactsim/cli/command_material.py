@@ -44,6 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
+    _check_image(arguments.save)
     if arguments.fit is not None:
         return _fit(arguments)
     if arguments.form is not None:
@@ -111,7 +112,7 @@ def _fit_lines(fit: UniaxialFit) -> str:
     from tactsim.units import format_quantity
 
     errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
-    stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic at every stretch"
+    stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
     constants = {
         name: format_quantity(value, "Pa")
         for name, value in fit.material.model_dump(exclude={"kind", "bulk_modulus"}).items()
@@ -156,6 +157,11 @@ def _inside(value: object, path: tuple[str, ...]) -> list[tuple[str, Material]]:
 
 def _numbered(place: Path, name: str) -> Path:
     return place.with_name(f"{place.stem}-{name.replace('.', '-')}{place.suffix}")
+
+
+def _check_image(place: Path | None) -> None:
+    if place is not None and place.suffix.lower() != ".png":
+        raise InputError(f"--save {place}: the figure is a PNG file; its name must end in .png")
 
 
 def _save(figure: Figure, place: Path) -> None:
