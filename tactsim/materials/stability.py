@@ -119,6 +119,8 @@ def strongly_elliptic(material: Material, F: Array) -> Array:
 def principal_stretches(F: Array) -> Array:
     """Square roots of the eigenvalues of C = F^T F, largest first, shape (3, ...).
 
+    Two eigenvalues that coincide come out up to 1e-8 of the largest apart, as of an arc cosine at its end.
+
     Source: Smith 1961, doi:10.1145/355578.366316 (trigonometric eigenvalues of a symmetric 3 x 3 matrix).
     """
     C = np.einsum("iJ...,iK...->JK...", F, F)
@@ -127,7 +129,7 @@ def principal_stretches(F: Array) -> Array:
         C[i, i] -= mean
     radius = np.sqrt(np.einsum("JK...,JK...->...", C, C) / 6)
     safe = np.where(radius > 0, radius, 1)
-    angle = np.arccos(np.clip(determinant(C) / (2 * safe**3), -1, 1)) / 3
+    angle = np.arccos(np.clip(determinant(C / safe) / 2, -1, 1)) / 3
     largest = mean + 2 * radius * np.cos(angle)
     smallest = mean + 2 * radius * np.cos(angle + 2 * np.pi / 3)
     eigenvalues = np.stack([largest, 3 * mean - largest - smallest, smallest])

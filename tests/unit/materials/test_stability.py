@@ -1,0 +1,245 @@
+"""Strong ellipticity against the acoustic form minimised by brute force, the windows of the printed constants, Drucker."""
+
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from scipy.spatial.transform import Rotation
+
+from tactsim.errors import InputError
+from tactsim.materials.homogeneous import PATHS
+from tactsim.materials.library import named_material
+from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.materials.polynomial import Polynomial
+from tactsim.materials.stability import drucker_margin, ellipticity_margin, principal_stretches, strongly_elliptic
+from tactsim.materials.stability_range import around_rest, lost_intervals, stability_range
+
+PRINTED = ("b1a_printed", "icf_printed")
+STABLE = ("b1a_stable", "icf_stable")
+DIRECTIONS = 4000
+
+
+def isochoric(first: float, second: float, seed: int) -> np.ndarray:
+    """A deformation gradient (3, 3) of volume one with two given logarithmic stretches, between random rotations."""
+    left, right = Rotation.random(2, random_state=seed).as_matrix()
+    return left @ np.diag(np.exp([first, second, -first - second])) @ right
+
+
+def smallest_acoustic_form(material, F: np.ndarray, seed: int) -> float:
+    """Smallest m_i n_J A_iJkL m_k n_L in Pa over m normal to F^-T n, both of unit length in the deformed state.
+
+    A is the tangent of the full energy at the pressure zero; the pressure adds nothing for such m and n. Random directions, then
+    descent from the best by shrinking random steps.
+    """
+    tangent = material.tangent(F, np.zeros(()))
+    spatial = np.einsum("iJkL,jJ,lL->ijkl", tangent, F, F)  # per deformed directions, J = 1
+    generator = np.random.default_rng(seed)
+
+    def form(n, m):
+        n = n / np.linalg.norm(n, axis=0)
+        m = m - n * np.einsum("in,in->n", n, m)
+        m = m / np.linalg.norm(m, axis=0)
+        return np.einsum("ijkl,in,jn,kn,ln->n", spatial, m, n, m, n, optimize=True), n, m
+
+    values, n, m = form(*generator.normal(size=(2, 3, DIRECTIONS)))
+    for width in np.geomspace(0.3, 1e-4, 12):
+        best = np.argsort(values)[:1]
+        steps = width * generator.normal(size=(2, 3, 400))
+        steps[:, :, 0] = 0
+        values, n, m = form(n[:, best] + steps[0], m[:, best] + steps[1])
+    return float(values.min())
+
+
+def random_polynomial(seed: int) -> Polynomial:
+    """Second-order energy with signs that may lose strong ellipticity, G = 2 Pa."""
+    c10, c20, c11, c02 = np.random.default_rng(seed).uniform(-1, 1, 4)
+    return Polynomial(coefficients={"c10": 0.5 + c10, "c01": 0.5 - c10, "c20": c20, "c11": c11, "c02": c02})
+
+
+logarithms = st.floats(-0.5, 0.5)
+
+
+@settings(derandomize=True, max_examples=150, deadline=None)
+@given(logarithms, logarithms, st.integers(0, 10**6))
+def test_the_conditions_are_those_of_the_acoustic_form(first, second, seed):
+    """The smallest value found decides; where it is nearer to zero than the search resolves, nothing is asserted."""
+    material, F = random_polynomial(seed), isochoric(first, second, seed)
+    smallest = smallest_acoustic_form(material, F, seed)
+    size = np.abs(material.tangent(F, np.zeros(()))).max()
+    if abs(smallest) > 1e-5 * size:
+        assert bool(strongly_elliptic(material, F)) == (smallest > 0)
+
+
+def both_verdicts(margin) -> tuple[int, int, int]:
+    """How many of 150 random states are elliptic, how many are not, and how many a margin judges otherwise than brute force."""
+    generator = np.random.default_rng(21)
+    elliptic = wrong = 0
+    for seed in range(150):
+        F = isochoric(*generator.uniform(-0.5, 0.5, 2), seed)
+        material = random_polynomial(seed)
+        truth = smallest_acoustic_form(material, F, seed) > 0
+        stretches = principal_stretches(F)
+        elliptic += truth
+        wrong += truth != bool(margin(material, stretches) > 0)
+    return elliptic, 150 - elliptic, wrong
+
+
+def test_both_verdicts_occur_and_a_weaker_condition_is_seen():
+    """Twin: the shear moduli g_k alone, or Drucker's condition, are other conditions and are told apart."""
+    elliptic, lost, wrong = both_verdicts(ellipticity_margin)
+    assert min(elliptic, lost) > 30
+    assert wrong == 0
+    assert both_verdicts(drucker_margin)[2] > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "window"),
+    [
+        ("b1a_printed", "uniaxial", (0.606, 0.830)),
+        ("icf_printed", "uniaxial", (0.666, 0.896)),
+        ("b1a_printed", "planar", (0.695, 0.800)),
+        ("icf_printed", "planar", (0.741, 0.884)),
+    ],
+)
+def test_the_windows_of_the_printed_constants(name, path, window):
+    """errata.md, Material stability; its planar windows are rounded ("about")."""
+    lost = [interval for interval in stability_range(named_material(name).material).paths[path].elliptic_lost if interval[1] < 1]
+    assert lost == [pytest.approx(window, abs=5e-4)]  # three printed digits
+    material = named_material(name).material
+    for stretch, elliptic in (
+        (window[0] - 2e-3, True),
+        (window[0] + 2e-3, False),
+        (window[1] - 2e-3, False),
+        (window[1] + 2e-3, True),
+    ):
+        F = np.diag(PATHS[path](np.array(stretch)))
+        assert bool(strongly_elliptic(material, F)) == elliptic
+        assert (smallest_acoustic_form(material, F, 5) > 0) == elliptic
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_the_uniaxial_window_is_the_sign_of_the_in_plane_shear_modulus(name):
+    """W1 + W2 l^2 with I1 = l^2 + 2/l and I2 = 2 l + l^-2 (E18)."""
+    terms = named_material(name).material.terms
+    low, high = next(i for i in stability_range(named_material(name).material).paths["uniaxial"].elliptic_lost)
+    for stretch in (low, high):
+        I1, I2 = stretch**2 + 2 / stretch, 2 * stretch + stretch**-2
+        modulus = terms[1, 0] + terms[1, 1] * (I2 - 3) + stretch**2 * (terms[0, 1] + terms[1, 1] * (I1 - 3))
+        assert abs(modulus) <= 1e-8 * terms[0, 1]  # the root is located to 1e-10 of the stretch
+
+
+@pytest.mark.parametrize("name", [*PRINTED, *STABLE])
+def test_shipped_stable_sets_are_elliptic_over_half_to_double_and_printed_ones_are_not(name):
+    generator = np.random.default_rng(4)
+    logarithm = generator.uniform(-np.log(2), np.log(2), (2, 20000))
+    third = -logarithm.sum(axis=0)
+    stretches = np.exp(np.stack([*logarithm, third])[:, np.abs(third) <= np.log(2)])
+    margin = ellipticity_margin(named_material(name).material, stretches)
+    assert (margin > 0).all() == (name in STABLE)
+    assert stability_range(named_material(name).material).strongly_elliptic == (name in STABLE)
+
+
+def test_twenty_thousand_points_are_judged_in_a_tenth_of_a_second():
+    F = np.eye(3)[:, :, None] + 0.2 * np.random.default_rng(6).normal(size=(3, 3, 20000))
+    material = named_material("icf_printed").material
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        strongly_elliptic(material, F)
+        times.append(time.perf_counter() - start)
+    assert min(times) < 0.1
+
+
+def test_volume_and_rotation_do_not_matter_and_an_inverted_point_is_not_elliptic():
+    material = named_material("icf_printed").material
+    F = np.stack([isochoric(a, -a / 2, 3) for a in np.linspace(-0.5, 0.5, 41)], axis=-1)
+    verdict = strongly_elliptic(material, F)
+    assert verdict.any()
+    assert not verdict.all()
+    np.testing.assert_array_equal(strongly_elliptic(material, 1.3 * F), verdict)
+    np.testing.assert_array_equal(strongly_elliptic(material, np.einsum("ij,jKn->iKn", isochoric(0, 0, 8), F)), verdict)
+    assert not strongly_elliptic(NeoHookean(c10=1.0), -F).any()
+    broken = np.where(np.arange(41) == 7, np.nan, F)
+    assert not strongly_elliptic(NeoHookean(c10=1.0), broken)[7]
+    assert strongly_elliptic(NeoHookean(c10=1.0), broken).sum() == 40
+
+
+@settings(derandomize=True, max_examples=100, deadline=None)
+@given(arrays.arrays(float, (3, 3), elements=st.floats(-3, 3)))
+def test_principal_stretches_are_the_singular_values(F):
+    found, expected = principal_stretches(F[:, :, None])[:, 0], np.linalg.svd(F, compute_uv=False)
+    assert np.abs(found**2 - expected**2).max() <= 1e-7 * expected[0] ** 2 + 1e-15  # arc cosine at its end: root of round-off
+
+
+def test_separate_principal_stretches_are_found_to_round_off():
+    F = isochoric(0.4, 0.1, 2)
+    np.testing.assert_allclose(principal_stretches(F), np.linalg.svd(F, compute_uv=False), rtol=1e-14)
+
+
+@pytest.mark.parametrize("tiny", [0.0, 1e-17, 1e-60, 1e-120, 1e-170, 1e-300])
+def test_a_vanishing_strain_is_rest(tiny):
+    """A cube of the deviator would underflow to 0 / 0, and the point would count as lost."""
+    F = np.eye(3)
+    F[0, 1] = tiny
+    np.testing.assert_allclose(principal_stretches(F), np.ones(3), rtol=1e-14)
+    assert strongly_elliptic(NeoHookean(c10=1.0), F)
+
+
+def test_drucker_is_the_curvature_by_the_logarithmic_strains():
+    material = named_material("icf_printed").material
+    generator, step = np.random.default_rng(9), 1e-4
+    plane = np.linalg.qr(np.array([[1.0, 0, 1], [-1, 1, 1], [0, -1, 1]]))[0][:, :2]  # strains of sum zero
+
+    def energy(strain):
+        stretches = np.exp(plane @ strain)
+        return float(material.energy((stretches**2).sum(), (stretches**-2).sum()))
+
+    for strain in generator.uniform(-0.4, 0.4, (20, 2)):
+        hessian = np.empty((2, 2))
+        for i, j in np.ndindex(2, 2):
+            a, b = step * np.eye(2)[i], step * np.eye(2)[j]
+            corners = energy(strain + a + b) - energy(strain + a - b) - energy(strain - a + b) + energy(strain - a - b)
+            hessian[i, j] = corners / (4 * step**2)
+        smallest = np.linalg.eigvalsh(hessian)[0]
+        found = float(drucker_margin(material, np.exp(plane @ strain)))
+        assert found == pytest.approx(smallest, abs=1e-5 * np.abs(hessian).max())  # truncation 1e-8, round-off 1e-16 / 1e-8
+
+
+def test_drucker_of_a_neo_hookean_material_at_rest_is_twice_the_shear_modulus():
+    assert float(drucker_margin(NeoHookean(c10=1.0), np.ones(3))) == pytest.approx(4.0, rel=1e-14)
+
+
+def test_intervals_are_joined_around_rest():
+    lost = lost_intervals(lambda x: (x - 0.3) * (x - 0.5) * (x - 2))
+    assert lost == (pytest.approx((0.2, 0.3)), pytest.approx((0.5, 2.0)))
+    assert around_rest(((0.2, 0.3), (0.4, 0.8), (1.5, 2.0))) == (0.8, 1.5)
+    assert around_rest(()) == (0.2, 5.0)
+
+
+def test_linear_elasticity_is_always_elliptic():
+    assert strongly_elliptic(LinearElastic.example(), np.eye(3)[:, :, None]).all()
+    assert stability_range(LinearElastic.example()).strongly_elliptic
+
+
+def test_a_kind_of_which_nothing_is_known_is_refused():
+    unknown = SimpleNamespace(kind="cosserat")
+    for judge in (lambda: strongly_elliptic(unknown, np.eye(3)), lambda: stability_range(unknown)):
+        with pytest.raises(InputError, match="'cosserat' is not known"):
+            judge()
+
+
+def test_a_path_beyond_the_scanned_stretches_does_not_condemn_a_material():
+    """W1 + W2 l^2 of this one turns negative at a stretch of 10, which an equibiaxial path to 0.2 passes on its way to 25."""
+    report = stability_range(MooneyRivlin2(c10=1.0, c01=-0.01))
+    assert report.strongly_elliptic
+    assert report.paths["equibiaxial"].elliptic_lost == (pytest.approx((0.2, 10**-0.5)),)
+    assert not stability_range(MooneyRivlin2(c10=1.0, c01=-1 / 24)).strongly_elliptic  # negative from 4.9 on
+    assert stability_range(MooneyRivlin2(c10=1.0, c01=-1 / 24)).elliptic_everywhere_within == pytest.approx(24**0.5, rel=1e-6)
