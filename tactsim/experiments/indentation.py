@@ -28,6 +28,10 @@ AnyBody: Any = tagged_union("tactsim.contact", RigidBody)
 AnyLaw: Any = tagged_union("tactsim.contact", ContactLaw)
 
 
+LARGEST_RATIO = 1e5
+"""A specimen this many times larger than the body is a mistake in a unit."""
+
+
 class MeshSettings(FrozenModel):
     """Size of the elements: finest at the edges of the body, growing with the distance from them."""
 
@@ -84,6 +88,14 @@ class Indentation(Experiment):
         width = format_quantity(self.specimen.radius, "m")
         if self.body.kind != "plane" and self.contact_radius >= self.specimen.radius:
             raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
+        largest = max(self.specimen.radius, self.specimen.thickness)
+        if largest > LARGEST_RATIO * self.contact_radius:
+            big, small = format_quantity(largest, "m"), format_quantity(self.contact_radius, "m")
+            raise ValueError(f"a specimen of {big} under a body of {small}: is one of the units wrong?")
+        finest, narrowest = self.mesh.finest, self._narrowest
+        if finest is not None and finest > narrowest / 2:
+            given, width = format_quantity(finest, "m"), format_quantity(narrowest, "m")
+            raise ValueError(f"mesh.finest {given} is too coarse for the body, whose contact is {width} wide: at most half of it")
         if self.displacement >= self.specimen.thickness:
             given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
             raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
@@ -107,6 +119,11 @@ class Indentation(Experiment):
     def contact_radius(self) -> float:
         """Radius in m that the body's size is measured by."""
         return float(getattr(self.body, "outer_radius", getattr(self.body, "radius", self.specimen.radius)))
+
+    @property
+    def _narrowest(self) -> float:
+        """Width in m of the contact that the mesh must resolve."""
+        return self.contact_radius - float(getattr(self.body, "inner_radius", 0.0))
 
     @property
     def rise_at_touch(self) -> float:
