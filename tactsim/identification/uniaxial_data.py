@@ -101,7 +101,8 @@ def _column(path: Path, header: list[str], allowed: tuple[str, ...]) -> tuple[in
                 found.append((position, name, match["unit"] or ""))
                 break
     if len(found) != 1:
-        raise InvalidQuantity(f"{path}: header {', '.join(header)!r} must have exactly one column of {', '.join(allowed)}")
+        hint = "; columns are separated by commas" if any(";" in cell or "\t" in cell for cell in header) else ""
+        raise InvalidQuantity(f"{path}: header {', '.join(header)!r} must have exactly one column of {', '.join(allowed)}{hint}")
     return found[0]
 
 
