@@ -112,6 +112,7 @@ def test_every_form_is_tried(curve: Path, capsys: pytest.CaptureFixture[str]) ->
         (["icf_stabel"], 2, "did you mean 'icf_stable'"),
         (["missing.yaml"], 5, "cannot read the case file"),
         (["--save", "x.png"], 2, "--save needs a material"),
+        (["icf_stable", "--save", "x.pdf"], 2, "must end in .png"),
         (["--form", "stable"], 2, "--form goes with --fit"),
         (["--fit", "missing.csv"], 5, "missing.csv"),
         (["icf_stable", "--fit", "x.csv"], 2, "not allowed with"),
