@@ -1,0 +1,1 @@
+"""What figures of thesis tables can show; one kind per file."""

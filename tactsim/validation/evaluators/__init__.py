@@ -1,0 +1,1 @@
+"""What rows of thesis tables can compute; one kind per file."""

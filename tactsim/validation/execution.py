@@ -1,0 +1,160 @@
+"""Runs the simulations of studies in processes of one thread each; what was computed before is taken from a cache."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from tactsim import __version__
+from tactsim.errors import ConvergenceError, StorageError, TactsimError
+from tactsim.results.storage import read_text, replace_file
+from tactsim.validation.study import RunOutcome, Study
+
+ONE_THREAD = dict.fromkeys(("NUMBA_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
+"""So that two runs do not fight for the same cores, and a result does not depend on their number."""
+Task = tuple[str, str, tuple[str, ...]]
+"""Name of the run, path of the case file and the overrides."""
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class StudyRunner:
+    """How studies are run."""
+
+    workers: int = 2
+    fresh: bool = False
+    """Whether earlier results are ignored."""
+    cache: Path | None = None
+    """Where results are kept; by default the user's cache folder."""
+
+    def outcomes(self, studies: Sequence[Study], folder: Path, progress: Progress) -> dict[str, tuple[RunOutcome, ...]]:
+        """The outcome of every run of every study, by the name of the study."""
+        cases = {(study.name, run): case.case_id for study in studies for run, case in study.cases(folder).items()}
+        known = {} if self.fresh else {case_id: self._stored(case_id) for case_id in set(cases.values())}
+        found = {case_id: outcome for case_id, outcome in known.items() if outcome is not None}
+        waiting: dict[str, Task] = {}
+        for study in studies:
+            for run in study.runs:
+                case_id = cases[study.name, run.id]
+                if case_id not in found:
+                    waiting[case_id] = (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
+        for case_id, outcome in self._computed(waiting, progress):
+            found[case_id] = outcome
+            self._store(outcome)
+        return {
+            study.name: tuple(found[cases[study.name, run.id]].model_copy(update={"id": run.id}) for run in study.runs)
+            for study in studies
+        }
+
+    def _computed(self, waiting: dict[str, Task], progress: Progress) -> Iterator[tuple[str, RunOutcome]]:
+        if not waiting:
+            return
+        progress(f"{len(waiting)} simulations in {min(self.workers, len(waiting))} processes")
+        with _environment(ONE_THREAD):
+            pool = ProcessPoolExecutor(self.workers, mp_context=multiprocessing.get_context("spawn"))
+            try:
+                jobs = {pool.submit(simulated, task): case_id for case_id, task in waiting.items()}
+                for count, job in enumerate(as_completed(jobs), 1):
+                    outcome = _result_of(job)
+                    progress(f"{count}/{len(jobs)}  {outcome.id}: {outcome.status}, {outcome.seconds:.0f} s")
+                    yield jobs[job], outcome
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
+
+    def _place(self, case_id: str) -> Path:
+        return (self.cache or cache_folder()) / f"{case_id}-{__version__}-{code_identity()}.json"
+
+    def _stored(self, case_id: str) -> RunOutcome | None:
+        """What the cache holds, None if nothing that can be read."""
+        with suppress(StorageError, ValueError):
+            return RunOutcome.model_validate_json(read_text(self._place(case_id)))
+        return None
+
+    def _store(self, outcome: RunOutcome) -> None:
+        """Keeps an outcome; a cache that cannot be written costs only time, and an interrupted run is no outcome."""
+        if outcome.status == "interrupted":
+            return
+        with suppress(OSError):
+            place = self._place(outcome.case_id)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            replace_file(place, outcome.model_dump_json().encode())
+
+
+def _result_of(job: Future[RunOutcome]) -> RunOutcome:
+    try:
+        return job.result()
+    except BrokenProcessPool:
+        raise ConvergenceError("a process of the simulations died; is there enough memory? take fewer workers") from None
+
+
+def simulated(task: Task) -> RunOutcome:
+    """Runs one case to its end; a refusal on the way is an outcome that failed."""
+    from tactsim.case import load_case
+
+    name, path, overrides = task
+    case = load_case(path, overrides)
+    try:
+        result = case.experiment.run(lambda step: None)
+    except TactsimError as error:
+        return RunOutcome(
+            id=name, case_id=case.case_id, status="failed", reason=str(error), quantities={}, history={}, seconds=0.0
+        )
+    scalars = {key: quantity.value for key, quantity in result.quantities.items() if isinstance(quantity.value, int | float)}
+    return RunOutcome(
+        id=name,
+        case_id=case.case_id,
+        status=str(result.status),
+        reason=result.reason,
+        quantities={key: float(value) for key, value in scalars.items() if math.isfinite(value)},
+        history={key: tuple(step.values[key] for step in result.steps) for key in result.units if _recorded(result.steps, key)},
+        disc_share=_disc_share(result.details.get("body", {})),
+        seconds=result.timing["total"],
+    )
+
+
+def cache_folder() -> Path:
+    """The user's folder for what can be computed again."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "validation"
+
+
+def code_identity() -> str:
+    """Eight hexadecimal digits that change with the code of the simulations: a cached result never outlives its solver."""
+    root = Path(__file__).parents[1]
+    rooms = ("case", "contact", "experiments", "fem", "materials", "mesh")
+    digest = hashlib.sha256()
+    for path in sorted(path for room in rooms for path in (root / room).rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:8]
+
+
+def _disc_share(body: dict[str, float]) -> float:
+    """Part of the disc that an annulus covers, 1 for any other body."""
+    return 1 - (body["inner_radius"] / body["outer_radius"]) ** 2 if "inner_radius" in body else 1.0
+
+
+def _recorded(steps: Sequence, key: str) -> bool:
+    return bool(steps) and all(key in step.values for step in steps)
+
+
+@contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    """Environment variables for the processes started meanwhile."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,81 @@
+"""A list of simulations around one case, and what each of them found."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from tactsim.case import Case, load_case
+from tactsim.units import FrozenModel
+
+Override = str | float | bool | dict[str, str | float | bool]
+
+
+class StudyRun(FrozenModel):
+    """One simulation of a study."""
+
+    id: str = Field(min_length=1, max_length=80)
+    """Name within the study, as the figure shows it."""
+    set: dict[str, Override] = {}
+    """Key path in the case -> value, as with ``tactsim run --set``."""
+
+
+class Study(FrozenModel):
+    """Simulations that differ from one case in what they set."""
+
+    name: str = Field(min_length=1)
+    """Name within the table."""
+    case: str
+    """Case file, relative to the table."""
+    common: dict[str, Override] = {}
+    """What every run sets."""
+    runs: tuple[StudyRun, ...] = Field(min_length=1)
+    """The simulations."""
+
+    @model_validator(mode="after")
+    def _named_once(self) -> Self:
+        names = [run.id for run in self.runs]
+        if len(set(names)) < len(names):
+            raise ValueError(f"two runs of the study {self.name} have the same id")
+        return self
+
+    def cases(self, folder: Path) -> dict[str, Case]:
+        """The validated case of each run, by its id."""
+        return {run.id: load_case(folder / self.case, self.overrides(run)) for run in self.runs}
+
+    def overrides(self, run: StudyRun) -> tuple[str, ...]:
+        """What a run sets, as ``path.to.key=value``."""
+        return tuple(_override(*item) for item in {**self.common, **run.set}.items())
+
+
+class RunOutcome(FrozenModel):
+    """What one simulation found, in SI."""
+
+    id: str
+    """Name within the study."""
+    case_id: str
+    """Identity of the case."""
+    status: str
+    """``converged`` or ``failed``."""
+    reason: str
+    """How it ended."""
+    quantities: dict[str, float]
+    """Numbers of the result."""
+    history: dict[str, tuple[float, ...]]
+    """Values of the accepted steps."""
+    disc_share: float = 1.0
+    """Area of the annulus over that of the full disc of its outer radius."""
+    seconds: float
+    """Duration when it was computed."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether its numbers count."""
+        return self.status == "converged"
+
+
+def _override(key: str, value: Override) -> str:
+    return f"{key}={value if isinstance(value, str) else json.dumps(value)}"

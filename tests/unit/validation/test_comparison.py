@@ -1,0 +1,101 @@
+"""Rows keep their recorded state or are told to have left it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from thesis_tables import TABLE, write_tables
+
+from tactsim.validation import RowOutcome, compare, load_tables
+from tactsim.validation.study import RunOutcome
+
+
+def outcomes(folder: Path, text: str = TABLE) -> tuple[RowOutcome, ...]:
+    table = load_tables(write_tables(folder, text)).tables["small"]
+    return compare("small", table, folder, {}).rows
+
+
+def test_recorded_states_hold(tmp_path: Path) -> None:
+    rows = outcomes(tmp_path)
+    assert [row.held for row in rows] == [True, True, True]
+    assert [row.state for row in rows] == ["reproduced", "outside by 0.5", "assumption"]
+    assert [row.ratio for row in rows[:2]] == pytest.approx([1.0, 0.5], rel=1e-12)  # a quotient of exact numbers
+    assert rows[2].ratio is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "left", "said"),
+    [
+        ("125 N/m", "125.4 N/m", 0, "LEFT: was reproduced"),
+        ("250 N/m", "240 N/m", 1, "LEFT: outside by 0.521, was 0.5"),
+        ("250 N/m", "125 N/m", 1, "LEFT: outside by 1, was 0.5"),
+    ],
+)
+def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, said: str) -> None:
+    rows = outcomes(tmp_path, TABLE.replace(old, new))
+    assert [row.held for row in rows] == [k != left for k in range(3)]
+    assert rows[left].state == said
+
+
+def test_after_an_erratum(tmp_path: Path) -> None:
+    text = TABLE.replace("reproduced: true", "reproduced_after: E4")
+    assert outcomes(tmp_path, text)[0].state == "reproduced after E4"
+    assert outcomes(tmp_path, text.replace("125 N/m", "126 N/m"))[0].state == "LEFT: was reproduced after E4"
+
+
+BRACKET = """\
+schema: tactsim/thesis-table/1
+title: A bracket
+chapter: 3
+source: nowhere
+rows:
+  - id: pressure
+    quantity: threshold pressure
+    place: line 1
+    printed: PRINTED
+    evaluate: {kind: bracket, studies: [icf], quantity: threshold_pressure}
+    state: {outside_by: 30.0, tolerance: 0.1, reason: known}
+  - id: runs
+    quantity: runs
+    place: line 2
+    printed: 2.0
+    evaluate: {kind: converged_runs, study: icf}
+    tolerance: {absolute: 0.0, reason: a count}
+    state: {reproduced: true}
+  - id: ratio
+    quantity: second over first
+    place: line 3
+    printed: 2.0
+    evaluate: {kind: run_ratio, run: [icf, b], over: [icf, a]}
+    tolerance: {relative: 0.001, reason: exact}
+    state: {reproduced: true}
+"""
+
+
+def run(name: str, pressure: float | None) -> RunOutcome:
+    quantities = {} if pressure is None else {"threshold_pressure": pressure}
+    status = "failed" if pressure is None else "converged"
+    return RunOutcome(
+        id=name, case_id=name, status=status, reason="told", quantities=quantities, history={}, disc_share=0.75, seconds=1
+    )
+
+
+@pytest.mark.parametrize(
+    ("printed", "ratio"),
+    [("500 Pa", 30.0), ("16 kPa", 1.0), ("80 kPa", 0.5)],  # below, inside and above 0.75 * 20 kPa to 40 kPa
+)
+def test_a_bracket_spans_both_areas_of_the_runs_that_converged(tmp_path: Path, printed: str, ratio: float) -> None:
+    table = load_tables(write_tables(tmp_path, BRACKET.replace("PRINTED", printed))).tables["small"]
+    studies = {"icf": (run("a", 20e3), run("b", 40e3), run("c", None))}
+    rows = compare("small", table, tmp_path, studies).rows
+    assert rows[0].ratio == pytest.approx(ratio, rel=1e-12)  # a quotient of exact numbers
+    assert [row.held for row in rows] == [ratio == 30.0, True, True]
+
+
+def test_a_run_that_fails_or_is_absent_lets_its_rows_leave(tmp_path: Path) -> None:
+    table = load_tables(write_tables(tmp_path, BRACKET.replace("PRINTED", "500 Pa"))).tables["small"]
+    rows = compare("small", table, tmp_path, {"icf": (run("a", 20e3), run("b", None))}).rows
+    assert [row.held for row in rows] == [True, False, False]
+    assert "told" in rows[2].reason
+    assert not any(row.held for row in compare("small", table, tmp_path, {}).rows)

@@ -1,0 +1,85 @@
+"""Thesis tables as data: closed, frozen, with the place of every fault."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from pydantic import ValidationError
+from thesis_tables import MANIFEST, TABLE, Doubled, write_tables
+
+from tactsim.errors import CaseError, StorageError, UnknownName
+from tactsim.validation import compare, load_tables
+from tactsim.validation.table import table_class
+
+
+def test_a_table_is_read_in_si(tmp_path: Path) -> None:
+    table = load_tables(write_tables(tmp_path)).tables["small"]
+    assert [row.expected for row in table.rows] == [125.0, 250.0, None]
+    assert table.rows[0].allowed == pytest.approx(0.125, rel=1e-12)  # round-off of one product
+    with pytest.raises(ValidationError):
+        table.rows[0].id = "other"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("125 N/m", "125 N", r"small.yaml:6: rows.0: '125 N' has the wrong dimension"),
+        ("125 N/m", "125", r"small.yaml:6: rows.0: 125 has no unit"),
+        ("force: 0.1 N, displacement: 0.8 mm}\n    tol", "force: 0.1, displacement: 0.8 mm}\n    tol", "rows.0.evaluate.force"),
+        ("kind: stiffness_resolution", "kind: stiffness_resolutoin", "did you mean 'stiffness_resolution'"),
+        ("    place: line 1\n", "", "rows.0.place: missing"),
+        ("    tolerance: {relative: 0.001, reason: a quotient}\n", "", "a row that is reproduced has a tolerance"),
+        ("reason: a quotient", "raeson: a quotient", "rows.0.tolerance.raeson: unknown key"),
+        ("outside_by: 0.5", "outside_by: 1.001", "is no deviation"),
+        ("id: known", "id: stiffness", "rows with the same name: stiffness"),
+        ("state: {assumption: not printed}", "state: {assumption: not printed, reproduced: true}", "rows.2.state"),
+        ("title: A small table", "title: [", "not valid YAML"),
+    ],
+)
+def test_a_fault_is_told_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+    assert old in TABLE
+    with pytest.raises(CaseError) as caught:
+        load_tables(write_tables(tmp_path, TABLE.replace(old, new, 1)))
+    assert said in str(caught.value)
+    assert "small.yaml:" in str(caught.value)
+
+
+def test_an_unknown_table_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UnknownName, match=r"did you mean 'small'"):
+        load_tables(write_tables(tmp_path), ["smal"])
+
+
+def test_a_missing_manifest_is_told(tmp_path: Path) -> None:
+    with pytest.raises(StorageError, match=r"manifest\.yaml"):
+        load_tables(tmp_path)
+
+
+@pytest.mark.parametrize("kept", [1, 2])
+def test_a_deleted_row_is_a_fault(tmp_path: Path, kept: int) -> None:
+    text = "  - id:".join(TABLE.split("  - id:")[: kept + 1])
+    assert load_tables(write_tables(tmp_path, text)).faults == (f"small: {kept} rows where the manifest counts 3",)
+
+
+def test_a_deleted_or_uncounted_file_is_a_fault(tmp_path: Path) -> None:
+    folder = write_tables(tmp_path)
+    assert load_tables(folder).faults == ()
+    (folder / "small.yaml").rename(folder / "renamed.yaml")
+    first, second = load_tables(folder).faults
+    assert "small: the table is absent, and with it 3 rows of chapter 3" in first
+    assert "renamed: the manifest does not count" in second
+    assert load_tables(folder, ["small"]).faults == (first,)
+
+
+def test_a_table_of_another_chapter_is_a_fault(tmp_path: Path) -> None:
+    faults = load_tables(write_tables(tmp_path, manifest=MANIFEST.replace('"3"', '"4"'))).faults
+    assert faults == ("small: the table names chapter 3, the manifest chapter 4",)
+
+
+def test_an_evaluator_is_all_that_a_new_kind_of_row_needs(tmp_path: Path) -> None:
+    text = TABLE.split("  - id: known", maxsplit=1)[0]
+    text = text.replace("kind: stiffness_resolution, force: 0.1 N, displacement: 0.8 mm", "kind: doubled, length: 0.5")
+    folder = write_tables(tmp_path, text.replace("125 N/m", "1000 mm"), MANIFEST.replace("small: 3", "small: 1"))
+    table = load_tables(folder, model=table_class(Doubled)).tables["small"]
+    (outcome,) = compare("small", table, folder, {}).rows
+    assert (outcome.found, outcome.held) == (1.0, True)
