@@ -88,7 +88,7 @@ def markdown_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome], figu
         for name, runs in outcome.inputs.studies.items():
             lines += ["", f"### Runs of {name}", ""]
             lines += _markdown_table(
-                ("run", "status", "over the annulus", "over the disc", "displacement", "end"), map_runs(runs)
+                ("run", "status", "over the annulus", "over the disc", "displacement", "unstable volume", "end"), run_cells(runs)
             )
         lines += [f"\n![{figure}](figures/{figure})" for figure in figures if figure.startswith(f"{outcome.name}_")]
     return "\n".join(lines) + "\n"
