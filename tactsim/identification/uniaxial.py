@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from pydantic import ValidationError
-from scipy.optimize import minimize
+from scipy.optimize import nnls
 
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.uniaxial_data import UniaxialCurve
@@ -40,6 +40,9 @@ FORMS = {
 
 SMALLEST_SHEAR_FRACTION = 0.2
 """Assumption: a stable fit keeps every shear modulus of the ellipticity conditions above this part of its value at rest."""
+
+NEGLIGIBLE = 1e-9
+"""Part of the data that a stable fit must explain to be told from round-off."""
 
 STRETCH_STATES = 31
 """Values per principal stretch at which a stable fit imposes its conditions, even in the logarithm."""
@@ -149,22 +152,27 @@ def _least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Arra
 
 
 def _elliptic_least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:
-    """Coefficients in Pa under the linear conditions of strong ellipticity: a convex quadratic program."""
-    conditions = _ellipticity_rows(names)
-    scale = np.abs(_least_squares(design, target, names)).max()
-    scaled = design * scale
-    start = np.array([1.0 if name in ("c10", "c01") else 0.0 for name in names])
-    solution = minimize(
-        lambda c: np.sum((scaled @ c - target) ** 2),
-        start,
-        jac=lambda c: 2 * scaled.T @ (scaled @ c - target),
-        constraints={"type": "ineq", "fun": lambda c: conditions @ c, "jac": lambda c: conditions},
-        method="SLSQP",
-        options={"maxiter": 500, "ftol": 1e-14},
-    )
-    if not solution.success:
-        raise ConvergenceError(f"stable fit: {solution.message}")
-    return solution.x * scale
+    r"""Coefficients in Pa under the linear conditions of strong ellipticity, exactly, as a projection on their cone.
+
+    With D = QR, z = Rc and the conditions A z >= 0, the nearest z to y = Q^T target is y + A^T u, where u >= 0 makes
+    |A^T u + y| smallest.
+
+    Source: Moreau 1962 (decomposition by a cone and its polar); Lawson & Hanson 1974, Solving Least Squares Problems, chapter 23.
+    """
+    Q, R = np.linalg.qr(design)
+    free = Q.T @ target
+    normals = np.linalg.solve(R.T, _ellipticity_rows(names).T)
+    normals /= np.linalg.norm(normals, axis=0)
+    try:
+        multipliers, _ = nnls(normals, -free)
+    except RuntimeError as error:
+        raise ConvergenceError(f"stable fit: {error}") from None
+    nearest = free + normals @ multipliers
+    if np.linalg.norm(nearest) <= NEGLIGIBLE * np.linalg.norm(free):
+        raise ConvergenceError(
+            "stable fit: no strongly elliptic material of this form is nearer to the data than no stress at all"
+        )
+    return np.linalg.solve(R, nearest)
 
 
 def _ellipticity_rows(names: tuple[str, ...]) -> Array:
