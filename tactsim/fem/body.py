@@ -12,6 +12,7 @@ from tactsim.errors import InputError
 from tactsim.fem.kernels import compiled
 from tactsim.fem.pattern import Pattern, build_pattern
 from tactsim.fem.space import TaylorHood
+from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
 
 Array = np.ndarray
@@ -66,7 +67,8 @@ class Body:
         u, _ = self.space.split(unknowns)
         shape = self.points.weights.shape
         F, invariants = np.empty((9, *shape)), np.empty((3, *shape))
-        self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
+        with loop_threads(len(self.regions)):
+            self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
         return Kinematics(F.reshape(3, 3, *shape), *invariants)
 
     def pressure(self, unknowns: Array) -> Array:
@@ -94,9 +96,10 @@ class Body:
         state = self.kinematics(unknowns) if state is None else state
         u, p = self.space.split(unknowns)
         out = np.zeros(self.space.size)
-        self._kernels.residual(
-            u, p, self._tables(), self.energy_slopes(state, second=False), self.pattern.order, self.pattern.color_starts, out
-        )
+        with loop_threads(len(self.regions)):
+            self._kernels.residual(
+                u, p, self._tables(), self.energy_slopes(state, second=False), self.pattern.order, self.pattern.color_starts, out
+            )
         return out
 
     def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
@@ -106,9 +109,10 @@ class Body:
         pattern = self.pattern
         data = np.zeros(len(pattern.indices))
         slopes = self.energy_slopes(state, second=True)
-        self._kernels.tangent(
-            u, p, self._tables(), slopes, pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets, data
-        )
+        with loop_threads(len(self.regions)):
+            self._kernels.tangent(
+                u, p, self._tables(), slopes, pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets, data
+            )
         return data
 
     def rounding_forces(self) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.threads import SERIAL_UNKNOWNS
 
 Array = np.ndarray
 
@@ -81,6 +82,8 @@ def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], r
         return ctypes.byref(ctypes.c_int32(value))
 
     data, indptr, indices = system
+    threads = solver.libmkl.MKL_Set_Num_Threads_Local
+    before = threads(ctypes.c_int(1 if len(data) and len(right) < SERIAL_UNKNOWNS else 0))
     solver._mkl_pardiso(
         solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0])),
         number(1),
@@ -99,6 +102,7 @@ def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], r
         solution.ctypes.data_as(real),
         ctypes.byref(error),
     )
+    threads(ctypes.c_int(before))
     if error.value != 0:
         raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
     return solution
