@@ -43,5 +43,10 @@ def kind_class(package: str, base: type, kind: str) -> Any:
 
 def tagged_union(package: str, base: type) -> Any:
     """Pydantic type of all kinds in a package, told apart by ``kind``."""
-    choices = tuple(cls for _, cls in sorted(kinds(package, base).items()))
+    return union_of(kinds(package, base))
+
+
+def union_of(known: dict[str, Any]) -> Any:
+    """Pydantic type of these kinds, told apart by ``kind``."""
+    choices = tuple(known[kind] for kind in sorted(known))
     return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
-from tactsim.registry import kinds, tagged_union
+from tactsim.registry import kinds, union_of
 from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
@@ -64,7 +64,7 @@ def case_class(experiment: Any) -> type[Case]:
 
 def any_experiment() -> Any:
     """The type of all registered experiments, told apart by ``kind``."""
-    return tagged_union(EXPERIMENTS, Experiment)
+    return union_of(experiment_kinds())
 
 
 def _canonical(value: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from tactsim.experiments.indentation_model import IndentationModel, IndentationState
-from tactsim.materials.stability import strongly_elliptic
+from tactsim.materials.stability import principal_stretches, strongly_elliptic
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -39,7 +39,8 @@ class IndentationRecord:
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
-        self.frames: list[FieldFrame] = []
+        self._at_threshold: list[tuple[IndentationModel, IndentationState]] = []
+        self._last: list[tuple[IndentationModel, IndentationState]] = []
         self.threshold: dict[str, float] = {}
         self.adaptations = 0
         self.rejected_steps = 0
@@ -71,17 +72,17 @@ class IndentationRecord:
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
         self.steps.append(record)
-        self.frames = [*self.frames[-1:], self._frame(state)] if threshold else [self._frame(state)]
         if threshold:
-            self.threshold = values
+            self.threshold, self._at_threshold = values, [(self.model, state)]
+        else:
+            self._last = [(self.model, state)]
         return record
 
     def _values(self, state: IndentationState) -> dict[str, float]:
         displacement = self.model.displacement(state.unknowns)
         tractions = [contact.at(displacement) for contact in state.contacts]
         forces = [-float(self.model.surface.total(t.traction)[1]) for t in tractions]
-        inside = ~self._elliptic(state)
-        self._unstable |= inside
+        self._unstable |= ~self._elliptic(self.model, state)
         weights = self.model.body.points.weights
         values = {
             "displacement": state.load,
@@ -97,16 +98,23 @@ class IndentationRecord:
             values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": sum(forces[1:])}
         return values
 
-    def _elliptic(self, state: IndentationState) -> Array:
-        body = self.model.body
-        elliptic = np.ones(self._unstable.shape, bool)
+    @staticmethod
+    def _elliptic(model: IndentationModel, state: IndentationState) -> Array:
+        """Whether the material is strongly elliptic at each point (E, Q)."""
+        body = model.body
+        elliptic = np.ones(state.kinematics.J.shape, bool)
         for index, material in enumerate(body.materials):
             mine = body.regions == index
             elliptic[mine] = strongly_elliptic(material, state.kinematics.F[:, :, mine])
         return elliptic
 
-    def _frame(self, state: IndentationState) -> FieldFrame:
-        space, mesh = self.model.space, self.model.mesh
+    def _frames(self) -> tuple[FieldFrame, ...]:
+        """Fields at the threshold and at the last accepted step, in the order of the displacement."""
+        kept = sorted([*self._at_threshold, *self._last], key=lambda pair: pair[1].load)
+        return tuple(self._frame(model, state) for model, state in kept)
+
+    def _frame(self, model: IndentationModel, state: IndentationState) -> FieldFrame:
+        space, mesh = model.space, model.mesh
         u, p = space.split(state.unknowns)
         flat = np.zeros((len(u), 3))
         points, displacement = flat.copy(), flat.copy()
@@ -115,7 +123,7 @@ class IndentationRecord:
         pressure[: len(p)] = -p
         ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
         pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
-        stretch = np.linalg.norm(np.moveaxis(state.kinematics.F, (0, 1), (-2, -1)), 2, axis=(-2, -1))
+        stretch = principal_stretches(state.kinematics.F)[0]
         return FieldFrame(
             time=state.load,
             points=points,
@@ -125,7 +133,7 @@ class IndentationRecord:
                 "largest_stretch [1]": stretch.max(axis=1),
                 "volume_ratio [1]": state.kinematics.J.mean(axis=1),
                 "region [1]": mesh.regions.astype(float),
-                "left_ellipticity [1]": self._unstable.any(axis=1).astype(float),
+                "elliptic [1]": self._elliptic(model, state).all(axis=1).astype(float),
             },
         )
 
@@ -142,7 +150,7 @@ class IndentationRecord:
             timing={"setup": self._setup_time, "total": total},
             steps=tuple(self.steps),
             units=self.UNITS,
-            frames=tuple(self.frames),
+            frames=self._frames(),
             details=self._details(),
         )
 

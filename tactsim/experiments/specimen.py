@@ -16,6 +16,10 @@ from tactsim.units import FrozenModel, Length, format_quantity
 Array = np.ndarray
 
 
+LARGEST_CAP = 0.9
+"""Largest difference of height of a curved surface, as a part of the thickness."""
+
+
 class Layer(FrozenModel):
     """A layer of other material at the top of the specimen."""
 
@@ -54,8 +58,8 @@ class Specimen(FrozenModel):
         if self.surface_radius is not None and self.surface_radius < self.radius:
             given, least = format_quantity(self.surface_radius, "m"), format_quantity(self.radius, "m")
             raise ValueError(f"surface_radius {given} must be at least the specimen's radius, {least}")
-        if self.surface == "concave" and self.depth_of_cap(self.radius) >= 0.9 * self.thickness:
-            raise ValueError("the concave surface is as deep as the specimen is thick; take a larger surface_radius")
+        if self.depth_of_cap(self.radius) >= LARGEST_CAP * self.thickness:
+            raise ValueError("the curved surface is as deep as the specimen is thick; take a larger surface_radius")
         return self
 
     @property
