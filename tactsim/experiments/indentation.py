@@ -127,8 +127,8 @@ class Indentation(Experiment):
 
     @property
     def rise_at_touch(self) -> float:
-        """Rise in m of a convex surface into the hole when the annulus first touches it."""
-        inner = self.body.inner_radius if self.specimen.surface == "convex" else 0.0
+        """Rise in m of a convex surface into the hole when the annulus touches it, where the fillet meets the face."""
+        inner = self.body.inner_radius + self.body.fillet if self.specimen.surface == "convex" else 0.0
         return float(self.specimen.depth_of_cap(inner))
 
     @property
