@@ -47,10 +47,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"--workers {arguments.workers} is out of range; must be at least 1")
     loaded = load_tables(arguments.folder or tables_folder(), arguments.tables)
     runner = StudyRunner(workers=arguments.workers, fresh=arguments.fresh)
-    outcomes = []
-    for name, table in loaded.tables.items():
-        studies = runner.outcomes(table.studies, loaded.folder, lambda line: console.note(f"  {line}"))
-        outcomes.append(compare(name, table, loaded.folder, studies))
+    wanted = {name: table.studies for name, table in loaded.tables.items()}
+    studies = runner.outcomes(wanted, loaded.folder, _progress)
+    outcomes = [compare(name, table, loaded.folder, studies[name]) for name, table in loaded.tables.items()]
     figures, troubles = _figures(outcomes)
     console.out(terminal_report(loaded, outcomes))
     reports = {
@@ -64,6 +63,11 @@ def run(arguments: argparse.Namespace) -> int:
     wrong = [*left, *(fault.partition(":")[0] for fault in loaded.faults)]
     console.out(f"{'left their recorded state: ' + ', '.join(wrong) if wrong else 'every row holds'}; report {arguments.out}")
     return ValidationError.exit_code if wrong else 0
+
+
+def _progress(line: str) -> None:
+    if console.notes_are_watched():
+        console.note(f"  {line}")
 
 
 def tables_folder() -> Path:

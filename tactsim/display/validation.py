@@ -36,10 +36,13 @@ def validation_figure(data: dict[str, Any]) -> bytes:
 def ranges_figure(data: dict[str, Any]) -> Figure:
     """One panel per study: a bar from the smallest to the largest value of each run, printed numbers as lines."""
     panels = data["panels"]
-    figure = new_figure(5.2 * len(panels), 1.6 + 0.24 * max(len(panel["bars"]) for panel in panels))
-    for axis, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+    figure = new_figure(2.6 + 3.8 * len(panels), 1.9 + 0.25 * max(len(panel["bars"]) for panel in panels))
+    alike = all([bar["label"] for bar in panel["bars"]] == [bar["label"] for bar in panels[0]["bars"]] for panel in panels)
+    axes = figure.subplots(1, len(panels), squeeze=False)[0]
+    for place, (axis, panel) in enumerate(zip(axes, panels, strict=True)):
         _draw_ranges(axis, panel, data["unit"])
         axis.set_xlabel(data["axis"])
+        axis.tick_params(axis="y", labelleft=place == 0 or not alike)
     figure.suptitle(data["title"], x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
@@ -53,7 +56,7 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
             axis.plot(ends, [place, place], "-", color=RUN_COLOUR, linewidth=3, solid_capstyle="butt")
             axis.plot(ends, [place, place], "|", color=RUN_COLOUR, markersize=9)
         else:
-            axis.text(0.99, place, "no threshold", transform=axis.get_yaxis_transform(), ha="right", va="center", fontsize=8)
+            axis.text(0.5, place, "no threshold", transform=axis.get_yaxis_transform(), ha="center", va="center", fontsize=8)
     for line, colour in zip(panel["lines"], PRINTED_COLOURS, strict=False):
         label = f"{line['label']}: {format_quantity(line['value'], unit)}"
         axis.axvline(line["value"], color=colour, linestyle="--", label=label)
@@ -65,7 +68,7 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
     axis.set_yticks(range(len(labels)), labels)
     axis.invert_yaxis()
     axis.set_title(panel["title"], loc="left")
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8)
     despined(axis)
 
 
@@ -94,5 +97,7 @@ def _draw_curves(axis: Axes, panel: dict[str, Any]) -> None:
         else:
             axis.plot(x, y, next(styles), label=curve["label"])
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
+    if panel.get("logarithmic"):
+        axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
     despined(axis)

@@ -6,7 +6,7 @@ import hashlib
 import math
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim import __version__
+from tactsim.case import load_case
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.results.storage import read_text, replace_file
 from tactsim.validation.study import RunOutcome, Study
@@ -22,6 +23,8 @@ ONE_THREAD = dict.fromkeys(("NUMBA_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THR
 """So that two runs do not fight for the same cores, and a result does not depend on their number."""
 Task = tuple[str, str, tuple[str, ...]]
 """Name of the run, path of the case file and the overrides."""
+Studies = dict[str, tuple[RunOutcome, ...]]
+"""Outcomes of the studies of a table by name."""
 Progress = Callable[[str], None]
 
 
@@ -35,23 +38,27 @@ class StudyRunner:
     cache: Path | None = None
     """Where results are kept; by default the user's cache folder."""
 
-    def outcomes(self, studies: Sequence[Study], folder: Path, progress: Progress) -> dict[str, tuple[RunOutcome, ...]]:
-        """The outcome of every run of every study, by the name of the study."""
-        cases = {(study.name, run): case.case_id for study in studies for run, case in study.cases(folder).items()}
-        known = {} if self.fresh else {case_id: self._stored(case_id) for case_id in set(cases.values())}
-        found = {case_id: outcome for case_id, outcome in known.items() if outcome is not None}
-        waiting: dict[str, Task] = {}
-        for study in studies:
-            for run in study.runs:
-                case_id = cases[study.name, run.id]
-                if case_id not in found:
-                    waiting[case_id] = (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
-        for case_id, outcome in self._computed(waiting, progress):
+    def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> dict[str, Studies]:
+        """The outcome of every run of every study, by table and study; equal cases are run once."""
+        tasks = {
+            (table, study.name, run.id): (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
+            for table, studies in tables.items()
+            for study in studies
+            for run in study.runs
+        }
+        identities = {key: load_case(path, overrides).case_id for key, (_, path, overrides) in tasks.items()}
+        found: dict[str, RunOutcome] = {}
+        if not self.fresh:
+            stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
+            found = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
+        waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in found}
+        for case_id, outcome in self._computed(dict(reversed(waiting.items())), progress):
             found[case_id] = outcome
             self._store(outcome)
+        named = {key: found[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
         return {
-            study.name: tuple(found[cases[study.name, run.id]].model_copy(update={"id": run.id}) for run in study.runs)
-            for study in studies
+            table: {study.name: tuple(named[table, study.name, run.id] for run in study.runs) for study in studies}
+            for table, studies in tables.items()
         }
 
     def _computed(self, waiting: dict[str, Task], progress: Progress) -> Iterator[tuple[str, RunOutcome]]:
@@ -97,8 +104,6 @@ def _result_of(job: Future[RunOutcome]) -> RunOutcome:
 
 def simulated(task: Task) -> RunOutcome:
     """Runs one case to its end; a refusal on the way is an outcome that failed."""
-    from tactsim.case import load_case
-
     name, path, overrides = task
     case = load_case(path, overrides)
     try:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Self
 
 from pydantic import Field, model_validator
 
-from tactsim.case import Case, load_case
 from tactsim.units import FrozenModel
 
 Override = str | float | bool | dict[str, str | float | bool]
@@ -41,10 +39,6 @@ class Study(FrozenModel):
         if len(set(names)) < len(names):
             raise ValueError(f"two runs of the study {self.name} have the same id")
         return self
-
-    def cases(self, folder: Path) -> dict[str, Case]:
-        """The validated case of each run, by its id."""
-        return {run.id: load_case(folder / self.case, self.overrides(run)) for run in self.runs}
 
     def overrides(self, run: StudyRun) -> tuple[str, ...]:
         """What a run sets, as ``path.to.key=value``."""

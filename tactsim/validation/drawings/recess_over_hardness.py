@@ -21,6 +21,8 @@ class RecessOverHardness(Drawing):
     """Study of the table."""
     run: str
     """Run of the study, up to the largest recess."""
+    tissue: str
+    """What the run simulates."""
     hole: Annotated[Length, Field(gt=0)]
     """Inner diameter A of the annulus."""
     shallowest: Annotated[Length, Field(gt=0)]
@@ -31,7 +33,7 @@ class RecessOverHardness(Drawing):
     @classmethod
     def example(cls) -> Self:
         """From soft to hard."""
-        return cls(title="A/L", study="icf", run="default", hole=3e-3, shallowest=0.3e-3, hardness=(1, 4))
+        return cls(title="A/L", study="icf", run="default", tissue="ICF", hole=3e-3, shallowest=0.3e-3, hardness=(1, 4))
 
     def data(self, inputs: Inputs) -> dict[str, Any]:
         """Form ``curves``: force in N over A/L."""
@@ -40,7 +42,12 @@ class RecessOverHardness(Drawing):
         shown = rise >= self.shallowest
         ratio = self.hole / rise[shown]
         curves = [
-            {"label": f"hardness x {factor:g}", "x": ratio.tolist(), "y": (factor * force[shown]).tolist(), "style": "line"}
+            {
+                "label": f"{self.tissue}, modulus x {factor:g}",
+                "x": ratio.tolist(),
+                "y": (factor * force[shown]).tolist(),
+                "style": "line",
+            }
             for factor in self.hardness
         ]
         panel = {"y_axis": "threshold force", "unit": "N", "curves": curves, "logarithmic": True}

@@ -1,0 +1,79 @@
+"""Simulations of studies: run once, kept, and computed again when asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tactsim.case import load_case
+from tactsim.errors import InputError
+from tactsim.experiments.indentation import Indentation
+from tactsim.validation.execution import StudyRunner, Task, simulated
+from tactsim.validation.study import RunOutcome, Study
+
+CASES = Path(__file__).parents[3] / "cases"
+STUDY = Study.model_validate(
+    {
+        "name": "icf",
+        "case": "annulus_icf.yaml",
+        "runs": [{"id": "default"}, {"id": "stick", "set": {"experiment.contact": {"kind": "stick"}}}],
+    }
+)
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Identities of the cases that would have been computed: none is run, and the one that sticks is interrupted."""
+    seen: list[str] = []
+
+    def pretended(self: StudyRunner, waiting: dict[str, Task], progress: object) -> Iterator[tuple[str, RunOutcome]]:
+        for case_id, (name, _, _) in waiting.items():
+            seen.append(case_id)
+            status = "interrupted" if "stick" in name else "converged"
+            yield case_id, RunOutcome(id=name, case_id=case_id, status=status, reason="", quantities={}, history={}, seconds=0)
+
+    monkeypatch.setattr(StudyRunner, "_computed", pretended)
+    return seen
+
+
+def run(runner: StudyRunner) -> dict[str, dict[str, tuple[RunOutcome, ...]]]:
+    return runner.outcomes({"one": (STUDY,), "two": (STUDY,)}, CASES, lambda line: None)
+
+
+def test_equal_cases_run_once_and_what_ended_is_kept(tmp_path: Path, computed: list[str]) -> None:
+    found = run(StudyRunner(cache=tmp_path))
+    assert [outcome.id for outcome in found["one"]["icf"]] == ["default", "stick"]
+    assert found["one"] == found["two"]
+    assert computed == [load_case(CASES / STUDY.case, STUDY.overrides(one)).case_id for one in STUDY.runs]
+    assert run(StudyRunner(cache=tmp_path)) == found
+    assert computed[2:] == [computed[1]], "only the interrupted run is computed again"
+    run(StudyRunner(cache=tmp_path, fresh=True))
+    assert computed[3:] == computed[:2]
+
+
+def test_a_broken_cache_is_ignored(tmp_path: Path, computed: list[str]) -> None:
+    run(StudyRunner(cache=tmp_path))
+    for path in tmp_path.iterdir():
+        path.write_text("{", encoding="utf-8")
+    run(StudyRunner(cache=tmp_path))
+    assert len(computed) == 4
+
+
+def test_a_change_of_the_code_of_the_simulations_asks_for_new_ones(
+    tmp_path: Path, computed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(StudyRunner(cache=tmp_path))
+    monkeypatch.setattr("tactsim.validation.execution.code_identity", lambda: "changed")
+    run(StudyRunner(cache=tmp_path))
+    assert len(computed) == 4
+
+
+def test_a_refusal_on_the_way_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(self: Indentation, progress: object) -> None:
+        raise InputError("no mesh")
+
+    monkeypatch.setattr(Indentation, "run", refused)
+    outcome = simulated(("refused", str(CASES / STUDY.case), ()))
+    assert (outcome.status, outcome.reason) == ("failed", "no mesh")
