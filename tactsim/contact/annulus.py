@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.contact.profile import Revolved, rounded_box
+from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -35,9 +35,7 @@ class Annulus(Revolved):
             inner, outer = (format_quantity(value, "m") for value in (self.inner_radius, self.outer_radius))
             raise ValueError(f"inner_radius {inner} must be smaller than outer_radius {outer}")
         largest = min((self.outer_radius - self.inner_radius) / 2, self.height / 2)
-        if self.fillet > largest:
-            fillet, limit = format_quantity(self.fillet, "m"), format_quantity(largest, "m")
-            raise ValueError(f"fillet {fillet} is too large: at most half the ring's width, {limit}")
+        check_fillet(self.fillet, largest)
         return self
 
     @classmethod

@@ -7,6 +7,7 @@ from abc import abstractmethod
 import numpy as np
 
 from tactsim.interfaces import RigidBody
+from tactsim.units import format_quantity
 
 Array = np.ndarray
 
@@ -56,3 +57,16 @@ def rounded_box(p: Array, lower: Array, upper: Array, fillet: float) -> tuple[Ar
     normal = sign * np.where(corner, outside / safe, flat)
     hessian = np.where(corner, 1.0 / safe, 0.0) * (np.eye(2)[:, :, None] - normal[:, None] * normal[None, :])
     return distance, normal, hessian
+
+
+def check_fillet(fillet: float, largest: float) -> None:
+    """Refuse a fillet larger than the rectangle it rounds allows.
+
+    Raises
+    ------
+    ValueError
+        With both radii.
+    """
+    if fillet > largest:
+        given, limit = format_quantity(fillet, "m"), format_quantity(largest, "m")
+        raise ValueError(f"fillet {given} is too large: at most half the width and half the height of the section, {limit}")

@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.contact.profile import Revolved, rounded_box
-from tactsim.units import Length, format_quantity
+from tactsim.contact.profile import Revolved, check_fillet, rounded_box
+from tactsim.units import Length
 
 Array = np.ndarray
 
@@ -29,10 +29,7 @@ class Punch(Revolved):
 
     @model_validator(mode="after")
     def _rounded(self) -> Self:
-        largest = min(self.radius, self.height / 2)
-        if self.fillet > largest:
-            fillet, limit = format_quantity(self.fillet, "m"), format_quantity(largest, "m")
-            raise ValueError(f"fillet {fillet} is too large: at most {limit}")
+        check_fillet(self.fillet, min(self.radius, self.height / 2))
         return self
 
     @classmethod

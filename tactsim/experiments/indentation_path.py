@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.punch import Punch
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.indentation_model import IndentationModel, IndentationState
 from tactsim.experiments.indentation_report import IndentationRecord
+from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.fem.loading import Event, PathFollower
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.indentation import Indentation
 
 EVENT_TOLERANCE = 1e-5
 """Tolerance of the displacement at the threshold, as a part of the recess."""
@@ -34,7 +31,7 @@ PAST_PEAK = 0.95
 
 
 def indentation_path(
-    experiment: Indentation, model: IndentationModel, record: IndentationRecord
+    experiment: IndentationSetup, model: IndentationModel, record: IndentationRecord
 ) -> Iterator[tuple[IndentationState, bool]]:
     """Accepted states, each with whether it is the threshold.
 
@@ -71,7 +68,7 @@ def indentation_path(
 class _Course:
     """Follows the path, and from time to time goes on with a finer mesh of the same body."""
 
-    def __init__(self, experiment: Indentation, model: IndentationModel, record: IndentationRecord):
+    def __init__(self, experiment: IndentationSetup, model: IndentationModel, record: IndentationRecord):
         self.model, self._experiment, self._record = model, experiment, record
         self._size = experiment.size()
         self._most = LARGEST_GROWTH * len(model.mesh.elements)

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.materials.stability import principal_stretches, strongly_elliptic
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.indentation import Indentation
 
 Array = np.ndarray
 
@@ -35,7 +33,7 @@ class IndentationRecord:
         "unstable_volume_fraction": "1",
     }
 
-    def __init__(self, experiment: Indentation, model: IndentationModel, begin: float):
+    def __init__(self, experiment: IndentationSetup, model: IndentationModel, begin: float):
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
@@ -141,7 +139,7 @@ class IndentationRecord:
         """The result with everything that was accepted."""
         total = time.perf_counter() - self.begin
         return Result(
-            kind=self.experiment.kind,
+            kind="indentation",
             status=status,
             reason=reason,
             quantities=self._quantities(),

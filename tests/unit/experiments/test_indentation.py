@@ -11,9 +11,10 @@ from pydantic import ValidationError
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation import Indentation, MeshSettings
+from tactsim.experiments.indentation import Indentation
 from tactsim.experiments.indentation_path import indentation_path
 from tactsim.experiments.indentation_report import IndentationRecord
+from tactsim.experiments.indentation_setup import MeshSettings
 from tactsim.experiments.specimen import Layer, Specimen
 from tactsim.materials.neo_hookean import NeoHookean
 
