@@ -96,8 +96,8 @@ def test_halved_mesh_changes_little(case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("friction", [0.4, 1.0])
-@pytest.mark.parametrize("thickness", [3, 30])
+@pytest.mark.parametrize("friction", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("thickness", [3, 10, 30])
 @pytest.mark.parametrize("case", ["annulus_icf", "annulus_b1a"])
 def test_threshold_is_reached_over_thickness_and_friction(case, thickness, friction):
     most = f"experiment.displacement={min(0.9 * thickness, 12)} mm"
@@ -106,11 +106,12 @@ def test_threshold_is_reached_over_thickness_and_friction(case, thickness, frict
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["annulus_icf", "annulus_b1a"])
-def test_frictionless_tissue_slips_out_of_the_hole_before_it_is_full(case):
-    result = pressed(case, "experiment.contact.friction=0")
+def test_a_rise_that_falls_again_is_told():
+    """Without friction, tissue that stiffens in tension slips out of the hole before it is full."""
+    stiffening = "{kind: mooney_rivlin_5, c10: -5787.3 Pa, c01: 7537.6 Pa, c20: 8682.4 Pa, c11: 0 Pa, c02: 0 Pa}"
+    result = pressed("annulus_icf", "experiment.contact.friction=0", f"experiment.specimen.material={stiffening}")
     assert result.status == "failed"
-    assert "peaked" in result.reason, "no friction: the rise has a largest value below 0.8 mm, and the run says so"
+    assert "peaked at 573" in result.reason, "0.574 mm on this mesh and on one 1.5 times finer"
 
 
 @pytest.mark.slow

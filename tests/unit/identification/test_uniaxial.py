@@ -37,7 +37,7 @@ KNOWN = {
     "2-parameter": MooneyRivlin2(c10=2e3, c01=1e3),
     "3-parameter": MooneyRivlin3(c10=-8598.8, c01=10284, c11=5143.6),
     "5-parameter": MooneyRivlin5(c10=2e3, c01=1e3, c20=500.0, c11=250.0, c02=125.0),
-    "stable": MooneyRivlin5(c10=2e3, c01=1e3, c20=500.0, c11=0, c02=0),
+    "stable": MooneyRivlin3(c10=2e3, c01=1e3, c11=250.0),
 }
 
 
@@ -88,7 +88,7 @@ def test_the_two_term_fits_of_the_errata_and_the_stable_sets_are_better(name, co
     assert np.abs(error).max() == pytest.approx(largest, abs=0.006)
     assert np.sqrt(np.mean(error**2)) == pytest.approx(rms, abs=6e-4)
     better = named_material(name.replace("printed", "stable"))
-    assert better.max_relative_error < np.abs(error).max() / 3
+    assert better.max_relative_error < np.abs(error).max() / 2
 
 
 @pytest.mark.parametrize("form", FORMS)
