@@ -1,0 +1,1 @@
+"""Closed forms and exact numerical solutions: annular contact and linear viscoelasticity."""

@@ -1,0 +1,185 @@
+r"""Force and rise of the rigid flat annulus on an elastic half-space as quick functions of its radius ratio.
+
+.. math:: P = \kappa(b / a)\, \frac{4 G a \epsilon}{1 - \nu}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebval
+from numpy.typing import ArrayLike
+
+from tactsim.analytic.allowed_range import checked
+from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.errors import UnknownName
+
+LARGEST_RATIO = 0.99
+"""Largest radius ratio of the functions here; above it ``solve_annular_punch`` goes on to 0.9999."""
+INTERPOLATION_TERMS = 40
+"""Terms of the Chebyshev series; from the 35th on they are round-off."""
+INTERPOLATION_ERROR = 1e-12
+"""Bound of the error of the interpolated force factor and rise factor."""
+CHUNK = 8192
+"""Ratios evaluated at a time, so that the sums stay in the cache of the processor."""
+
+
+def force_factor(radius_ratio: ArrayLike, formula: str = "exact") -> np.ndarray:
+    r"""Force factor kappa = (1 - nu) P / (4 G a eps) of the annulus, dimensionless, of the shape of ``radius_ratio``.
+
+    With :math:`\beta = b / a`, the ``formula`` is one of ``FORMULAS``:
+
+    - ``exact``: the solved contact, interpolated to ``INTERPOLATION_ERROR``;
+    - ``thesis_4_2_21``: :math:`1 - 4 \beta^3 / (3 \pi^2) - \beta^4 / 8`, as printed in the thesis, eq. 4.2.21 (an error there);
+    - ``small_hole_series``: :math:`1 - 4 \beta^3 / (3 \pi^2) - 8 \beta^5 / (15 \pi^2) - 16 \beta^6 / (27 \pi^4)`, of use to
+      :math:`\beta = 0.5` (Gubenko & Mossakovskii 1960, PMM 24; Collins 1963, Proc. Edinburgh Math. Soc. 13, 235);
+    - ``smythe``: :math:`(2 / \pi) (\cos^{-1} \beta + \sqrt{1 - \beta^2} \tanh^{-1} \beta)
+      (1 + 0.0143\, \beta^{-1} \tan^3 1.28 \beta)`, within 0.4 % to :math:`\beta = 0.75` (Smythe 1951, J. Appl. Phys. 22, 1499).
+
+    Raises
+    ------
+    InvalidQuantity
+        If a ratio is outside ``[0, 0.99]``.
+    UnknownName
+        If the formula is not one of ``FORMULAS``.
+    """
+    if formula not in _FORMULAS:
+        raise UnknownName("formula of the force factor", str(formula), FORMULAS)
+    return _FORMULAS[formula](checked("radius ratio", radius_ratio, f"[0, {LARGEST_RATIO}]"))
+
+
+def rise_factor(radius_ratio: ArrayLike) -> np.ndarray:
+    """Height of the surface on the axis over the face of the annulus, over eps; dimensionless, of the shape of ``radius_ratio``.
+
+    The solved contact, interpolated to ``INTERPOLATION_ERROR``.
+
+    Raises
+    ------
+    InvalidQuantity
+        If a ratio is outside ``[0, 0.99]``.
+    """
+    return _interpolated(checked("radius ratio", radius_ratio, f"[0, {LARGEST_RATIO}]"), 1)
+
+
+def annulus_force(
+    displacement: ArrayLike,
+    outer_radius: ArrayLike,
+    radius_ratio: ArrayLike,
+    shear_modulus: ArrayLike,
+    *,
+    poisson_ratio: ArrayLike = 0.5,
+    formula: str = "exact",
+) -> np.ndarray:
+    r"""Force in N that presses the annulus by ``displacement`` into a half-space, of the broadcast shape.
+
+    .. math:: P = \kappa(b / a)\, \frac{4 G a \epsilon}{1 - \nu}
+
+    Parameters
+    ----------
+    displacement : array_like
+        ``eps >= 0`` in m.
+    outer_radius : array_like
+        ``a > 0`` in m.
+    radius_ratio : array_like
+        ``b / a`` in ``[0, 0.99]``.
+    shear_modulus : array_like
+        ``G > 0`` in Pa.
+    poisson_ratio : array_like
+        In ``(-1, 0.5]``.
+    formula : str
+        One of ``FORMULAS``.
+
+    Raises
+    ------
+    InvalidQuantity, UnknownName
+        If an argument is out of its range.
+    """
+    return checked("displacement", displacement, "[0, inf) m") * _stiffness(
+        outer_radius, radius_ratio, shear_modulus, poisson_ratio=poisson_ratio, formula=formula
+    )
+
+
+def annulus_displacement(
+    force: ArrayLike,
+    outer_radius: ArrayLike,
+    radius_ratio: ArrayLike,
+    shear_modulus: ArrayLike,
+    *,
+    poisson_ratio: ArrayLike = 0.5,
+    formula: str = "exact",
+) -> np.ndarray:
+    """Displacement in m of the annulus pressed by ``force`` >= 0 in N, of the broadcast shape: ``annulus_force`` inverted.
+
+    Raises
+    ------
+    InvalidQuantity, UnknownName
+        If an argument is out of its range.
+    """
+    return checked("force", force, "[0, inf) N") / _stiffness(
+        outer_radius, radius_ratio, shear_modulus, poisson_ratio=poisson_ratio, formula=formula
+    )
+
+
+def _stiffness(
+    outer_radius: ArrayLike, radius_ratio: ArrayLike, shear_modulus: ArrayLike, *, poisson_ratio: ArrayLike, formula: str
+) -> np.ndarray:
+    """Force per displacement in N/m."""
+    radius = checked("outer radius", outer_radius, "(0, inf) m")
+    modulus = checked("shear modulus", shear_modulus, "(0, inf) Pa")
+    ratio = checked("Poisson's ratio", poisson_ratio, "(-1, 0.5]")
+    return force_factor(radius_ratio, formula) * (4 * modulus * radius / (1 - ratio))
+
+
+@cache
+def _coefficients() -> np.ndarray:
+    """Chebyshev coefficients of the force factor and the rise factor in atanh(b / a), shape (2, INTERPOLATION_TERMS).
+
+    In this variable the logarithm at b = a is at infinity and the nearest singularity at a distance of pi / 4 or more.
+    """
+    angle = (np.arange(INTERPOLATION_TERMS) + 0.5) * np.pi / INTERPOLATION_TERMS
+    ratios = np.tanh(np.arctanh(LARGEST_RATIO) * (1 + np.cos(angle)) / 2)
+    punches = [solve_annular_punch(ratio) for ratio in ratios]
+    values = np.array([[punch.force_factor, punch.rise_factor] for punch in punches])
+    coefficients = 2 / INTERPOLATION_TERMS * np.cos(np.outer(np.arange(INTERPOLATION_TERMS), angle)) @ values
+    coefficients[0] /= 2
+    return coefficients.T
+
+
+def _interpolated(ratio: np.ndarray, which: int) -> np.ndarray:
+    """Force factor (``which`` = 0) or rise factor (1), of the shape of ``ratio``."""
+    coefficients, flat, values = _coefficients()[which], ratio.ravel(), np.empty(ratio.size)
+    for start in range(0, flat.size, CHUNK):
+        piece = slice(start, start + CHUNK)
+        values[piece] = chebval(np.arctanh(flat[piece]) * (2 / np.arctanh(LARGEST_RATIO)) - 1, coefficients)
+    return values.reshape(ratio.shape)
+
+
+def _exact(ratio: np.ndarray) -> np.ndarray:
+    return _interpolated(ratio, 0)
+
+
+def _thesis(ratio: np.ndarray) -> np.ndarray:
+    return 1 - 4 * ratio**3 / (3 * np.pi**2) - ratio**4 / 8
+
+
+def _small_hole_series(ratio: np.ndarray) -> np.ndarray:
+    return 1 - 4 * ratio**3 / (3 * np.pi**2) - 8 * ratio**5 / (15 * np.pi**2) - 16 * ratio**6 / (27 * np.pi**4)
+
+
+def _smythe(ratio: np.ndarray) -> np.ndarray:
+    thin = np.arccos(ratio) + np.sqrt(1 - ratio**2) * np.arctanh(ratio)
+    tangent = np.tan(1.28 * ratio)
+    correction = 0.0143 * tangent**2 * np.divide(tangent, ratio, out=np.zeros_like(ratio), where=ratio > 0)
+    return 2 / np.pi * thin * (1 + correction)
+
+
+_FORMULAS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "exact": _exact,
+    "thesis_4_2_21": _thesis,
+    "small_hole_series": _small_hole_series,
+    "smythe": _smythe,
+}
+FORMULAS = tuple(_FORMULAS)
+"""Names of the formulas of the force factor."""

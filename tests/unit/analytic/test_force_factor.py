@@ -1,0 +1,116 @@
+"""The quick force factor: interpolation error, formulas, units, speed and what is refused."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.analytic.force_factor import (
+    FORMULAS,
+    INTERPOLATION_ERROR,
+    annulus_displacement,
+    annulus_force,
+    force_factor,
+    rise_factor,
+)
+from tactsim.errors import InvalidQuantity, UnknownName
+
+RATIOS = np.concatenate([np.linspace(0, 0.99, 151), np.geomspace(1e-9, 0.1, 20), 0.99 * (1 - np.geomspace(1e-9, 0.1, 20))])
+
+
+def test_the_interpolant_keeps_its_error():
+    punches = [solve_annular_punch(ratio, tolerance=1e-12) for ratio in RATIOS]
+    force_errors = force_factor(RATIOS) - [punch.force_factor for punch in punches]
+    rise_errors = rise_factor(RATIOS) - [punch.rise_factor for punch in punches]
+    assert INTERPOLATION_ERROR <= 1e-9
+    assert np.abs(force_errors).max() <= INTERPOLATION_ERROR
+    assert np.abs(rise_errors).max() <= INTERPOLATION_ERROR
+    assert np.abs(force_errors + 3 * INTERPOLATION_ERROR).max() > INTERPOLATION_ERROR
+
+
+@pytest.mark.parametrize(
+    ("formula", "ratio", "error", "tolerance"),
+    [
+        ("thesis_4_2_21", 0.5, -0.006, 5e-4),  # errata.md, E6: printed to one digit
+        ("thesis_4_2_21", 0.8, -0.020, 5e-4),
+        ("thesis_4_2_21", 0.99, 0.23, 5e-3),
+        ("small_hole_series", 0.5, 3e-4, 5e-5),  # verification.md, 3.2
+        ("small_hole_series", 0.8, 0.0139 / 0.8976, 5e-3),
+        ("smythe", 0.75, -0.0034, 5e-5),
+        ("smythe", 0.95, -0.019, 5e-4),
+        ("exact", 0.5, 0.0, 1e-12),
+    ],
+)
+def test_the_formulas_have_their_known_errors(formula, ratio, error, tolerance):
+    found = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
+    assert found == pytest.approx(error, abs=tolerance)
+    assert found != pytest.approx(error + 3 * tolerance, abs=tolerance)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_every_formula_starts_at_one_and_keeps_the_shape(formula):
+    assert float(force_factor(0.0, formula)) == pytest.approx(1, rel=1e-12)
+    ratios = np.linspace(0, 0.99, 12).reshape(3, 4)
+    values = force_factor(ratios, formula)
+    assert values.shape == (3, 4)
+    np.testing.assert_allclose(values[1, 2], force_factor(float(ratios[1, 2]), formula), rtol=1e-15)
+    assert force_factor([], formula).shape == (0,)
+
+
+def test_force_and_displacement_are_in_newton_and_metre():
+    """8 G a eps for a solid incompressible punch."""
+    assert float(annulus_force(1e-3, 3e-3, 0.0, 1e3)) == pytest.approx(8 * 1e3 * 3e-3 * 1e-3, rel=1e-12)
+    assert float(annulus_force(1e-3, 3e-3, 0.0, 1e3, poisson_ratio=0.0)) == pytest.approx(4 * 1e3 * 3e-3 * 1e-3, rel=1e-12)
+    assert float(annulus_force(1e-3, 3e-3, 0.5, 1e3)) == pytest.approx(24e-3 * 0.9810178969, rel=1e-10)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_displacement_inverts_force_over_broadcast_arrays(formula):
+    displacement, ratio = np.linspace(0, 2e-3, 5)[:, None], np.linspace(0, 0.9, 7)
+    force = annulus_force(displacement, 2e-3, ratio, 500.0, poisson_ratio=0.4, formula=formula)
+    assert force.shape == (5, 7)
+    back = annulus_displacement(force, 2e-3, ratio, 500.0, poisson_ratio=0.4, formula=formula)
+    np.testing.assert_allclose(back, np.broadcast_to(displacement, (5, 7)), rtol=1e-14)
+
+
+def test_two_hundred_thousand_pairs_a_second():
+    """A tenth of a million times ten of what one idle core does, so that a loaded machine passes."""
+    generator = np.random.default_rng(3)
+    ratio, displacement = generator.uniform(0, 0.99, 100_000), generator.uniform(0, 1e-3, 100_000)
+    force_factor(0.5)
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        annulus_force(displacement, 3e-3, ratio, 1e3)
+        times.append(time.perf_counter() - start)
+    assert ratio.size / min(times) >= 2e5
+
+
+def test_unknown_formulas_are_refused_with_the_known_ones():
+    with pytest.raises(UnknownName, match=r"formula of the force factor 'smyth' \(did you mean 'smythe'\?\); known: exact, "):
+        force_factor(0.5, "smyth")
+
+
+@pytest.mark.parametrize("ratio", [-0.01, 0.9901, 1.0, np.nan])
+def test_ratios_out_of_range_are_refused(ratio):
+    for function in (force_factor, rise_factor):
+        with pytest.raises(InvalidQuantity, match=r"radius ratio .* allowed: \[0, 0.99\]"):
+            function([0.5, ratio])
+
+
+@pytest.mark.parametrize(
+    ("position", "value", "message"),
+    [(0, -1e-3, "displacement"), (0, np.inf, "displacement"), (1, 0.0, "outer radius"), (3, -5.0, "shear modulus")],
+)
+def test_other_arguments_out_of_range_are_refused(position, value, message):
+    arguments = [1e-3, 3e-3, 0.5, 1e3]
+    arguments[position] = value
+    with pytest.raises(InvalidQuantity, match=message):
+        annulus_force(*arguments)
+    with pytest.raises(InvalidQuantity, match="force" if position == 0 else message):
+        annulus_displacement(*arguments)
+    with pytest.raises(InvalidQuantity, match="Poisson"):
+        annulus_force(1e-3, 3e-3, 0.5, 1e3, poisson_ratio=0.7)

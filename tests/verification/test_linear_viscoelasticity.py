@@ -1,0 +1,224 @@
+"""Linear viscoelasticity: the standard solid in closed form, and chapter 4 of the thesis to its printed digits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tactsim.analytic.atrial import TIMES, atrial_shear_compliance, table_4_1
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
+from tactsim.analytic.histories import harmonic, ramp, step
+from tactsim.analytic.interconversion import kelvin_of, maxwell_of
+from tactsim.analytic.response import response
+
+SOLID = GeneralizedMaxwell(3000.0, [2000.0], [5.0])
+"""verification.md, section 4, case SLS-1: moduli in Pa, time in s."""
+RADIUS, DEPTH = 1.5e-3, 0.3e-3
+"""Punch radius and indentation in m."""
+OMEGA = 2 * math.pi
+"""Angular frequency of the harmonic load of the thesis in rad/s, section 4.7."""
+
+
+def agree(found, expected, *, digit):
+    """Equal to one unit of the last printed ``digit``: the thesis cuts its digits or rounds them."""
+    np.testing.assert_array_less(np.abs(np.asarray(found) - np.asarray(expected)), digit)
+
+
+def punch_force(history, t):
+    """Force in N of a rigid punch on a half-space, 8 a times the integral of G(t - s) over the indentation."""
+    return 8 * RADIUS * response(SOLID, history, t)
+
+
+# The standard solid
+
+
+STEP_FORCES = {0.0: 0.0180000, 5.0: 0.01344873, 1e6: 0.0108000}
+
+
+def test_the_step_and_the_ramp_of_the_standard_solid():
+    agree(punch_force(step(DEPTH), list(STEP_FORCES)), list(STEP_FORCES.values()), digit=5.1e-9)
+    agree(punch_force(ramp(DEPTH / 2, 2.0), 2.0), 0.01673424, digit=5.1e-9)
+
+
+@pytest.mark.parametrize("wrong", [0.01344873 + 2e-8, 0.01344873 - 2e-8])
+def test_a_wrong_step_force_is_refused(wrong):
+    with pytest.raises(AssertionError):
+        agree(punch_force(step(DEPTH), 5.0), wrong, digit=5.1e-9)
+
+
+def test_a_wrong_ramp_force_is_refused():
+    with pytest.raises(AssertionError):
+        agree(punch_force(ramp(DEPTH / 2, 2.0), 2.0), 0.01673424 + 2e-8, digit=5.1e-9)
+
+
+def test_the_ramp_of_the_standard_solid_in_closed_form():
+    """G_inf d + G_1 v tau (1 - exp(-t/tau)) while it rises, then the relaxation of that."""
+    t = np.logspace(-9, 2, 60)
+    risen = np.minimum(t, 2.0)
+    branch = 2000 * (DEPTH / 2) * 5 * -np.expm1(-risen / 5) * np.exp(-(t - risen) / 5)
+    expected = 3000 * (DEPTH / 2) * risen + branch
+    np.testing.assert_allclose(response(SOLID, ramp(DEPTH / 2, 2.0), t), expected, rtol=1e-13)
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(response(SOLID, ramp(DEPTH / 2, 2.0 * (1 + 3e-12)), t), expected, rtol=1e-13)
+
+
+def test_the_creep_of_the_standard_solid():
+    """J = 1/G_inf - (1/G_inf - 1/G_0) exp(-t/tau_c) with tau_c = tau G_0/G_inf = 8.3333 s."""
+    kelvin = kelvin_of(SOLID)
+    agree(kelvin.times, 8.3333, digit=1e-4)
+    t = np.logspace(-4, 3, 30)
+    expected = 1 / 3000 - (1 / 3000 - 1 / 5000) * np.exp(-t * 3000 / (5 * 5000))
+    np.testing.assert_allclose(kelvin.creep(t), expected, rtol=1e-14)
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(GeneralizedKelvin(1 / 5000, kelvin.compliances, [5.0]).creep(t), expected, rtol=1e-14)
+
+
+# Table 4.1
+
+
+@pytest.mark.parametrize("times", TIMES)
+def test_the_table_keeps_its_curves_through_the_relaxation_modulus(times):
+    """Twelve decades; round-off of sums and products over nine terms."""
+    kelvin = atrial_shear_compliance(times)
+    maxwell = maxwell_of(kelvin)
+    back = kelvin_of(maxwell)
+    x = np.logspace(-7, 5, 241)
+    np.testing.assert_allclose(back.creep(x), kelvin.creep(x), rtol=1e-12)
+    np.testing.assert_allclose(maxwell_of(back).relaxation(x), maxwell.relaxation(x), rtol=1e-12)
+    np.testing.assert_allclose(back.complex_compliance(x), kelvin.complex_compliance(x), rtol=1e-12)
+    np.testing.assert_allclose(maxwell.complex_modulus(x) * kelvin.complex_compliance(x), 1, rtol=1e-12)
+    np.testing.assert_allclose(response(kelvin, step(1.0), x), kelvin.creep(x), rtol=1e-12)
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(back.creep(x), kelvin.creep(x * (1 + 1e-11)), rtol=1e-12)
+
+
+RATES = [4.296, 2.771, 0.003118, 0.002831, 0.002128, 0.001606, 0.000979, 0.000769]
+"""E_i / C_i in 1/s, sorted; eq. 4.6.4 prints their first two or three digits."""
+PRINTED_RATES = {0.01: [4.29, 2.77], 1e-4: [0.0031, 0.0028, 0.0021, 0.0016], 1e-5: [0.00098, 0.00077]}
+AMPLITUDES = [10.64, 16.58, 133.35, 146.15, 196.39, 253.67, 418.36, 532.91]
+"""Coefficients of eq. 4.6.4 in 1/MPa."""
+
+
+def rates(times: str) -> np.ndarray:
+    """Retardation rates in 1/s, fastest first, in which order eq. 4.6.4 has them."""
+    return 1 / table_4_1(times).times
+
+
+def test_the_rates_of_the_printed_displacement_are_those_of_viscosities():
+    found = rates("viscosities")
+    agree(found[:2], RATES[:2], digit=5.1e-4)
+    agree(found[2:], RATES[2:], digit=5.1e-7)
+    start = 0
+    for digit, printed in PRINTED_RATES.items():
+        agree(found[start : start + len(printed)], printed, digit=digit)
+        start += len(printed)
+
+
+def test_retardation_times_do_not_give_the_printed_rates():
+    with pytest.raises(AssertionError):
+        agree(rates("retardation_times")[:2], RATES[:2], digit=5.1e-4)
+
+
+def test_the_bracket_of_the_printed_displacement():
+    """Thesis, eq. 4.6.4; most digits are cut, 418.36 and 532.91 are rounded."""
+    kelvin = table_4_1("viscosities").scaled(1e6)
+    agree(kelvin.compliances, AMPLITUDES, digit=0.01)
+    agree(kelvin.equilibrium_compliance, 1708.08, digit=0.01)
+    for k in range(8):
+        wrong = np.array(AMPLITUDES)
+        wrong[k] += 0.03
+        with pytest.raises(AssertionError):
+            agree(kelvin.compliances, wrong, digit=0.01)
+
+
+def test_the_bracket_is_half_the_shear_compliance():
+    """4 r kappa u / p = 1 / (2 G) at nu = 0.5 (eq. 4.2.21) and the table as 1 / (2 G)."""
+    t = np.logspace(-3, 4, 30)
+    bracket = 1708.08 - np.exp(-np.outer(t, rates("viscosities"))) @ AMPLITUDES
+    half = atrial_shear_compliance("viscosities", "half_shear").creep(t) / 2 * 1e6
+    np.testing.assert_allclose(half, bracket, atol=0.05)  # eight amplitudes cut at 0.01
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(atrial_shear_compliance("viscosities").creep(t) / 2 * 1e6, bracket, atol=0.05)
+
+
+# The static and the harmonic load of section 4.7
+
+
+def dynamic_coefficients(amplitude: float) -> dict[str, float]:
+    """Coefficients of the indentation under a load of amplitude N sin(2 pi (t - 2)) from 2 s on, times 4 r kappa, N / MPa.
+
+    Those of exp(-rate t) hold the factor exp(2 rate), as eq. 4.7.2 has them; ``slow`` is the sum of the six slow transients.
+    """
+    kelvin = table_4_1("viscosities").scaled(1e6)
+    x = 1 / kelvin.times
+    transients = amplitude * kelvin.compliances * OMEGA * x / (OMEGA**2 + x**2)
+    in_phase = amplitude * (kelvin.glassy_compliance + (kelvin.compliances * x**2 / (OMEGA**2 + x**2)).sum())
+    first, second = transients[:2] * np.exp(2 * x[:2])
+    return {"first": first, "second": second, "slow": transients[2:].sum(), "cos": -transients.sum(), "sin": in_phase}
+
+
+def test_the_dynamic_coefficients_are_those_of_the_response():
+    kelvin = table_4_1("viscosities").scaled(1e6)
+    x, t = 1 / kelvin.times, np.linspace(2, 6, 81)
+    c = dynamic_coefficients(0.25)
+    slow = 0.25 * kelvin.compliances[2:] * OMEGA * x[2:] / (OMEGA**2 + x[2:] ** 2)
+    expected = c["cos"] * np.cos(OMEGA * t) + c["sin"] * np.sin(OMEGA * t) + np.exp(-np.outer(t - 2, x[2:])) @ slow
+    expected += c["first"] * np.exp(-x[0] * t) + c["second"] * np.exp(-x[1] * t)
+    found = response(kelvin, harmonic(0.25, 1.0, start=2.0), t)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)  # of parts of size 3
+    assert slow.sum() == pytest.approx(c["slow"], rel=1e-14)
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(response(kelvin, harmonic(0.25, 1.0, start=2.0 + 1e-11), t), expected, rtol=0, atol=1e-12)
+
+
+def test_the_printed_dynamic_response_has_the_amplitude_of_its_transform():
+    """Thesis, eq. 4.7.1: pi / 2 in the transform is an amplitude of 0.25 N, where the text has 0.2 N; eq. 4.7.2 has 0.25 N."""
+    c = dynamic_coefficients(0.25)
+    agree(c["second"], 391.05, digit=0.01)
+    agree(c["first"], 6679.99, digit=0.01)
+    agree(c["cos"], -2.869, digit=5.1e-4)
+    agree(c["sin"], 1.527, digit=5.1e-4)
+    agree([c["cos"], c["sin"]], [-2.86, 1.52], digit=0.01)
+
+
+@pytest.mark.parametrize(("name", "printed"), [("second", 391.05), ("first", 6679.99), ("cos", -2.86), ("sin", 1.52)])
+def test_the_amplitude_of_the_text_does_not_give_the_printed_response(name, printed):
+    with pytest.raises(AssertionError):
+        agree(dynamic_coefficients(0.2)[name], printed, digit=0.01)
+    assert dynamic_coefficients(0.2)[name] == pytest.approx(0.8 * dynamic_coefficients(0.25)[name], rel=1e-14)
+
+
+def static_response(units: slice, t: np.ndarray) -> np.ndarray:
+    """Response in N / MPa of the free spring and the given units, fastest first, to -0.2 N from t = 0."""
+    kelvin = table_4_1("viscosities").scaled(1e6)
+    chosen = GeneralizedKelvin(kelvin.glassy_compliance, kelvin.compliances[units], kelvin.times[units])
+    return response(chosen, step(-0.2), t)
+
+
+def test_the_static_part_of_the_printed_response_keeps_the_two_fast_units():
+    t = np.array([0.0, 0.3, 1.0, 2.0, 4.0])
+    fast = rates("viscosities")[:2]
+    printed = 2.12 * np.exp(-fast[0] * t) + 3.31 * np.exp(-fast[1] * t)
+    agree(static_response(slice(0, 2), t) - printed, -5.449, digit=0.02)  # two amplitudes cut at 0.01
+    missing = static_response(slice(None), t) - static_response(slice(0, 2), t)
+    agree(missing[-2:], [-0.99, -1.97], digit=0.01)
+    with pytest.raises(AssertionError):
+        agree(static_response(slice(None), t) - printed, -5.449, digit=0.02)
+
+
+@pytest.mark.parametrize(
+    ("found", "printed", "expected"),
+    [
+        (dynamic_coefficients(0.25)["slow"], 0.06, 0.0985),
+        (dynamic_coefficients(0.2)["slow"], 0.06, 0.0788),
+        (float(static_response(slice(0, 2), np.array(1e6))), -5.46, -5.449),
+    ],
+)
+def test_two_printed_coefficients_do_not_come_out(found, printed, expected):
+    """Of eq. 4.7.2; what is found stands here instead."""
+    agree(found, expected, digit=5.1e-4)
+    with pytest.raises(AssertionError):
+        agree(found, printed, digit=0.01)
