@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
+from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ class Material(Kind):
     """
 
     bulk_modulus: float | None
+    relaxation: Relaxation | None = None
+    """Relaxation of the isochoric stress; null means elastic."""
 
     @property
     @abstractmethod

@@ -7,24 +7,16 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pydantic import TypeAdapter
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled, weighted_percentiles
+from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.display.result_figures import Drawing, ResultFigures
-from tactsim.display.section import Section, draw_body, draw_field, draw_mesh
-from tactsim.interfaces import RigidBody
-from tactsim.registry import tagged_union
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 
 Array = np.ndarray
 
-SHOWN_RADII = 2.4
-"""Half width of the picture in radii of the body: farther out the tissue is at rest."""
-
-FORCE_COLOUR, RISE_COLOUR, SENSOR_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#d62728", "#b00020"
-GRID = 700
-"""Points per direction on which a body's outline is traced."""
+FORCE_COLOUR, RISE_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#b00020"
 
 
 class IndentationFigures(ResultFigures):
@@ -44,7 +36,7 @@ def indentation_figure(result: Result) -> Figure:
         figure = new_figure(11.0 if has_section else 6.0, 4.4)
         axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
         if has_section:
-            _draw_section(axes[0], result)
+            draw_contact_section(axes[0], result, result.frames[-1].time)
         _draw_curve(axes[-1], result)
         figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
@@ -67,75 +59,6 @@ def _mark_failure(figure: Figure, result: Result) -> None:
 
 def _shortened(words: str, most: int) -> str:
     return words if len(words) <= most else f"{words[: most - 1]}…"
-
-
-def _draw_section(axis: Axes, result: Result) -> None:
-    frame = result.frames[-1]
-    section = Section(frame)
-    pressure = np.asarray(frame.point_data["pressure [Pa]"]).ravel() / 1e3
-    body: RigidBody | None = _body(result)
-    height = 1e3 * (result.details.get("starting_height", 0.0) - frame.time)
-    limits = _window(section, body, height)
-    _draw_pressure(axis, section, pressure, limits)
-    draw_mesh(axis, section)
-    if body is not None:
-        r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))
-        points = np.stack([r.ravel(), z.ravel() - height]) * 1e-3
-        draw_body(axis, body.signed_distance(points)[0].reshape(r.shape), (r, z))
-        _draw_sensor(axis, result, body, height)
-    axis.set(xlim=(-limits[0], limits[0]), ylim=limits[1:], aspect="equal", xlabel="radius in mm", ylabel="height in mm")
-    axis.set_title(f"at a displacement of {format_quantity(frame.time, 'm')} (elements shown on the left)", loc="left")
-    axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
-    despined(axis)
-
-
-def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[float, float, float]) -> None:
-    """The pressure in kPa with robust limits, so that the singular edges do not take all the colours."""
-    seen = section.places[:, 0] <= limits[0]
-    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
-    low, high = (low, high) if high > low else (low - 0.5, high + 0.5)
-    drawn = draw_field(axis, section, pressure, cmap="viridis", vmin=low, vmax=high)
-    beyond = (bool(pressure[seen].min() < low), bool(pressure[seen].max() > high))
-    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
-    bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
-    bar.set_label(f"pressure in kPa (colours from the 1st to the 99th percentile of the area; largest {pressure.max():.4g} kPa)")
-    bar.outline.set_linewidth(0.5)
-
-
-def _window(section: Section, body: RigidBody | None, height: float) -> tuple[float, float, float]:
-    """Half width, bottom and top of the picture in mm."""
-    radius = 1e3 * float(getattr(body, "outer_radius", getattr(body, "radius", np.inf)))
-    widest = float(section.places[:, 0].max())
-    half = min(1.03 * widest, SHOWN_RADII * radius)
-    bottom, top = section.places[:, 1].min(), section.places[section.places[:, 0] <= half, 1].max()
-    margin = 0.03 * (top - bottom)
-    return half, float(bottom - margin), float(max(top, height) + 0.2 * min(half, radius) + margin)
-
-
-def _body(result: Result) -> Any:
-    """The rigid body that the result describes, None in a result of a version that did not."""
-    described = result.details.get("body")
-    return TypeAdapter(tagged_union("tactsim.contact", RigidBody)).validate_python(described) if described else None
-
-
-def _draw_sensor(axis: Axes, result: Result, body: RigidBody, height: float) -> None:
-    """The inner sensor's plane across the hole."""
-    recess, inner = result.details.get("recess"), getattr(body, "inner_radius", None)
-    if recess is None or inner is None:
-        return
-    level, edge = height + 1e3 * recess, 1e3 * inner
-    axis.plot([-edge, edge], [level, level], color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
-    axis.annotate(
-        f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face",
-        (0.0, level),
-        (0.0, 3.0),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        color=SENSOR_COLOUR,
-        fontsize=7,
-        zorder=5,
-    )
 
 
 def _draw_curve(axis: Axes, result: Result) -> None:

@@ -11,8 +11,9 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.posed_contact import PosedContact
-from tactsim.fem.body import Body, Kinematics
+from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.newton import Problem
+from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody
@@ -22,6 +23,7 @@ from tactsim.mesh.quadratic import QuadraticMesh
 
 Array = np.ndarray
 
+DOWN = np.array([0.0, -1.0])
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
 
@@ -101,11 +103,22 @@ class IndentationModel:
         ConvergenceError
             If Newton fails, or no penalty keeps the tissue out of the bodies.
         """
+        return self.equilibrium(state, load, guess)
+
+    def equilibrium(
+        self, state: IndentationState, load: float, guess: Array, *, force: float | None = None, past: PastStress | None = None
+    ) -> IndentationState:
+        """As ``advance``; with a ``force`` in N the bodies move on from ``load`` until they press so hard.
+
+        ``past`` is what materials that relax remember.
+        """
         regularisation, iterations = state.regularisation, 0
-        shift = np.array([0.0, state.load - load])
+        push = None if force is None else PrescribedForce(DOWN, force)
         for _ in range(PENALTY_ATTEMPTS):
-            contacts = [c.moved(c.place + shift, regularisation.applied(c.pair)) for c in state.contacts]
-            solved = self.problem.solve(guess, interfaces=contacts)
+            contacts = self._moved(state, load, regularisation)
+            solved = self.problem.solve(guess, interfaces=contacts, push=push, past=past)
+            load += solved.travel
+            contacts = self._moved(state, load, regularisation)
             iterations += solved.iterations
             displacement = self.displacement(solved.unknowns)
             results = [contact.at(displacement) for contact in contacts]
@@ -123,6 +136,12 @@ class IndentationModel:
                 )
             guess = solved.unknowns
         raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+
+    @staticmethod
+    def _moved(state: IndentationState, load: float, regularisation: Regularisation) -> list[PosedContact]:
+        """The contacts of a state with their bodies at another displacement in m."""
+        shift = (load - state.load) * DOWN
+        return [c.moved(c.place + shift, regularisation.applied(c.pair)) for c in state.contacts]
 
     def too_coarse(self, state: IndentationState, size: Size, factor: float) -> Array:
         """Elements (numbers) whose longest deformed edge exceeds ``factor`` times the size wanted where it is now."""
@@ -150,9 +169,9 @@ class IndentationModel:
         """Displacements (2, n) in m of the surface points."""
         return self.points.interpolate(self.space.split(unknowns)[0])
 
-    def base_force(self, unknowns: Array) -> Array:
+    def base_force(self, unknowns: Array, past: PastStress | None = None) -> Array:
         """Resultant (2,) in N of the internal forces on the base nodes."""
-        internal = self.body.residual(unknowns)[: self.space.displacement_size].reshape(-1, 2)
+        internal = self.body.with_past(past).residual(unknowns)[: self.space.displacement_size].reshape(-1, 2)
         return internal[self.base_nodes].sum(axis=0)
 
     def highest(self, unknowns: Array, radius: float) -> tuple[float, float]:

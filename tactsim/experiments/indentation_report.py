@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from tactsim.experiments.contact_report import contact_assumptions, contact_values, elliptic_points, section_frame, tissue_rise
 from tactsim.experiments.indentation_model import IndentationModel, IndentationState
 from tactsim.experiments.indentation_setup import IndentationSetup
-from tactsim.materials.stability import principal_stretches, strongly_elliptic
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -52,9 +52,7 @@ class IndentationRecord:
 
     def rise(self, state: IndentationState) -> tuple[float, float]:
         """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m."""
-        face = self.starting_height - state.load
-        highest, axis = self.model.highest(state.unknowns, self.experiment.body.inner_radius)
-        return highest - face, axis - face
+        return tissue_rise(self.model, state, self.experiment.body, self.starting_height)
 
     def adapted(self, model: IndentationModel, split: Refinement) -> None:
         """Go on with a refined model: a child has left ellipticity where the nearest point of its parent has."""
@@ -77,63 +75,19 @@ class IndentationRecord:
         return record
 
     def _values(self, state: IndentationState) -> dict[str, float]:
-        displacement = self.model.displacement(state.unknowns)
-        tractions = [contact.at(displacement) for contact in state.contacts]
-        forces = [-float(self.model.surface.total(t.traction)[1]) for t in tractions]
-        self._unstable |= ~self._elliptic(self.model, state)
+        self._unstable |= ~elliptic_points(self.model, state)
         weights = self.model.body.points.weights
-        values = {
-            "displacement": state.load,
-            "reaction_force": forces[0],
-            "base_force": float(self.model.base_force(state.unknowns)[1]),
-            "max_penetration": max(0.0, *(float(-t.gap.min()) for t in tractions)),
-            "max_pressure": max(float(t.pressure.max()) for t in tractions),
-            "min_volume_ratio": float(state.kinematics.J.min()),
-            "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
-        }
+        values, forces = contact_values(self.model, state)
+        values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
         if self.experiment.recess is not None:
             rise, axis = self.rise(state)
             values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": sum(forces[1:])}
         return values
 
-    @staticmethod
-    def _elliptic(model: IndentationModel, state: IndentationState) -> Array:
-        """Whether the material is strongly elliptic at each point (E, Q)."""
-        body = model.body
-        elliptic = np.ones(state.kinematics.J.shape, bool)
-        for index, material in enumerate(body.materials):
-            mine = body.regions == index
-            elliptic[mine] = strongly_elliptic(material, state.kinematics.F[:, :, mine])
-        return elliptic
-
     def _frames(self) -> tuple[FieldFrame, ...]:
         """Fields at the threshold and at the last accepted step, in the order of the displacement."""
         kept = sorted([*self._at_threshold, *self._last], key=lambda pair: pair[1].load)
-        return tuple(self._frame(model, state) for model, state in kept)
-
-    def _frame(self, model: IndentationModel, state: IndentationState) -> FieldFrame:
-        space, mesh = model.space, model.mesh
-        u, p = space.split(state.unknowns)
-        flat = np.zeros((len(u), 3))
-        points, displacement = flat.copy(), flat.copy()
-        points[:, :2], displacement[:, :2] = mesh.nodes, u
-        pressure = np.zeros(len(u))
-        pressure[: len(p)] = -p
-        ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
-        pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
-        stretch = principal_stretches(state.kinematics.F)[0]
-        return FieldFrame(
-            time=state.load,
-            points=points,
-            cells={"triangle6": mesh.elements},
-            point_data={"displacement [m]": displacement, "pressure [Pa]": pressure},
-            cell_data={
-                "largest_stretch [1]": stretch.max(axis=1),
-                "volume_ratio [1]": state.kinematics.J.mean(axis=1),
-                "region [1]": mesh.regions.astype(float),
-                "elliptic [1]": self._elliptic(model, state).all(axis=1).astype(float),
-            },
-        )
+        return tuple(section_frame(model, state, time=state.load) for model, state in kept)
 
     def result(self, status: Status, reason: str) -> Result:
         """The result with everything that was accepted."""
@@ -143,7 +97,7 @@ class IndentationRecord:
             status=status,
             reason=reason,
             quantities=self._quantities(),
-            assumptions=tuple(self._assumptions()),
+            assumptions=tuple(contact_assumptions(self.experiment)),
             warnings=tuple(self._warnings()),
             timing={"setup": self._setup_time, "total": total},
             steps=tuple(self.steps),
@@ -176,17 +130,6 @@ class IndentationRecord:
             found["threshold_pressure"] = Quantity(force / area, "Pa", "threshold force over the annular area")
             found["threshold_displacement"] = Quantity(self.threshold["displacement"], "m", "displacement at the threshold")
         return found
-
-    def _assumptions(self) -> list[str]:
-        experiment, specimen = self.experiment, self.experiment.specimen
-        radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
-        told = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
-        if hasattr(experiment.body, "fillet"):
-            told.append(f"edges of the body filleted by {format_quantity(experiment.body.fillet, 'm')} (not printed)")
-        if any(material.bulk_modulus is None for material in specimen.materials):
-            told.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
-        told.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
-        return told
 
     def _warnings(self) -> list[str]:
         if not self.steps:

@@ -1,45 +1,14 @@
-"""What an indentation is given: the body, the specimen, the stop, and the sizes of elements and steps."""
+"""What an indentation is given beside the contact: the stop and the steps of its displacement."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.contact.annulus import Annulus
-from tactsim.contact.coulomb import Coulomb
-from tactsim.experiments.indentation_model import IndentationModel
-from tactsim.experiments.specimen import Specimen
+from tactsim.experiments.contact_setup import ContactSetup
 from tactsim.fem.loading import StepControl
-from tactsim.interfaces import ContactLaw, RigidBody
-from tactsim.mesh.axisymmetric import Size, edge_graded
-from tactsim.registry import tagged_union
 from tactsim.units import FrozenModel, Length, format_quantity
-
-Array = np.ndarray
-
-AnyBody: Any = tagged_union("tactsim.contact", RigidBody)
-AnyLaw: Any = tagged_union("tactsim.contact", ContactLaw)
-
-
-LARGEST_RATIO = 1e5
-"""A specimen this many times larger than the body is a mistake in a unit."""
-
-
-class MeshSettings(FrozenModel):
-    """Size of the elements: finest at the edges of the body, growing with the distance from them."""
-
-    finest: Annotated[Length, Field(gt=0)] | None = None
-    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
-    growth: Annotated[float, Field(gt=0, le=2)] = 0.35
-    """Growth of the element size per distance from the edges, dimensionless."""
-    coarsest: Annotated[Length, Field(gt=0)] | None = None
-    """Largest element size; by default a fifth of the specimen's thickness."""
-    refinement: Annotated[float, Field(gt=0)] = 1.0
-    """Divides every size: 2 halves the elements."""
-    adaptive: bool = True
-    """Whether elements that sliding and stretching make too long are split on the way."""
 
 
 class StepSettings(FrozenModel):
@@ -53,106 +22,33 @@ class StepSettings(FrozenModel):
     """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
 
 
-class IndentationSetup(FrozenModel):
-    """A rigid body, the specimen it is pressed into along its axis, and how that is computed."""
+class IndentationSetup(ContactSetup):
+    """A rigid body pressed into a specimen by a displacement, without regard to time."""
 
-    specimen: Specimen
-    """The tissue."""
-    body: AnyBody = Annulus()
-    """The rigid body; its reference point moves by the displacement."""
-    contact: AnyLaw = Coulomb()
-    """Friction between body and tissue."""
-    recess: Annotated[Length, Field(gt=0)] | None = None
-    """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     stop: Literal["threshold", "displacement"] = "threshold"
     """Whether the run ends at the threshold, or goes on to the displacement with the inner sensor in contact."""
     displacement: Annotated[Length, Field(gt=0)]
     """Displacement of the body from first touch; the most that is tried when the run stops at the threshold."""
-    penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius."""
-    mesh: MeshSettings = MeshSettings()
-    """Size of the elements."""
     steps: StepSettings = StepSettings()
     """Length of the load steps."""
 
+    @property
+    def depth(self) -> float:
+        """The displacement in m."""
+        return self.displacement
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        width = format_quantity(self.specimen.radius, "m")
-        if self.body.kind != "plane" and self.contact_radius >= self.specimen.radius:
-            raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
-        largest = max(self.specimen.radius, self.specimen.thickness)
-        if largest > LARGEST_RATIO * self.contact_radius:
-            big, small = format_quantity(largest, "m"), format_quantity(self.contact_radius, "m")
-            raise ValueError(f"a specimen of {big} under a body of {small}: is one of the units wrong?")
-        finest, narrowest = self.mesh.finest, self._narrowest
-        if finest is not None and finest > narrowest / 2:
-            given, width = format_quantity(finest, "m"), format_quantity(narrowest, "m")
-            raise ValueError(f"mesh.finest {given} is too coarse for the body, whose contact is {width} wide: at most half of it")
         if self.displacement >= self.specimen.thickness:
             given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
             raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
-        if self.body.kind == "annulus":
-            if self.recess is None:
-                raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
-            if self.recess >= self.specimen.thickness:
-                raise ValueError("the recess must be smaller than the specimen's thickness (thesis, end of 3.1.1)")
-            if self.rise_at_touch >= self.recess:
-                raise ValueError("the curved surface reaches the inner sensor before it touches the annulus")
-        elif self.recess is not None or self.stop == "threshold":
+        if self.body.kind == "annulus" and self.recess is None:
+            raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
+        if self.body.kind != "annulus" and self.stop == "threshold":
             raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
+        if any(material.relaxation is not None for material in self.specimen.materials):
+            raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
         return self
-
-    @property
-    def contact_radius(self) -> float:
-        """Radius in m that the body's size is measured by."""
-        return float(getattr(self.body, "outer_radius", getattr(self.body, "radius", self.specimen.radius)))
-
-    @property
-    def _narrowest(self) -> float:
-        """Width in m of the contact that the mesh must resolve."""
-        return self.contact_radius - float(getattr(self.body, "inner_radius", 0.0))
-
-    @property
-    def rise_at_touch(self) -> float:
-        """Rise in m of a convex surface into the hole when the annulus touches it, where the fillet meets the face."""
-        inner = self.body.inner_radius + self.body.fillet if self.specimen.surface == "convex" else 0.0
-        return float(self.specimen.depth_of_cap(inner))
-
-    @property
-    def tolerance(self) -> float:
-        """Largest penetration in m."""
-        return self.penetration_tolerance or 1e-4 * self.contact_radius
-
-    def size(self) -> Size:
-        """Wanted element size in m, at points in the frame of the body at first touch."""
-        settings, (rims, reach, finest) = self.mesh, self._focus()
-        finest = settings.finest or finest
-        coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
-        edges = np.array([(r, 0.0) for r in rims or [0.0]])
-        n = settings.refinement
-        return edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
-
-    def model(self) -> IndentationModel:
-        """The finite element model."""
-        mesh = self.specimen.mesh(self.size(), self._focus()[0])
-        facets, _ = mesh.boundary_facets()
-        flat_top = self._on_top(mesh.nodes[facets])
-        return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=facets[flat_top])
-
-    def _focus(self) -> tuple[tuple[float, ...], float, float]:
-        """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
-        if self.body.kind == "sphere":
-            reach = 1.5 * float(np.sqrt(self.contact_radius * self.displacement))
-            return (), min(reach, self.specimen.radius), reach / 20
-        rims = (getattr(self.body, "inner_radius", 0.0), self.contact_radius)
-        fillet = float(getattr(self.body, "fillet", 0.0))
-        finest = fillet / 3 if fillet > 0 else self.contact_radius / 50
-        return tuple(r for r in rims if 0 < r < self.specimen.radius), fillet, finest
-
-    def _on_top(self, corners: Array) -> Array:
-        sign = -1.0 if self.specimen.surface == "concave" else 1.0
-        top = -sign * self.specimen.depth_of_cap(corners[..., 0])
-        return (np.abs(corners[..., 1] - top) < 1e-9 * self.specimen.thickness).all(axis=1)
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""

@@ -72,9 +72,11 @@ class PosedContact:
         return self.at(displacement).traction
 
     def rounding(self, displacement: Array) -> Array:
-        """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify."""
+        """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body."""
         along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
-        return ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
+        gap = self.pair.body.signed_distance(self._points(displacement))[0]
+        lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
+        return np.where(gap <= ROUND_OFF * (along + across), lost, 0.0)
 
     def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
         """Traction and derivative as the carried forces decide."""

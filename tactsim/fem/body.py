@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,8 @@ from tactsim.interfaces import Material
 
 Array = np.ndarray
 
+NO_PAST = np.empty((6, 0, 0))
+
 
 @dataclass(frozen=True)
 class Kinematics:
@@ -26,6 +29,17 @@ class Kinematics:
     J: Array
     I1: Array
     I2: Array
+
+
+@dataclass(frozen=True)
+class PastStress:
+    """The present step of materials that relax: S = scale * S_iso(F) + stress.
+
+    ``scale`` (E,) dimensionless; ``stress`` (6, E, Q), second Piola-Kirchhoff in Pa, components 11, 22, 33, 12, 23, 13.
+    """
+
+    scale: Array
+    stress: Array
 
 
 class Body:
@@ -46,6 +60,9 @@ class Body:
     regions : (E,) index into ``materials``
     """
 
+    past: PastStress | None = None
+    """What the points remember of the time before the present step, for materials that relax."""
+
     def __init__(self, space: TaylorHood, materials: Sequence[Material], regions: Array, *, quadrature_order: int | None = None):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
             raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
@@ -56,6 +73,12 @@ class Body:
         self.linear = np.array([not hasattr(m, "energy_gradient") for m in materials])[self.regions]
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self._kernels = compiled(space.dim)
+
+    def with_past(self, past: PastStress | None) -> Body:
+        """The same body in a step of time with this past."""
+        body = copy.copy(self)
+        body.past = past
+        return body
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -77,7 +100,10 @@ class Body:
         return np.einsum("qv,ev->eq", self.points.pressure_values, p[self.space.elements[:, : self.space.dim + 1]])
 
     def energy_slopes(self, state: Kinematics, *, second: bool) -> Array:
-        """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear."""
+        """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear.
+
+        Scaled as the present step of a relaxing material asks.
+        """
         slopes = np.zeros((5 if second else 2, *state.J.shape))
         for index, material in enumerate(self.materials):
             mine = self.regions == index
@@ -89,17 +115,16 @@ class Body:
                     slot[mine] = value
             else:
                 slopes[0, mine] = material.shear_modulus
-        return slopes
+        return slopes if self.past is None else slopes * self.past.scale[:, None]
 
     def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
         """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
         state = self.kinematics(unknowns) if state is None else state
         u, p = self.space.split(unknowns)
         out = np.zeros(self.space.size)
+        slopes, pattern = self.energy_slopes(state, second=False), self.pattern
         with loop_threads(len(self.regions)):
-            self._kernels.residual(
-                u, p, self._tables(), self.energy_slopes(state, second=False), self.pattern.order, self.pattern.color_starts, out
-            )
+            self._kernels.residual(u, p, self._tables(), slopes, self._past(), pattern.order, pattern.color_starts, out)
         return out
 
     def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
@@ -110,9 +135,8 @@ class Body:
         data = np.zeros(len(pattern.indices))
         slopes = self.energy_slopes(state, second=True)
         with loop_threads(len(self.regions)):
-            self._kernels.tangent(
-                u, p, self._tables(), slopes, pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets, data
-            )
+            places = (pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets)
+            self._kernels.tangent(u, p, self._tables(), slopes, self._past(), *places, data)
         return data
 
     def rounding_forces(self) -> Array:
@@ -122,6 +146,9 @@ class Body:
         size = np.abs(points.gradients).max(axis=-1) + points.hoop
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
         return np.bincount(self.space.elements.ravel(), forces.ravel())
+
+    def _past(self) -> Array:
+        return NO_PAST if self.past is None else self.past.stress
 
     def _tables(self) -> tuple[Array, ...]:
         """What the compiled loops read of the mesh and the materials."""

@@ -155,6 +155,17 @@ def solved(solver: DirectSolver, matrix: csr_matrix, right: Array) -> Array:
         If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
     """
     solver.factor(matrix)
+    return resolved(solver, matrix, right)
+
+
+def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array) -> Array:
+    """Solution (n,) for another right-hand side with the factor that the solver holds.
+
+    Raises
+    ------
+    ConvergenceError
+        As ``solved``.
+    """
     solution = solver.solve(right)
     left = float(np.abs(matrix @ solution - right).max())
     if not left <= LARGEST_RESIDUAL * float(np.abs(right).max()):

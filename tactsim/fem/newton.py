@@ -9,9 +9,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from tactsim.errors import ConvergenceError
-from tactsim.fem.body import Body, Kinematics
+from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
-from tactsim.fem.linear import DirectSolver, direct_solver, solved
+from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
+from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
@@ -81,6 +82,8 @@ class Equilibrium:
     kinematics: Kinematics
     tractions: tuple[Array, ...]
     history: tuple[float, ...]
+    travel: float = 0.0
+    """Travel in m of the interfaces along a prescribed force."""
 
     @property
     def iterations(self) -> int:
@@ -106,8 +109,19 @@ class Problem:
         interfaces: Sequence[Interface] = (),
         loads: Sequence[FollowerLoad] = (),
         nodal_force: Array | None = None,
+        push: PrescribedForce | None = None,
+        travel: float = 0.0,
+        past: PastStress | None = None,
     ) -> Equilibrium:
         """Equilibrium nearest to the guess, which holds the prescribed values.
+
+        Parameters
+        ----------
+        guess : (size,) unknowns
+        interfaces, loads, nodal_force : what acts on the body
+        push : the force that the interfaces must exert, if it is prescribed instead of their place
+        travel : first guess of their travel in m
+        past : what materials that relax remember
 
         Raises
         ------
@@ -115,30 +129,34 @@ class Problem:
             If Newton does not converge or an element would turn inside out; the history is in the error.
         """
         options, history = self.options, []
+        body = self.body if past is None else self.body.with_past(past)
         carried = [interface.start() for interface in interfaces]
         unknowns = guess.copy()
         kinematics = self._admissible(unknowns, 0.0)
         if kinematics is None:
             raise ConvergenceError("an element is inside out in the state that Newton starts from")
         for iteration in range(options.max_iterations + 1):
-            internal = self.body.residual(unknowns, kinematics)
-            scale = np.abs(internal[: self.body.space.displacement_size]).max()
+            internal = body.residual(unknowns, kinematics)
+            scale = np.abs(internal[: body.space.displacement_size]).max()
             internal -= self._nodal(unknowns, loads, nodal_force)
-            moved = [self._displacement(unknowns, interface) for interface in interfaces]
+            moved = [self._displacement(unknowns, interface, push, travel) for interface in interfaces]
             tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
             noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
             history.append(self._residual_norm(internal, scale, interfaces, (tractions, noise)))
+            if push is not None:
+                surfaces = [interface.surface for interface in interfaces]
+                history[-1] = max(history[-1], push.error(surfaces, tractions, noise, options.tolerance))
             if history[-1] < options.tolerance:
-                return Equilibrium(unknowns, kinematics, tractions, tuple(history))
+                return Equilibrium(unknowns, kinematics, tractions, tuple(history), travel)
             if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
                 break
             now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
-            step = self._linear_step(unknowns, kinematics, internal, (interfaces, now, loads))
+            step, further = self._linear_step((body, unknowns, kinematics), internal, (interfaces, now, loads), push)
             largest = options.relaxation if self._cycles(history) else 1.0
             damping, kinematics = self._damped(unknowns, step, kinematics, largest)
-            unknowns = unknowns + damping * step
+            unknowns, travel = unknowns + damping * step, travel + damping * further
             carried = [
-                interface.advanced(n, c, self._displacement(step, interface), damping)
+                interface.advanced(n, c, self._displacement(step, interface, push, further), damping)
                 for interface, n, c in zip(interfaces, now, carried, strict=True)
             ]
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
@@ -160,8 +178,10 @@ class Problem:
             total += load.force(u)
         return total if nodal_force is None else total + nodal_force
 
-    def _displacement(self, unknowns: Array, interface: Interface) -> Array:
-        return interface.surface.points.interpolate(self.body.space.split(unknowns)[0])
+    def _displacement(self, unknowns: Array, interface: Interface, push: PrescribedForce | None, travel: float) -> Array:
+        """Displacement (d, n) of the surface relative to the interface's travel."""
+        moved = interface.surface.points.interpolate(self.body.space.split(unknowns)[0])
+        return moved if push is None else moved - travel * push.direction[:, None]
 
     def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]) -> float:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
@@ -177,17 +197,27 @@ class Problem:
         unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.options.tolerance)).max()
         return float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
 
-    def _linear_step(self, unknowns: Array, kinematics: Kinematics, internal: Array, parts: tuple[Any, ...]) -> Array:
+    def _linear_step(
+        self, state: tuple[Body, Array, Kinematics], internal: Array, parts: tuple[Any, ...], push: PrescribedForce | None
+    ) -> tuple[Array, float]:
+        """Newton's step of the unknowns, and of the interfaces' travel if their force is prescribed."""
+        body, unknowns, kinematics = state
         interfaces, now, loads = parts
-        residual, data = internal.copy(), self.body.tangent(unknowns, kinematics)
+        residual, data = internal.copy(), body.tangent(unknowns, kinematics)
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
             data += interface.surface.stiffness(force.derivative)
-        u, _ = self.body.space.split(unknowns)
+        u, _ = body.space.split(unknowns)
         for load in loads:
             data += load.stiffness(u)
-        matrix = self.body.pattern.matrix(self.constraints.apply(data))
-        return solved(self.solver, matrix, -self.constraints.free(residual))
+        matrix = body.pattern.matrix(self.constraints.apply(data))
+        step = solved(self.solver, matrix, -self.constraints.free(residual))
+        if push is None:
+            return step, 0.0
+        border = push.border([interface.surface for interface in interfaces], now)
+        along = resolved(self.solver, matrix, self.constraints.free(border.column))
+        further = border.travel(step, along)
+        return step + further * along, further
 
     def _damped(self, unknowns: Array, step: Array, before: Kinematics, damping: float) -> tuple[float, Kinematics]:
         """Largest step length, halving from ``damping``, that keeps every element right side out."""

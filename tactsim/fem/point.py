@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numba
 
+SYMMETRIC_SLOTS = (0, 3, 5, 3, 1, 4, 5, 4, 2)
+"""Place of each entry of a symmetric tensor among its six components 11, 22, 33, 12, 23, 13."""
+
 
 @numba.njit(cache=True, inline="always")
 def cofactor(F, cof):  # type: ignore[no-untyped-def]
@@ -123,6 +126,28 @@ def point_stress(F, W, linear, work, cof):  # type: ignore[no-untyped-def]
     for m in range(9):
         cof[m] = J * work[3, m]
     return J - 1.0
+
+
+@numba.njit(cache=True, inline="always")
+def add_past_stress(F, past, linear, work):  # type: ignore[no-untyped-def]
+    """Add the stress that the past has left, a second Piola-Kirchhoff stress ``past`` (6,), to work[0]."""
+    for i in range(3):
+        for j in range(3):
+            if linear:
+                work[0, 3 * i + j] += past[SYMMETRIC_SLOTS[3 * i + j]]
+            else:
+                for k in range(3):
+                    work[0, 3 * i + j] += F[3 * i + k] * past[SYMMETRIC_SLOTS[3 * k + j]]
+
+
+@numba.njit(cache=True, inline="always")
+def add_past_tangent(past, linear, A):  # type: ignore[no-untyped-def]
+    """Add the derivative of that stress to A (9, 9): it follows the rotation of the material only."""
+    if not linear:
+        for i in range(3):
+            for j in range(3):
+                for o in range(3):
+                    A[3 * i + j, 3 * i + o] += past[SYMMETRIC_SLOTS[3 * j + o]]
 
 
 @numba.njit(cache=True, inline="always")

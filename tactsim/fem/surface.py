@@ -20,17 +20,17 @@ class SurfaceAssembly:
         rows = np.repeat(self.unknowns[:, :, None], width, axis=2)
         self._positions = pattern.positions(rows, rows.transpose(0, 2, 1))
         self._entries = len(pattern.indices)
-        self._size, self._dim = pattern.size, dim
+        self.size, self._dim = pattern.size, dim
 
     def force(self, traction: Array) -> Array:
         """External nodal forces (size,) in N of tractions (d, n) in Pa."""
         weighted = np.einsum("n,na,dn->nad", self.points.weights, self.points.values, traction)
-        return np.bincount(self.unknowns.ravel(), weighted.ravel(), self._size)
+        return np.bincount(self.unknowns.ravel(), weighted.ravel(), self.size)
 
     def largest_force(self, traction: Array) -> Array:
         """Nodal forces (size,) in N that tractions of sizes (n,) in Pa could make in any one direction, whatever their signs."""
         bound = np.einsum("n,na,n->na", self.points.weights, np.abs(self.points.values), traction)
-        return np.bincount(self.unknowns.ravel(), np.repeat(bound, self._dim, axis=1).ravel(), self._size)
+        return np.bincount(self.unknowns.ravel(), np.repeat(bound, self._dim, axis=1).ravel(), self.size)
 
     def stiffness(self, derivative: Array) -> Array:
         """Tangent entries, minus the derivative of the external force, for d(traction)/dx of shape (d, d, n) in Pa/m."""

@@ -13,18 +13,21 @@ from tactsim.interfaces import Material
 from tactsim.materials.library import LIBRARY, named_material
 from tactsim.materials.moduli import BulkModulus
 from tactsim.registry import kind_class, kinds
+from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
 
 PACKAGE = "tactsim.materials"
 
 
 class SetReference(FrozenModel):
-    """A shipped set, if need be with a bulk modulus of its own."""
+    """A shipped set, if need be with a bulk modulus or a relaxation of its own."""
 
     set: Annotated[str, Field(json_schema_extra={"enum": sorted(LIBRARY)})]
     """Name of the set."""
     bulk_modulus: BulkModulus | None = None
     """Bulk modulus; null means exactly incompressible."""
+    relaxation: Relaxation | None = None
+    """Relaxation of the isochoric stress; null means elastic."""
 
 
 def read_material(value: Any, info: ValidationInfo) -> Material:
@@ -41,7 +44,7 @@ def read_material(value: Any, info: ValidationInfo) -> Material:
         if isinstance(value, str):
             return named_material(value).material
         if isinstance(value, Mapping) and "set" in value:
-            return _set_with_bulk_modulus(SetReference.model_validate(value, context=info.context))
+            return _changed_set(SetReference.model_validate(value, context=info.context))
         if isinstance(value, Mapping) and "kind" in value:
             return cast(Material, kind_class(PACKAGE, Material, str(value["kind"])).model_validate(value, context=info.context))
     except UnknownName as error:
@@ -49,12 +52,11 @@ def read_material(value: Any, info: ValidationInfo) -> Material:
     raise ValueError(f"expected the name of a material set ({', '.join(sorted(LIBRARY))}) or a mapping with the key kind or set")
 
 
-def _set_with_bulk_modulus(reference: SetReference) -> Material:
-    """The named set, its bulk modulus replaced if one is given."""
+def _changed_set(reference: SetReference) -> Material:
+    """The named set, its bulk modulus and relaxation replaced where they are given."""
     material = named_material(reference.set).material
-    if "bulk_modulus" not in reference.model_fields_set:
-        return material
-    return type(material).model_validate(material.model_dump() | {"bulk_modulus": reference.bulk_modulus})
+    changes = reference.model_dump(exclude={"set"}, exclude_unset=True)
+    return type(material).model_validate(material.model_dump() | changes) if changes else material
 
 
 class _AnyMaterialSchema:

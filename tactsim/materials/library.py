@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.errors import UnknownName
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
+from tactsim.materials.viscoelasticity import neo_hookean_of
 
 
 @dataclass(frozen=True)
@@ -77,5 +79,21 @@ ICF_STABLE = MaterialSet(
     rms_relative_error=0.0171,
 )
 
-LIBRARY = {entry.name: entry for entry in (B1A_PRINTED, B1A_STABLE, ICF_PRINTED, ICF_STABLE)}
+_ATRIAL_NOTE = "the data tell the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
+
+ATRIAL = MaterialSet(
+    name="atrial",
+    material=neo_hookean_of(atrial_shear_compliance()),
+    source="thesis, Table 4.1: 1/E with retardation times in s, incompressible (the readings that 4.3.8 and the test imply)",
+    note=_ATRIAL_NOTE,
+)
+
+ATRIAL_PRINTED = MaterialSet(
+    name="atrial_printed",
+    material=neo_hookean_of(atrial_shear_compliance(times="viscosities", compliance="half_shear")),
+    source="thesis, Table 4.1 as 4.6.4 uses it: the column of times as viscosities in MPa s, the compliance as 1/(2G)",
+    note=_ATRIAL_NOTE,
+)
+
+LIBRARY = {entry.name: entry for entry in (ATRIAL, ATRIAL_PRINTED, B1A_PRINTED, B1A_STABLE, ICF_PRINTED, ICF_STABLE)}
 """Shipped sets by name."""

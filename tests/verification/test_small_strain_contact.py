@@ -11,8 +11,9 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
+from tactsim.experiments.contact_setup import MeshSettings
 from tactsim.experiments.indentation import Indentation
-from tactsim.experiments.indentation_setup import MeshSettings, StepSettings
+from tactsim.experiments.indentation_setup import StepSettings
 from tactsim.experiments.specimen import Specimen
 from tactsim.materials.linear_elastic import LinearElastic
 

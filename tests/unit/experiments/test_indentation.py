@@ -11,10 +11,10 @@ from pydantic import ValidationError
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
+from tactsim.experiments.contact_setup import MeshSettings
 from tactsim.experiments.indentation import Indentation
 from tactsim.experiments.indentation_path import indentation_path
 from tactsim.experiments.indentation_report import IndentationRecord
-from tactsim.experiments.indentation_setup import MeshSettings
 from tactsim.experiments.specimen import Layer, Specimen
 from tactsim.materials.neo_hookean import NeoHookean
 
@@ -126,7 +126,7 @@ def test_interruption_keeps_what_was_accepted():
         ({"displacement": 3e-3}, "smaller than the specimen's thickness"),
         ({"recess": None}, "needs the recess"),
         ({"recess": 3.1e-3, "displacement": 1e-3}, "recess must be smaller"),
-        ({"body": Sphere(radius=2e-3)}, "set stop: displacement"),
+        ({"body": Sphere(radius=2e-3)}, "only an annulus has a recess"),
         ({"mesh": MeshSettings(finest=1e-3)}, "too coarse"),
         ({"specimen": {"thickness": 1e4}}, "units wrong"),
         ({"specimen": {"surface": "convex", "surface_radius": 12e-3}, "recess": 0.05e-3}, "before it touches the annulus"),

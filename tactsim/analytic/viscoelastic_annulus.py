@@ -1,0 +1,184 @@
+"""The rigid flat annulus on linear viscoelastic, incompressible tissue: displacement, force and rise, exact for any history."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tactsim.analytic.allowed_range import checked
+from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.analytic.force_factor import force_factor, rise_factor
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.analytic.histories import History
+from tactsim.analytic.interconversion import maxwell_of
+from tactsim.analytic.layer_kernel import Base
+from tactsim.analytic.response import response
+from tactsim.errors import InvalidQuantity
+
+HALVINGS = 60
+"""Halvings of the logarithm of a time, after which its interval is round-off."""
+
+
+@dataclass(frozen=True, eq=False)
+class ViscoelasticAnnulus:
+    r"""A rigid frictionless annulus on viscoelastic tissue with Poisson's ratio 1/2, on a half-space or a layer.
+
+    .. math::
+        \epsilon(t) = \frac{1}{8 a \kappa} \int_{0^-}^t J(t - s)\, dP(s), \quad
+        P(t) = 8 a \kappa \int_{0^-}^t G(t - s)\, d\epsilon(s)
+
+    which is :math:`(1 - \nu) P = 4 G a \kappa \epsilon` with :math:`\nu = 1/2` and a compliance J = 1/G with memory. The contact
+    area of a flat face does not change, so that the correspondence principle holds for every history, as long as the contact is
+    closed. The equations are bilateral: where the total force would become negative, real contact opens and they end.
+
+    Parameters
+    ----------
+    outer_radius : float
+        ``a > 0`` in m.
+    radius_ratio : float
+        ``b / a`` in ``[0, 0.99]``.
+    shear_compliance : GeneralizedKelvin
+        ``J = 1/G`` in 1/Pa.
+    formula : str
+        Formula of the force factor on a half-space, one of ``force_factor.FORMULAS``; on a layer only ``"exact"``.
+    radius_over_thickness : float
+        Outer radius over the thickness of the layer; 0 for a half-space.
+    base : str
+        ``"bonded"`` or ``"slipping"``, of the layer.
+
+    Raises
+    ------
+    InvalidQuantity, UnknownName
+        If an argument is out of its range, or the formula is not exact on a layer.
+
+    Source: thesis sections 4.6 and 4.7, eqs. 4.6.1 to 4.6.4; Lee & Radok 1960, doi:10.1115/1.3644020; Ting 1966,
+    doi:10.1115/1.3625192.
+    """
+
+    outer_radius: float
+    radius_ratio: float
+    shear_compliance: GeneralizedKelvin
+    formula: str = "exact"
+    radius_over_thickness: float = 0.0
+    base: Base = "bonded"
+    force_factor: float = field(init=False)
+    """kappa, dimensionless."""
+    rise_factor: float = field(init=False)
+    """Height of the tissue on the axis above the face, over the displacement; always that of the exact solution."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outer_radius", float(checked("outer radius", self.outer_radius, "(0, inf) m")))
+        if checked("radius over thickness", self.radius_over_thickness, "[0, inf)"):
+            if self.formula != "exact":
+                raise InvalidQuantity(f"the formula {self.formula!r} is for a half-space; allowed on a layer: 'exact'")
+            ratio = float(checked("radius ratio", self.radius_ratio, "[0, 0.99]"))
+            punch = solve_annular_punch(ratio, radius_over_thickness=self.radius_over_thickness, base=self.base)
+            factors = punch.force_factor, punch.rise_factor
+        else:
+            factors = float(force_factor(self.radius_ratio, self.formula)), float(rise_factor(self.radius_ratio))
+        object.__setattr__(self, "force_factor", factors[0])
+        object.__setattr__(self, "rise_factor", factors[1] if self.radius_ratio else 0.0)
+
+    @property
+    def length(self) -> float:
+        """8 a kappa in m: the force per displacement and shear modulus."""
+        return 8 * self.outer_radius * self.force_factor
+
+    def displacement(self, force_history: History, times: ArrayLike) -> np.ndarray:
+        """Displacement in m under a force in N, positive into the tissue, at ``times`` in s; of the shape of ``times``.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a time is not finite.
+        """
+        return response(self.shear_compliance, force_history, times) / self.length
+
+    def force(self, displacement_history: History, times: ArrayLike) -> np.ndarray:
+        """Force in N under a displacement in m, positive into the tissue, at ``times`` in s; of the shape of ``times``.
+
+        A negative force is what a face glued to the tissue would need: there the contact has opened, and the answer is void.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a time is not finite, or the compliance has no relaxation modulus in the range of floats.
+        """
+        return self.length * response(maxwell_of(self.shear_compliance), displacement_history, times)
+
+    def creep_displacement(self, force: ArrayLike, times: ArrayLike) -> np.ndarray:
+        """Displacement in m at ``times`` in s after a step of ``force`` in N, of the broadcast shape."""
+        return np.asarray(force, dtype=float) * self.shear_compliance.creep(times) / self.length
+
+    def rise(self, displacement: ArrayLike) -> np.ndarray:
+        """Height in m of the tissue on the axis above the face at a ``displacement`` in m, of its shape."""
+        return self.rise_factor * np.asarray(displacement, dtype=float)
+
+    def force_to_touch(self, recess: ArrayLike, times: ArrayLike) -> np.ndarray:
+        r"""Constant force in N for which the tissue on the axis rises by ``recess`` in m within ``times`` in s, broadcast.
+
+        .. math:: P = \frac{8 a \kappa L}{\rho J(t)}
+
+        with the rise factor rho; infinite without a hole.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a recess is not positive or a time is negative.
+        """
+        height = checked("recess", recess, "(0, inf) m")
+        compliance = self.shear_compliance.creep(checked("time", times, "[0, inf] s"))
+        with np.errstate(divide="ignore"):
+            return height * self.length / (np.float64(self.rise_factor) * compliance)
+
+    def time_to_touch(self, recess: ArrayLike, force: ArrayLike) -> np.ndarray:
+        """Time in s after which a constant ``force`` in N has raised the tissue on the axis by ``recess`` in m, broadcast.
+
+        Zero if it does so at once, infinite if never.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a recess or a force is not positive.
+        """
+        height, load = checked("recess", recess, "(0, inf) m"), checked("force", force, "(0, inf) N")
+        with np.errstate(divide="ignore"):
+            return creep_time(self.shear_compliance, height * self.length / (np.float64(self.rise_factor) * load))
+
+
+def creep_time(kelvin: GeneralizedKelvin, compliance: ArrayLike) -> np.ndarray:
+    r"""Time in s at which the creep compliance reaches ``compliance`` in 1/Pa, of its shape: 0 up to J0, infinite if never.
+
+    Halved in the logarithm of the time between the bounds that the tangent at t = 0, which lies above J, and the slowest unit,
+    which the others are quicker than, give:
+
+    .. math::
+        \frac{J - J_0}{\varphi + \sum_i J_i / \tau_i} \le t \le \tau_n \ln \frac{\sum_i J_i}{J_\infty - J}, \quad
+        t \le \frac{J - J_0}{\varphi}
+
+    Raises
+    ------
+    InvalidQuantity
+        If a compliance is not positive.
+    """
+    wanted = checked("compliance", compliance, "(0, inf] 1/Pa")
+    times = np.where(wanted <= kelvin.glassy_compliance, 0.0, np.inf)
+    between = (wanted > kelvin.glassy_compliance) & (wanted < kelvin.equilibrium_compliance)
+    if not between.any():
+        return times
+    target = wanted[between]
+    excess = target - kelvin.glassy_compliance
+    low = excess / (kelvin.fluidity + (kelvin.compliances / kelvin.times).sum())
+    if kelvin.fluidity:
+        high = excess / kelvin.fluidity
+    else:
+        high = kelvin.times[-1] * np.log(kelvin.compliances.sum() / (kelvin.equilibrium_compliance - target))
+    high = np.maximum(high, low)
+    for _ in range(HALVINGS):
+        middle = np.sqrt(low * high)
+        reached = kelvin.creep(middle) >= target
+        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
+    times[between] = np.sqrt(low * high)
+    return times

@@ -1,0 +1,174 @@
+"""Prescribed histories of force or displacement in a case file: pieces one after the other."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+import operator
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, create_model, model_validator
+
+from tactsim.analytic.histories import Harmonic, History, Segment
+from tactsim.units import Force, Frequency, FrozenModel, Length, Time
+
+
+class Hold(FrozenModel):
+    """The present value, held."""
+
+    kind: Literal["hold"] = "hold"
+    duration: Annotated[Time, Field(gt=0)]
+    """How long."""
+
+    def segments(self, start: float, value: float) -> tuple[Segment, ...]:
+        """From ``start`` in s and the value before."""
+        return (Segment(start, start + self.duration, value),)
+
+
+class Jump(FrozenModel):
+    """A sudden change to a value, then held."""
+
+    kind: Literal["jump"]
+    to: float
+    """The new value."""
+    duration: Annotated[Time, Field(gt=0)]
+    """How long it is held."""
+
+    def segments(self, start: float, value: float) -> tuple[Segment, ...]:
+        """From ``start`` in s, whatever the value before."""
+        return (Segment(start, start + self.duration, self.to),)
+
+
+class Ramp(FrozenModel):
+    """A change at a constant rate."""
+
+    kind: Literal["ramp"]
+    to: float
+    """The value at the end."""
+    duration: Annotated[Time, Field(gt=0)]
+    """How long it takes."""
+
+    def segments(self, start: float, value: float) -> tuple[Segment, ...]:
+        """From ``start`` in s and the value before."""
+        slope = (self.to - value) / self.duration
+        return (Segment(start, start + self.duration, value, slope),)
+
+
+class Sine(FrozenModel):
+    """A sine about the present value."""
+
+    kind: Literal["sine"]
+    amplitude: float
+    """Amplitude."""
+    frequency: Annotated[Frequency, Field(gt=0)]
+    """Frequency."""
+    duration: Annotated[Time, Field(gt=0)]
+    """How long."""
+
+    def segments(self, start: float, value: float) -> tuple[Segment, ...]:
+        """From ``start`` in s and the value before."""
+        wave = Harmonic(float(self.amplitude), 2 * math.pi * self.frequency)
+        return (Segment(start, start + self.duration, value, 0.0, (wave,)),)
+
+
+class Samples(FrozenModel):
+    """Measured values, linear between them; times count from the beginning of the piece."""
+
+    kind: Literal["samples"]
+    times: Annotated[tuple[Time, ...], Field(min_length=2)]
+    """Times, increasing from zero."""
+    values: tuple[float, ...]
+    """One value for each time; a first one other than the present value is a jump."""
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        if len(self.times) != len(self.values):
+            raise ValueError(f"{len(self.times)} times and {len(self.values)} values; each time needs its value")
+        if self.times[0] != 0 or any(b <= a for a, b in itertools.pairwise(self.times)):
+            raise ValueError("the times must begin at zero and increase")
+        return self
+
+    @property
+    def duration(self) -> float:
+        """How long it takes, in s."""
+        return self.times[-1]
+
+    def segments(self, start: float, value: float) -> tuple[Segment, ...]:
+        """From ``start`` in s, whatever the value before."""
+        pairs = list(zip(self.times, self.values, strict=True))
+        return tuple(
+            Segment(start + t0, start + t1, float(v0), float(v1 - v0) / (t1 - t0))
+            for (t0, v0), (t1, v1) in itertools.pairwise(pairs)
+        )
+
+
+class Loading(FrozenModel):
+    """Pieces one after the other, from zero at the beginning."""
+
+    pieces: Any
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not self.pieces:
+            raise ValueError("a history needs at least one piece")
+        return self
+
+    @property
+    def duration(self) -> float:
+        """Whole duration in s."""
+        return float(sum(piece.duration for piece in self.pieces))
+
+    def segments(self) -> tuple[Segment, ...]:
+        """The pieces as smooth segments of time, without what follows the last."""
+        segments: list[Segment] = []
+        start, value = 0.0, 0.0
+        for piece in self.pieces:
+            segments += piece.segments(start, value)
+            start, value = segments[-1].end, segments[-1].at(segments[-1].end)
+        return tuple(segments)
+
+    def history(self) -> History:
+        """The prescribed history; its last value is held."""
+        return History(self.segments())
+
+    def least_and_most(self) -> tuple[float, float]:
+        """Bounds of the values after the beginning: those at the ends of each piece, and a sine's least and most."""
+        ends = [value for s in self.segments() for value in (s.at(s.start), s.at(s.end))]
+        waves = [s.value + sign * wave.amplitude for s in self.segments() for wave in s.harmonics for sign in (-1, 1)]
+        return min([*ends[1:], *waves]), max([*ends, *waves])
+
+
+def _pieces(quantity: Any, name: str) -> Any:
+    """Type of a tuple of pieces whose values are of this quantity."""
+    dimensional = [_of_quantity(cls, quantity, name) for cls in (Jump, Ramp, Sine, Samples)]
+    kinds: Any = functools.reduce(operator.or_, dimensional, Hold)
+    return tuple[Annotated[kinds, Field(discriminator="kind")], ...]
+
+
+def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[FrozenModel]:
+    """The piece with its bare floats replaced by the quantity."""
+    types = {float: quantity, tuple[float, ...]: tuple[quantity, ...]}
+    fields = {key: (types[f.annotation], f) for key, f in cls.model_fields.items() if f.annotation in types and not f.metadata}
+    made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)  # type: ignore[call-overload]
+    made.__doc__ = cls.__doc__
+    return made
+
+
+class ForceLoading(Loading):
+    """The body presses with a prescribed force; its displacement follows."""
+
+    control: Literal["force"]
+    pieces: _pieces(Force, "Force")  # type: ignore[valid-type]
+    """Force over time, one piece after the other, from zero; it presses from the first moment on."""
+
+
+class DisplacementLoading(Loading):
+    """The body is displaced as prescribed, counted from first touch; the force follows."""
+
+    control: Literal["displacement"]
+    pieces: _pieces(Length, "Displacement")  # type: ignore[valid-type]
+    """Displacement over time, one piece after the other, from zero."""
+
+
+AnyLoading = Annotated[ForceLoading | DisplacementLoading, Field(discriminator="control")]

@@ -1,0 +1,191 @@
+r"""What a body of relaxing materials remembers, advanced exactly for a stress history that is linear over each step.
+
+With :math:`S_e` the isochoric second Piola-Kirchhoff stress of the energy and one overstress per relaxation time,
+
+.. math::
+    h_i(t) = \int_0^t g_i e^{-(t - s) / \tau_i}\, \dot S_e(s)\, ds, \qquad
+    h_i^{n+1} = e^{-h} h_i^n + g_i \frac{1 - e^{-h}}{h} (S_e^{n+1} - S_e^n) + g_i \psi(h)\, \Delta t^2\, \ddot S_e, \qquad
+    h = \Delta t / \tau_i
+
+The last term is that of the parabola through three states, :math:`\psi = (1 + e^{-h}) / 2h - (1 - e^{-h}) / h^2`; it is zero
+while the history is linear, and left out after a kink. Without it a step much longer than a relaxation time would be of first
+order only. A step of no time is elastic.
+
+Source: Simo & Hughes 1998, Computational Inelasticity, section 10.3; Taylor, Pister & Goudreau 1970,
+doi:10.1002/nme.1620020106 (recursion); Holzapfel 2000, Nonlinear Solid Mechanics, section 6.10.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactsim.fem.body import Body, Kinematics, PastStress
+
+Array = np.ndarray
+
+ROUND_OFF = 128 * np.finfo(float).eps
+"""Stress over the shear modulus that a solution may miss: F is one plus small numbers."""
+NOISE_GROWTH = 8
+"""Sum of the coefficients of the differences, on even steps."""
+MEAN_OF_CUBIC = 0.25
+"""Bound of the mean of what the parabola misses, over the slope at its end times the step."""
+LARGEST_GROWTH = 2.4
+"""Growth of a step beyond which no parabola is laid through it: 1 + sqrt 2 is the limit of stability of such formulas."""
+MOST_EARLIER = 3
+"""States that the error of a step needs."""
+COMPONENTS = (np.array([0, 1, 2, 0, 1, 0]), np.array([0, 1, 2, 1, 2, 2]))
+"""Rows and columns of the six components of a symmetric tensor."""
+DOUBLE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+"""How often each component stands in the tensor."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """The Prony series of a body: ``equilibrium`` (E,), ``amplitudes`` and ``times`` (n, E) in s, of each element's material."""
+
+    equilibrium: Array
+    amplitudes: Array
+    times: Array
+
+    def faded(self, time_step: float) -> tuple[Array, Array, Array]:
+        """exp(-h), g (1 - exp(-h)) / h and g psi(h) with h the step over each time, all (n, E)."""
+        h = time_step / self.times
+        mean = np.where(h > 0, -np.expm1(-h) / np.where(h > 0, h, 1.0), 1.0)
+        return np.exp(-h), self.amplitudes * mean, self.amplitudes * _bend_weight(h)
+
+
+def series_of(body: Body) -> Series | None:
+    """The series of a body's materials; None if none of them relaxes."""
+    relaxing = [material.relaxation for material in body.materials]
+    most = max((len(relaxation.times) for relaxation in relaxing if relaxation is not None), default=0)
+    if most == 0:
+        return None
+    equilibrium, amplitudes, times = np.ones(len(relaxing)), np.zeros((most, len(relaxing))), np.ones((most, len(relaxing)))
+    for index, relaxation in enumerate(relaxing):
+        if relaxation is not None:
+            equilibrium[index], parts, rates = relaxation.amplitudes
+            amplitudes[: len(parts), index], times[: len(rates), index] = parts, rates
+    return Series(equilibrium[body.regions], amplitudes[:, body.regions], times[:, body.regions])
+
+
+@dataclass(frozen=True)
+class Memory:
+    """The elastic stress ``elastic`` (6, E, Q) of the last accepted state and the ``overstress`` (n, 6, E, Q), in Pa.
+
+    ``earlier`` are the elastic stresses before it, latest first, each with the length in s of the step that began there, as far
+    as the history has been smooth.
+    """
+
+    series: Series
+    elastic: Array
+    overstress: Array
+    earlier: tuple[tuple[Array, float], ...] = ()
+
+    @classmethod
+    def at_rest(cls, body: Body, series: Series) -> Memory:
+        """Nothing has happened yet."""
+        shape = (6, *body.points.weights.shape)
+        return cls(series, np.zeros(shape), np.zeros((len(series.times), *shape)))
+
+    @property
+    def stress(self) -> Array:
+        """Isochoric part of the stress (6, E, Q) in Pa that holds now."""
+        return self.series.equilibrium[:, None] * self.elastic + self.overstress.sum(axis=0)
+
+    def at_kink(self) -> Memory:
+        """The same memory where the history goes on with another slope."""
+        return replace(self, earlier=())
+
+    def past(self, time_step: float) -> PastStress:
+        """What a step of this length in s starts from."""
+        kept, mean, bend = self.series.faded(time_step)
+        share, rest = self._bend(time_step)
+        weight = (mean + share * bend).sum(axis=0)
+        stress = np.einsum("ne,nceq->ceq", kept, self.overstress) - mean.sum(axis=0)[:, None] * self.elastic
+        stress += bend.sum(axis=0)[:, None] * rest
+        return PastStress(self.series.equilibrium + weight, np.ascontiguousarray(stress))
+
+    def advanced(self, elastic: Array, time_step: float) -> Memory:
+        """After a step of this length in s to the elastic stress (6, E, Q)."""
+        kept, mean, bend = (factor[:, None, :, None] for factor in self.series.faded(time_step))
+        share, rest = self._bend(time_step)
+        overstress = kept * self.overstress + mean * (elastic - self.elastic) + bend * (share * elastic + rest)
+        earlier = ((self.elastic, time_step), *self.earlier[: MOST_EARLIER - 1]) if time_step > 0 else ()
+        return Memory(self.series, elastic, overstress, earlier)
+
+    def _bend(self, time_step: float) -> tuple[float, Array]:
+        """The bend of the parabola times the step squared: ``share`` times the new elastic stress plus the rest (6, E, Q)."""
+        if not self.earlier or time_step == 0 or time_step > LARGEST_GROWTH * self.earlier[0][1]:
+            return 0.0, np.zeros_like(self.elastic)
+        before, length = self.earlier[0]
+        share = 2 * time_step / (time_step + length)
+        return share, -share * (self.elastic + time_step / length * (self.elastic - before))
+
+
+def elastic_stress(body: Body, state: Kinematics) -> Array:
+    """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa of the energies; the deviatoric stress if linear elastic."""
+    stress = np.zeros((6, *state.J.shape))
+    for index, material in enumerate(body.materials):
+        mine = body.regions == index
+        F = state.F[:, :, mine]
+        P = material.first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
+        stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[COMPONENTS]
+    return stress
+
+
+def mean_stress(body: Body, state: Kinematics, stress: Array) -> Array:
+    """Mean Cauchy stress (E, Q) in Pa of a second Piola-Kirchhoff stress (6, E, Q): its part of the hydrostatic stress."""
+    if not stress.any():
+        return np.zeros(state.J.shape)
+    C = np.einsum("iJeq,iKeq->JKeq", state.F, state.F)[COMPONENTS]
+    spatial = np.einsum("c,ceq,ceq->eq", DOUBLE, C, stress) / (3 * state.J)
+    return np.where(body.linear[:, None], stress[:3].sum(axis=0) / 3, spatial)
+
+
+def _solved(F: Array, P: Array) -> Array:
+    """F^-1 P, shape (3, 3, ...)."""
+    last = np.linalg.solve(np.moveaxis(F, (0, 1), (-2, -1)), np.moveaxis(P, (0, 1), (-2, -1)))
+    return np.moveaxis(last, (-2, -1), (0, 1))
+
+
+def size_of(body: Body, stress: Array) -> float:
+    """Root mean square of a symmetric stress (6, E, Q) over the volume, in Pa."""
+    weights = body.points.weights
+    return float(np.sqrt(np.einsum("eq,c,ceq,ceq->", weights, DOUBLE, stress, stress) / weights.sum()))
+
+
+def step_error(body: Body, memory: Memory) -> float:
+    r"""Estimated error of the stress over its size after the last step, when steps like it go on; zero for the first of a piece.
+
+    The parabola misses the elastic stress by :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6`. A short relaxation time
+    feels the slope of that at the end of a step, a long one its mean, which fading memory keeps from accumulating. The second
+    step of a piece is judged by the whole bend. What the round-off of F = 1 + ... can make of the differences does not count.
+    """
+    if len(memory.earlier) < 2:
+        return 0.0
+    (middle, last), (before, first) = memory.earlier[:2]
+    slopes = ((memory.elastic - middle) / last, (middle - before) / first)
+    bend = 2 * (slopes[0] - slopes[1]) / (first + last)
+    h = last / memory.series.times
+    if len(memory.earlier) == 2 or last > LARGEST_GROWTH * first:
+        missed, weight = last**2 * bend, _bend_weight(h) / -np.expm1(-h)
+    else:
+        oldest, length = memory.earlier[2]
+        earlier_bend = 2 * (slopes[1] - (before - oldest) / length) / (first + length)
+        third = 3 * (bend - earlier_bend) / (first + last + length)
+        missed, weight = last**2 * (last + first) / 6 * third, np.minimum(1 / h, MEAN_OF_CUBIC)
+    moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
+    noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in memory.earlier) ** 2 * moduli[:, None]
+    missed = np.where(np.abs(missed) > noise, missed, 0.0)
+    size = size_of(body, memory.stress)
+    total = (memory.series.amplitudes * weight).sum(axis=0)
+    return size_of(body, total[:, None] * missed) / size if size > 0 else 0.0
+
+
+def _bend_weight(h: Array) -> Array:
+    """psi, by its series where the formula cancels."""
+    small = h < 1e-2
+    safe = np.where(small, 1.0, h)
+    return np.where(small, h / 12 - h**2 / 24, (1 + np.exp(-safe)) / (2 * safe) + np.expm1(-safe) / safe**2)

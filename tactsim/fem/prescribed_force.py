@@ -1,0 +1,87 @@
+"""Interfaces driven by a force instead of a displacement: their common travel is one more unknown, bordered onto Newton's system.
+
+A traction depends on a point's place relative to its body, so that travel acts like a displacement of all points the other way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError
+from tactsim.fem.surface import SurfaceAssembly
+
+Array = np.ndarray
+
+LARGEST_ROUND_OFF = 1e-2
+"""Round-off of the contact force over the prescribed force, beyond which the answer is refused."""
+
+
+@dataclass(frozen=True)
+class Border:
+    """What a prescribed force adds to the linear system.
+
+    ``column`` (size,): nodal forces per travel, on the right-hand side; ``row`` (size,): derivative of the force by the
+    unknowns; ``slope``: its derivative by the travel, with the sign turned; ``missing``: force that is missing, in N.
+    """
+
+    column: Array
+    row: Array
+    slope: float
+    missing: float
+
+    def travel(self, step: Array, along: Array) -> float:
+        """Step of the travel in m, from the step of the unknowns at rest and their step per travel.
+
+        Raises
+        ------
+        ConvergenceError
+            If nothing touches.
+        """
+        if self.slope == 0.0:
+            raise ConvergenceError("the contact is open, so no force can be prescribed; it must press at every time")
+        return float((self.missing - self.row @ step) / (self.row @ along - self.slope))
+
+
+@dataclass(frozen=True)
+class PrescribedForce:
+    """A force in N that the interfaces together exert along the unit vector ``direction`` (d,); their common travel follows."""
+
+    direction: Array
+    force: float
+
+    def border(self, surfaces: Sequence[SurfaceAssembly], now: Sequence[Any]) -> Border:
+        """The border of the linear system for contacts with ``traction`` and ``derivative`` on their surfaces."""
+        e, slope, missing = self.direction, 0.0, self.force
+        column, row = np.zeros(surfaces[0].size), np.zeros(surfaces[0].size)
+        for surface, contact in zip(surfaces, now, strict=True):
+            along = np.einsum("ijn,j->in", contact.derivative, e)
+            column -= surface.force(along)
+            row += surface.force(np.einsum("i,ijn->jn", e, contact.derivative))
+            slope += float(e @ surface.total(along))
+            missing -= float(e @ surface.total(contact.traction))
+        return Border(column, row, slope, missing)
+
+    def error(
+        self, surfaces: Sequence[SurfaceAssembly], tractions: Sequence[Array], noise: Sequence[Array], tolerance: float
+    ) -> float:
+        """Missing force over the prescribed one, or over the round-off of the tractions as a part of the tolerance.
+
+        Raises
+        ------
+        ConvergenceError
+            If round-off hides the force.
+        """
+        missing, lost = self.force, 0.0
+        for surface, traction, uncertain in zip(surfaces, tractions, noise, strict=True):
+            missing -= float(self.direction @ surface.total(traction))
+            lost += float(uncertain @ surface.points.weights)
+        if lost > LARGEST_ROUND_OFF * abs(self.force):
+            raise ConvergenceError(
+                f"the round-off of the contact, {lost:.1e} N, hides the prescribed force of {self.force:.1e} N; "
+                "allow more penetration (penetration_tolerance)"
+            )
+        return abs(missing) / max(abs(self.force), lost / tolerance)

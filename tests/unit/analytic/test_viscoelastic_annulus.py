@@ -1,0 +1,132 @@
+"""The annulus on viscoelastic tissue: elastic limit, inverse, rise, touching, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.analytic.atrial import TIMES, atrial_shear_compliance
+from tactsim.analytic.force_factor import annulus_displacement, rise_factor
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.analytic.histories import harmonic, ramp, sampled, step
+from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus, creep_time
+from tactsim.errors import InvalidQuantity, UnknownName
+
+SOLID = GeneralizedKelvin(2e-4, [1e-4, 3e-4], [0.1, 5.0])
+RADIUS = 3e-3
+ROUND_OFF = 1e-12
+"""Relative, of sums over three terms and of the interconversion."""
+
+
+def annulus(ratio=0.4, tissue=SOLID, **settings):
+    return ViscoelasticAnnulus(RADIUS, ratio, tissue, **settings)
+
+
+def agree(found, expected):
+    np.testing.assert_allclose(found, expected, rtol=ROUND_OFF)
+
+
+def test_without_delay_it_is_the_elastic_annulus():
+    elastic = annulus(tissue=GeneralizedKelvin(1 / 5e3, [], []))
+    expected = annulus_displacement(0.7, RADIUS, 0.4, 5e3)
+    agree(elastic.displacement(step(0.7), [0.0, 3.0]), expected)
+    agree(elastic.force(step(float(expected)), [0.0, 3.0]), 0.7)
+    with pytest.raises(AssertionError):
+        agree(elastic.displacement(step(0.7), 3.0), expected * (1 + 3 * ROUND_OFF))
+
+
+def test_a_step_creeps_like_the_compliance():
+    t = np.logspace(-3, 2, 20)
+    agree(annulus().displacement(step(2.0), t), 2 * SOLID.creep(t) / annulus().length)
+    agree(annulus().creep_displacement([[1.0], [2.0]], t)[1], annulus().displacement(step(2.0), t))
+
+
+@pytest.mark.parametrize("times", TIMES)
+def test_force_undoes_displacement(times):
+    """The displacement under a ramp, sampled at 4000 points, brings back the force; linear interpolation errs like its square."""
+    tissue = annulus(tissue=atrial_shear_compliance(times))
+    t = np.linspace(0, 2, 4001)
+    history = sampled(t, tissue.displacement(ramp(0.5, 1.0), t))
+    expected = 0.5 * np.minimum(t, 1.0)
+    found = tissue.force(history, t)
+    error = np.abs(found - expected).max()
+    # The moduli over a time step of 0.5 ms change by less than a percent; so does the largest force
+    assert error < 0.01 * 0.5
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(found, 1.04 * expected, atol=0.01 * 0.5)
+
+
+def test_the_contact_opens_where_the_force_is_negative():
+    """A displacement taken back faster than the tissue follows needs a pull."""
+    force = annulus().force(sampled([0.0, 1.0, 1.1], [0.0, 1e-4, 0.0]), [1.0, 1.1])
+    assert force[0] > 0 > force[1]
+
+
+def test_the_rise_is_that_of_the_exact_contact():
+    for formula in ("exact", "thesis_4_2_21"):
+        agree(annulus(formula=formula).rise([1e-3, 2e-3]), np.array([1e-3, 2e-3]) * rise_factor(0.4))
+    assert annulus(0).rise(1.0) == 0
+
+
+def test_a_layer_takes_its_factors_from_the_solved_contact():
+    punch = solve_annular_punch(0.4, radius_over_thickness=0.75, base="slipping")
+    layer = annulus(radius_over_thickness=0.75, base="slipping")
+    agree([layer.force_factor, layer.rise_factor], [punch.force_factor, punch.rise_factor])
+    assert layer.rise_factor > annulus().rise_factor
+
+
+@pytest.mark.parametrize("times", TIMES)
+def test_force_and_time_to_touch_are_each_others_inverse(times):
+    sensor = annulus(0.1, atrial_shear_compliance(times))
+    recess, t = np.array([[0.1e-3], [0.7e-3]]), np.array([0.01, 0.5, 10.0])
+    force = sensor.force_to_touch(recess, t)
+    assert force.shape == (2, 3)
+    agree(sensor.rise(sensor.creep_displacement(force, t)), np.broadcast_to(recess, (2, 3)))
+    agree(sensor.time_to_touch(recess, force), np.broadcast_to(t, (2, 3)))
+    with pytest.raises(AssertionError):
+        agree(sensor.time_to_touch(recess, force * (1 + 1e-10)), np.broadcast_to(t, (2, 3)))
+
+
+def test_touching_at_once_and_never():
+    assert creep_time(SOLID, [1e-4, 2e-4, 6e-4, 1.0]).tolist() == [0, 0, np.inf, np.inf]
+    assert annulus(0).force_to_touch(1e-3, 1.0) == np.inf
+    assert annulus(0).time_to_touch(1e-3, 1.0) == np.inf
+
+
+def test_a_fluid_always_touches():
+    fluid = GeneralizedKelvin(2e-4, [1e-4], [0.1], fluidity=1e-5)
+    wanted = np.array([2.1e-4, 5e-4, 1.0])
+    agree(fluid.creep(creep_time(fluid, wanted)), wanted)
+
+
+def test_histories_with_harmonics_are_taken():
+    t = np.linspace(2, 3, 5)
+    found = annulus().displacement(harmonic(-0.2, 1.0, start=2.0, mean=0.2), t)
+    still = annulus().displacement(step(0.2), t)
+    assert found[0] == pytest.approx(still[0], rel=ROUND_OFF)
+    assert found[1] < still[1]
+
+
+@pytest.mark.parametrize(
+    ("settings", "error"),
+    [
+        ({"ratio": 1.0}, InvalidQuantity),
+        ({"radius_over_thickness": -1.0}, InvalidQuantity),
+        ({"radius_over_thickness": 1.0, "formula": "thesis_4_2_21"}, InvalidQuantity),
+        ({"radius_over_thickness": 1.0, "base": "loose"}, UnknownName),
+        ({"formula": "printed"}, UnknownName),
+    ],
+)
+def test_what_is_out_of_range_is_refused(settings, error):
+    with pytest.raises(error):
+        annulus(**settings)
+
+
+def test_a_negative_recess_or_force_is_refused():
+    with pytest.raises(InvalidQuantity, match="recess"):
+        annulus().force_to_touch(-1e-3, 1.0)
+    with pytest.raises(InvalidQuantity, match="force"):
+        annulus().time_to_touch(1e-3, 0.0)
+    with pytest.raises(InvalidQuantity, match="compliance"):
+        creep_time(SOLID, 0.0)

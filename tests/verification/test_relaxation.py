@@ -1,0 +1,222 @@
+"""Finite-strain relaxation against exact histories: homogeneous, in contact with friction, under a force; error in time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from skfem import MeshTet, MeshTri
+from solids import held, on_plane
+
+from tactsim.analytic.histories import ramp, step
+from tactsim.analytic.interconversion import kelvin_of
+from tactsim.analytic.response import response
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.plane import Plane
+from tactsim.contact.stick import Stick
+from tactsim.contact.traction import ContactPair
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.posed_contact import PosedContact
+from tactsim.fem.body import Body
+from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
+from tactsim.fem.newton import Problem
+from tactsim.fem.prescribed_force import PrescribedForce
+from tactsim.fem.space import TaylorHood
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.time_steps import TimeControl, TimeMarcher
+from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mesh.quadratic import from_skfem
+from tactsim.relaxation import Relaxation
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+MEASURES = ("axisymmetric", "solid")
+ONE_TIME = Relaxation(fractions=(0.4,), times=(5.0,))
+THREE_TIMES = Relaxation(fractions=(0.3, 0.2, 0.1), times=(0.01, 1.0, 20.0))
+RUBBER = MooneyRivlin2(c10=1.0, c01=0.25, relaxation=ONE_TIME)
+NOMINAL = {
+    # stretch: nominal stress at once, after 5 s, and in the end, for c10 = 1, c01 = 0.25, g1 = 0.4, tau = 5 s
+    0.8: (-2.001562, -1.495471, -1.200937),
+    1.2: (1.221759, 0.912840, 0.733056),
+}
+
+
+class Block:
+    """A unit cylinder or cube; its top moved as told, or pressed by a plane."""
+
+    def __init__(self, measure, material, *, law=None, cells=1, glued=False, tolerance=1e-7):
+        lines = np.linspace(0, 1, cells + 1)
+        mesh = from_skfem(MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines))
+        self.dim = dim = mesh.dim
+        self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
+        self.body = Body(self.space, [material], mesh.regions)
+        facets, _ = mesh.boundary_facets()
+        points = self.space.surface_points(facets[(mesh.nodes[facets][..., -1] == 1).all(axis=1)])
+        self.surface = SurfaceAssembly(points, self.body.pattern, dim)
+        sides = [held(mesh, axis, on_plane(axis, 0.0)) for axis in range(dim)]
+        base = [held(mesh, axis, on_plane(dim - 1, 0.0)) for axis in range(dim)] if glued else []
+        self.top = held(mesh, dim - 1, on_plane(dim - 1, 1.0))
+        self.problem = Problem(self.body, np.concatenate([*sides, *base, *([self.top] if law is None else [])]))
+        self.memory = Memory.at_rest(self.body, series_of(self.body))
+        self.unknowns, self.place = np.zeros(self.space.size), np.eye(dim)[-1]
+        self.scale = Regularisation(tolerance=tolerance, softest=material.shear_modulus, switch_length=0.1)
+        if law is not None:
+            pair = self.scale.applied(ContactPair(Plane(), law))
+            self.contact = PosedContact.apart(self.surface, points.interpolate(mesh.nodes), pair, self.place)
+
+    def moved(self, stretch, time_step):
+        """Nominal stress in Pa after the top has moved within a step."""
+        guess, past = self.unknowns.copy(), self.memory.past(time_step)
+        guess[self.top] = stretch - 1
+        solved = self.problem.solve(guess, past=past)
+        self._accept(solved, time_step)
+        force = self.body.with_past(past).residual(self.unknowns)[self.top].sum()
+        return force / self.surface.points.weights.sum()
+
+    def pressed(self, time_step, *, height=None, force=None):
+        """Force in N on the plane at a height, or its height under a force, after a step."""
+        push = None if force is None else PrescribedForce(-np.eye(self.dim)[-1], force)
+        if height is not None:
+            self.place = height * np.eye(self.dim)[-1]
+        contact = self.contact.moved(self.place, self.scale.applied(self.contact.pair))
+        travel = 0.0 if force is None else 1e-8
+        past = self.memory.past(time_step)
+        solved = self.problem.solve(self.unknowns, interfaces=[contact], push=push, travel=travel, past=past)
+        self.place = self.place - solved.travel * np.eye(self.dim)[-1]
+        self._accept(solved, time_step)
+        displacement = self.surface.points.interpolate(self.space.split(self.unknowns)[0])
+        moved = contact.moved(self.place, contact.pair)
+        self.contact, self.scale = moved.committed(displacement), self.scale.seen(moved.at(displacement).pressure.max())
+        return -self.surface.total(moved.at(displacement).traction)[-1] if force is None else self.place[-1]
+
+    def _accept(self, solved, time_step):
+        self.unknowns = solved.unknowns
+        self.memory = self.memory.advanced(elastic_stress(self.body, solved.kinematics), time_step)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("stretch", sorted(NOMINAL))
+def test_a_held_stretch_relaxes_as_printed(measure, stretch):
+    block = Block(measure, RUBBER)
+    for part in (0.5, 1.0):
+        at_once = block.moved(1 + part * (stretch - 1), 0.0)
+    after = block.moved(stretch, 5.0)
+    finally_ = block.moved(stretch, 1e3)
+    found = (at_once, after, finally_)
+    assert found == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
+    assert found != pytest.approx([value * (1 + 3e-6) for value in NOMINAL[stretch]], abs=6e-7)
+
+
+def elastic_parts(stretch):
+    """Isochoric second Piola-Kirchhoff stress along and across a uniaxial incompressible stretch, c10 = 1, c01 = 0.25."""
+    along, across = stretch, stretch**-0.5
+    first, second = (along**2 + 2 * across**2, 2 * along**2 * across**2 + across**4)
+    parts = []
+    for value in (along, across):
+        W1 = 2 * (1 - first / 3 / value**2)
+        W2 = 0.25 * (2 * (first - value**2) - 4 / 3 * second / value**2)
+        parts.append(W1 + W2)
+    return np.array(parts)
+
+
+def exact_nominal(stretch_of, time):
+    """Nominal stress of RUBBER in uniaxial stress under a stretch history, by quadrature of its memory."""
+
+    def rate(s, part):
+        h = 1e-5
+        ahead, behind = elastic_parts(stretch_of(s + h)), elastic_parts(stretch_of(s - h))
+        return (0.6 + 0.4 * np.exp(-(time - s) / 5.0)) * (ahead[part] - behind[part]) / (2 * h)
+
+    along, across = (quad(rate, 0, time, args=(part,), epsabs=1e-11, epsrel=1e-11)[0] for part in (0, 1))
+    stretch = stretch_of(time)
+    return stretch * along - across / stretch**2
+
+
+def shortened(s):
+    """A stretch from 1 at t = 0 to 0.7 at 4 s, smooth."""
+    return 1 - 0.3 * np.sin(np.pi / 8 * s) ** 2
+
+
+def march(tolerance):
+    """Error of the nominal stress at 4 s, over its size, and the number of steps."""
+    block = Block("axisymmetric", RUBBER)
+    states = {0.0: (block.unknowns, block.memory, 0.0)}
+
+    class State:
+        iterations = 3
+
+        def __init__(self, time):
+            self.time, self.unknowns = time, states[time][0]
+
+    def advance(now, time, guess):
+        block.unknowns, block.memory, _ = states[now.time]
+        stress = block.moved(shortened(time), time - now.time)
+        states[time] = (block.unknowns, block.memory, stress)
+        return State(time)
+
+    def error(state):
+        return step_error(block.body, states[state.time][1])
+
+    marcher = TimeMarcher(advance, error, TimeControl(tolerance, first=1e-3, smallest=1e-9))
+    times = [state.time for state, _ in marcher.march(State(0.0), [4.0], largest=4.0)]
+    return abs(states[4.0][2] / exact_nominal(shortened, 4.0) - 1), len(times)
+
+
+def test_the_error_in_time_follows_its_tolerance():
+    tolerances = 1e-3 / 2.0 ** np.arange(5)
+    errors, steps = np.array([march(tolerance) for tolerance in tolerances]).T
+    assert (errors < tolerances).all()
+    slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
+    assert slope == pytest.approx(1.0, abs=0.1), "halving the tolerance halves the error"
+    assert steps.max() < 60
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_small_strain_follows_linear_viscoelasticity(measure):
+    material = LinearElastic(youngs_modulus=3000.0, poisson_ratio=0.5, relaxation=THREE_TIMES)
+    block, times, rate = Block(measure, material), np.cumsum([0.01, 0.1, 0.5, 0.39, 1.0, 20.0, 500.0]), 1e-3
+    found = []
+    for t, dt in zip(times, np.diff(times, prepend=0.0), strict=True):
+        found.append(block.moved(1 + rate * min(t, 1.0), dt))
+        if t == 1.0:
+            block.memory = block.memory.at_kink()
+    expected = 3 * response(shear_relaxation(material), ramp(rate, 1.0), times)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, err_msg="uniaxial, incompressible: E = 3 G")
+    assert not np.allclose(found, expected * (1 + 3e-9), rtol=1e-9, atol=0)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_force_makes_linear_tissue_creep(measure):
+    material = LinearElastic(youngs_modulus=3000.0, poisson_ratio=0.5, relaxation=THREE_TIMES)
+    block = Block(measure, material, law=Coulomb(friction=0.0), tolerance=1e-7)
+    force, times = 1.0 * block.surface.points.weights.sum(), np.geomspace(1e-4, 100.0, 200)
+    heights = [block.pressed(0.0, force=force), *(block.pressed(dt, force=force) for dt in np.diff(times, prepend=0.0))]
+    found = 1 - np.array(heights)
+    expected = 1 / 3 * response(kelvin_of(shear_relaxation(material)), step(1.0), np.append(0.0, times))
+    np.testing.assert_allclose(found, expected, rtol=2e-3, err_msg="steps of 7 %, whose chords miss the curve by 1e-3")
+    assert found[0] == pytest.approx(expected[0], rel=1e-2), "penetration of 1e-7 in a displacement of 3e-4"
+    assert not np.allclose(found, expected * (1 + 6e-3), rtol=2e-3)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("law", [Coulomb(friction=0.3), Stick()], ids=["coulomb", "stick"])
+def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law):
+    material = MooneyRivlin2(c10=1.0, c01=0.25, relaxation=THREE_TIMES)
+    block = Block(measure, material, law=law, cells=3, glued=True, tolerance=1e-4)
+    for height in np.linspace(1, 0.85, 5)[1:]:
+        at_once = block.pressed(0.0, height=height)
+    equilibrium, amplitudes, tau = THREE_TIMES.amplitudes
+    for time, dt in ((0.01, 0.01), (1.0, 0.99), (20.0, 19.0), (1e4, 1e4 - 20.0)):
+        fading = equilibrium + amplitudes @ np.exp(-time / tau)
+        found = block.pressed(dt, height=0.85) / at_once
+        assert found == pytest.approx(fading, rel=5e-4), "penetration of 1e-4 that the falling pressure gives back"
+        assert found != pytest.approx(fading * (1 + 15e-4), rel=5e-4)
+
+
+def test_a_force_that_nothing_answers_is_an_error():
+    block = Block("axisymmetric", RUBBER, law=Coulomb(friction=0.0))
+    block.place = 2 * block.place
+    with pytest.raises(ConvergenceError, match="the contact is open"):
+        block.pressed(0.0, force=1e-3)

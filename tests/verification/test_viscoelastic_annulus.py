@@ -1,0 +1,61 @@
+"""The annulus on viscoelastic tissue: the printed displacement of thesis 4.6.4, and a quadrature of the hereditary integral."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.analytic.atrial import atrial_shear_compliance
+from tactsim.analytic.force_factor import force_factor
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.analytic.histories import ramp
+from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+
+SOLID = GeneralizedKelvin(2e-4, [1e-4, 3e-4], [0.1, 0.6])
+RADIUS, RATIO, END = 3e-3, 0.6, 1.0
+PRINTED = {
+    4.29: 10.64,
+    2.77: 16.58,
+    0.0031: 133.35,
+    0.0028: 146.15,
+    0.0021: 196.39,
+    0.0016: 253.67,
+    0.00098: 418.36,
+    0.00077: 532.91,
+}
+"""Rate in 1/s -> amplitude in 1/MPa, thesis eq. 4.6.4."""
+
+
+def printed_displacement(force, ratio, t):
+    """Displacement in m by eqs. 4.6.4 and 4.6.5 with their printed digits."""
+    bracket = 1708.08 - sum(amplitude * np.exp(-rate * t) for rate, amplitude in PRINTED.items())
+    return force * 1e-6 * bracket / (4 * RADIUS * force_factor(ratio, "thesis_4_2_21"))
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_the_printed_displacement(ratio):
+    """Rates cut in their second or third digit and amplitudes cut at 0.01 leave 0.3 % of the displacement up to 2 s."""
+    t = np.linspace(0.05, 2, 40)
+    annulus = ViscoelasticAnnulus(RADIUS, ratio, atrial_shear_compliance("viscosities", "half_shear"), "thesis_4_2_21")
+    found = annulus.creep_displacement(1.5, t)
+    np.testing.assert_allclose(found, printed_displacement(1.5, ratio, t), rtol=0.003)
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(found * 1.009, printed_displacement(1.5, ratio, t), rtol=0.003)
+
+
+def hereditary(annulus, steps, radius):
+    """Displacement in m at END by the midpoint rule for the hereditary integral over the force under a ramp of 1 mm/s."""
+    t = np.linspace(0, END, steps + 1)
+    forces = annulus.force(ramp(1e-3, END), t)
+    middles = END - (t[1:] + t[:-1]) / 2
+    return (SOLID.creep(middles) * np.diff(forces)).sum() / (8 * radius * force_factor(RATIO))
+
+
+def test_the_hereditary_integral_over_the_force_is_the_displacement():
+    """The midpoint rule converges with order 2 to the displacement that was given."""
+    annulus = ViscoelasticAnnulus(RADIUS, RATIO, SOLID)
+    steps = np.array([40, 80, 160, 320])
+    errors = np.array([abs(hereditary(annulus, n, RADIUS) - 1e-3 * END) for n in steps])
+    assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2, abs=0.1)
+    assert errors[-1] < 1e-5 * 1e-3
+    assert abs(hereditary(annulus, 320, RADIUS * (1 + 3e-5)) - 1e-3 * END) > 1e-5 * 1e-3
