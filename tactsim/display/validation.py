@@ -73,13 +73,16 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
 
 
 def curves_figure(data: dict[str, Any]) -> Figure:
-    """Panels one above the other over the same quantity."""
+    """Panels one above the other over the same quantity; ``even_panels`` and ``x_logarithmic`` are optional."""
     panels = data["panels"]
     figure = new_figure(7.0, 4.2 if len(panels) == 1 else 6.0)
-    ratios = [2.2, *[1.0] * (len(panels) - 1)]
+    ratios = [1.0 if data.get("even_panels") else 2.2, *[1.0] * (len(panels) - 1)]
     axes = figure.subplots(len(panels), 1, squeeze=False, sharex=True, height_ratios=ratios)[:, 0]
     for axis, panel in zip(axes, panels, strict=True):
         _draw_curves(axis, panel)
+    if data.get("x_logarithmic"):
+        axes[-1].set_xscale("log")
+        axes[-1].xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[0].legend(fontsize=8)
     axes[-1].set_xlabel(" in ".join(part for part in (data["x_axis"], data["x_unit"]) if part))
     figure.suptitle(data["title"], x=0.01, ha="left", fontsize=11, fontweight="bold")

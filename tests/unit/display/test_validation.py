@@ -23,7 +23,16 @@ RANGES = {
 CURVES = {"form": "curves", "title": "t", "x_axis": "stretch", "x_unit": "", "panels": [PANEL, {**PANEL, "unit": ""}]}
 
 
-@pytest.mark.parametrize("data", [RANGES, CURVES, {**CURVES, "panels": [PANEL]}, {**RANGES, "panels": RANGES["panels"] * 2}])  # type: ignore[operator]
+@pytest.mark.parametrize(
+    "data",
+    [
+        RANGES,
+        CURVES,
+        {**CURVES, "x_logarithmic": True, "even_panels": True},
+        {**CURVES, "panels": [PANEL]},
+        {**RANGES, "panels": RANGES["panels"] * 2},
+    ],
+)  # type: ignore[operator]
 def test_figures_are_drawn(data: dict[str, Any]) -> None:
     assert validation_figure(data).startswith(b"\x89PNG")
 

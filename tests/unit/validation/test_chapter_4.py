@@ -1,0 +1,118 @@
+"""The tables of chapter 4: every row holds, a number wrong by three tolerances does not, and the figures have their data."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactsim.analytic.atrial import E0, TAU, E
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.errors import InputError, UnknownName
+from tactsim.validation import compare, load_tables
+from tactsim.validation.atrial_units import FREQUENCIES, numbered_unit, numbered_units, truncated, units_by_speed
+from tactsim.validation.comparison import compare_row
+from tactsim.validation.evaluator import Inputs
+from tactsim.validation.evaluators.annulus_creep import AnnulusCreep
+from tactsim.validation.evaluators.atrial_oscillation import AtrialOscillation
+from tactsim.validation.evaluators.dynamic_coefficient import DynamicCoefficient
+from tactsim.validation.evaluators.dynamic_exponent import DynamicExponent
+from tactsim.validation.evaluators.identifiable_constants import IdentifiableConstants, sensitivities
+from tactsim.validation.table import OutsideBy, Row
+
+SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+LOADED = load_tables(SHIPPED)
+CHAPTER = [name for name, (chapter, _) in LOADED.manifest.tables.items() if chapter == 4]
+COMPARED = [
+    pytest.param(row, id=f"{name}.{row.id}")
+    for name in CHAPTER
+    for row in LOADED.tables[name].rows
+    if row.tolerance is not None or isinstance(row.state, OutsideBy)
+]
+
+
+@pytest.mark.parametrize("name", CHAPTER)
+def test_every_row_holds_and_every_figure_has_its_data(name: str) -> None:
+    outcome = compare(name, LOADED.tables[name], SHIPPED, {})
+    assert [row.row.id for row in outcome.rows if not row.held] == []
+    for drawing in outcome.table.figures.values():
+        json.dumps(drawing.data(outcome.inputs), allow_nan=False)
+
+
+@pytest.mark.parametrize("row", COMPARED)
+def test_a_number_wrong_by_three_tolerances_is_noticed(row: Row) -> None:
+    assert row.expected is not None
+    if isinstance(row.state, OutsideBy):
+        wrong = row.expected * (1 + 3 * row.state.tolerance)
+    else:
+        wrong = row.expected + 3 * (row.allowed or 0)
+    printed: Any = wrong if row.unit == "1" else f"{wrong!r} {row.unit}"
+    assert compare_row(row, Inputs()).held
+    assert not compare_row(row.model_copy(update={"printed": printed}), Inputs()).held
+
+
+def test_units_have_the_numbers_of_the_table() -> None:
+    for times, column in (("retardation_times", np.array(TAU)), ("viscosities", np.array(TAU) / np.array(E))):
+        compliances, retardation = numbered_units(times)
+        np.testing.assert_allclose(compliances * 1e6 * np.array(E), 1, rtol=1e-14)  # round-off of a quotient
+        np.testing.assert_allclose(retardation, column, rtol=1e-14)
+    assert numbered_unit("retardation_times", 3)[1] == TAU[2]
+    with pytest.raises(InputError, match="no unit 9"):
+        numbered_unit("viscosities", 9)
+
+
+def test_fast_and_slow_units_make_the_whole() -> None:
+    whole, fast, slow = (units_by_speed(chosen) for chosen in ("all", "fast", "slow"))
+    assert (fast.times.size, slow.times.size) == (2, 6)
+    together = fast.creep(3.0) + slow.creep(3.0) - 1e-6 / E0
+    assert together == pytest.approx(float(whole.creep(3.0)), rel=1e-13)  # round-off
+    with pytest.raises(UnknownName, match="fast"):
+        units_by_speed("fsat")
+
+
+def test_digits_are_cut_toward_zero() -> None:
+    np.testing.assert_allclose(truncated(np.array([-2.869, 0.0166, 0.06]), 0.01), [-2.86, 0.01, 0.06], atol=1e-15)
+
+
+def test_the_two_odd_coefficients_come_out_of_cut_parts() -> None:
+    """Eq. 4.7.2: 0.06 is six times 0.01, and -5.46 is -341.61 + 336.15."""
+    for name, exact, cut in (("slow", 0.0985, 0.06), ("static_rest", -5.449, -5.46)):
+        found = [1e6 * DynamicCoefficient(coefficient=name, truncated_parts=t).found(Inputs()) for t in (False, True)]
+        assert found == pytest.approx([exact, cut], abs=5e-4)  # given to four digits
+        assert found[0] != pytest.approx(cut, abs=5e-4)
+
+
+def test_the_exponents_as_written_are_sums_of_printed_numbers() -> None:
+    found = [DynamicExponent(exponent=name, as_written=True).found(Inputs()) for name in ("both", "first", "second")]
+    assert found == pytest.approx([7.07, 7.07 - 4.29, 7.07 - 2.77], rel=1e-12)  # round-off
+
+
+def test_touching_is_when_the_rise_is_the_recess() -> None:
+    force = AnnulusCreep(quantity="force_to_touch").found(Inputs())
+    assert AnnulusCreep(quantity="rise", force=force).found(Inputs()) == pytest.approx(0.7e-3, rel=1e-12)  # round-off
+    moment = AnnulusCreep(quantity="time_to_touch").found(Inputs())
+    assert AnnulusCreep(quantity="rise", time=moment).found(Inputs()) == pytest.approx(0.7e-3, rel=1e-12)
+
+
+def test_moduli_and_compliances_are_reciprocal() -> None:
+    quantities = ("elastic_modulus", "viscous_modulus", "elastic_compliance", "viscous_compliance")
+    e, v, d, w = (AtrialOscillation(quantity=name, frequency=6.0).found(Inputs()) for name in quantities)  # type: ignore[arg-type]
+    assert (e + 1j * v) * (d - 1j * w) == pytest.approx(1, rel=1e-13)  # round-off
+
+
+def test_the_sensitivities_are_the_differences_of_the_compliance() -> None:
+    def logarithms(constants: np.ndarray) -> np.ndarray:
+        moduli, times = 1e6 * constants[1:9], constants[9:]
+        total = GeneralizedKelvin(1 / (1e6 * constants[0]), 1 / moduli, times).complex_compliance(2 * np.pi * FREQUENCIES)
+        return np.log(np.concatenate([total.real, -total.imag]))
+
+    constants, factor = np.array([E0, *E, *TAU]), np.exp(1e-5)
+    changes = [np.where(np.arange(17) == k, factor, 1.0) for k in range(17)]
+    expected = np.array([(logarithms(constants * c) - logarithms(constants / c)) / 2e-5 for c in changes]).T
+    np.testing.assert_allclose(sensitivities(), expected, atol=1e-8)  # the square of the step, and round-off over the step
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(sensitivities(), expected + 3e-8, atol=1e-8)
+    assert [IdentifiableConstants(data_error=error).found(Inputs()) for error in (0.01, 1e-9)] == [4, 8]
