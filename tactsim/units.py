@@ -108,6 +108,7 @@ def quantity_type(unit: str, example: str) -> Any:
 
 Length = quantity_type("m", "1.5 mm")
 Pressure = quantity_type("Pa", "3.2 kPa")
+Area = quantity_type("m^2", "80 mm^2")
 Force = quantity_type("N", "0.5 N")
 Time = quantity_type("s", "2 s")
 Frequency = quantity_type("Hz", "5 Hz")

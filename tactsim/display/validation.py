@@ -14,7 +14,7 @@ from tactsim.errors import UnknownName
 from tactsim.units import format_quantity
 
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
-LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.")
+LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.", "C6:", "C7-", "C8--", "C9-.")
 POINTS_SHOWN = 40
 
 
@@ -102,5 +102,7 @@ def _draw_curves(axis: Axes, panel: dict[str, Any]) -> None:
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
     if panel.get("logarithmic"):
         axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        low, high = axis.get_ylim()
+        axis.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}") if high < 10 * low else NullFormatter())
     axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
     despined(axis)

@@ -84,5 +84,5 @@ def _reproduction(row: Row, found: float) -> RowOutcome:
 def _deviation(row: Row, state: OutsideBy, found: float) -> RowOutcome:
     factor = found / row.expected if row.expected else math.inf
     held = abs(factor - state.outside_by) <= state.tolerance * state.outside_by
-    text = f"outside by {factor:.3g}"
-    return RowOutcome(row, found, held, text if held else f"LEFT: {text}, was {state.outside_by:.3g}", state.reason)
+    text = f"outside by {factor:.4g}"
+    return RowOutcome(row, found, held, text if held else f"LEFT: {text}, was {state.outside_by:.4g}", state.reason)

@@ -117,7 +117,7 @@ def _cells(outcome: RowOutcome) -> tuple[str, ...]:
 
 def _tolerance(row: Any) -> str:
     if isinstance(row.state, OutsideBy):
-        return f"{row.state.outside_by:.3g} ± {row.state.tolerance:.0%}"
+        return f"{row.state.outside_by:.4g} ± {100 * row.state.tolerance:.2g} %"
     if row.tolerance is None:
         return "-"
     relative = row.tolerance.relative

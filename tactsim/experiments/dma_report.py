@@ -1,0 +1,169 @@
+"""What an identification from dynamic mechanical analysis reports: curves, quantities, and what the data do not tell."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.identification.dma_bands import ComplianceBand
+from tactsim.identification.dma_data import PARTS, DmaData, parts_of
+from tactsim.identification.dma_determined import Determination
+from tactsim.identification.dma_least_squares import DmaFit, fit_least_squares
+from tactsim.identification.dma_spectrum import relative_noise
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+
+METHODS = ("least_squares", "genetic")
+HISTORY_UNITS = {
+    "frequency": "Hz",
+    **{f"measured_{part}_compliance": "1/Pa" for part in PARTS},
+    **{f"{method}_{part}_compliance{end}": "1/Pa" for method in METHODS for part in PARTS for end in ("", "_lower", "_upper")},
+    **{f"true_{part}_compliance": "1/Pa" for part in PARTS},
+}
+FAR_FROM_LEAST = 1.05
+"""Ratio to the least of eq. 4.5.2 from which the search is said not to have reached it."""
+SHOWN_GENERATIONS = 50
+"""Generations whose best objective is kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class DmaFinding:
+    """A fit, its band, and what the data tell of its constants."""
+
+    fit: DmaFit
+    band: ComplianceBand
+    determination: Determination
+
+
+class DmaReport:
+    """Collects the fits of one set of data and turns them into a result."""
+
+    def __init__(self, data: DmaData, frequencies: np.ndarray, model: GeneralizedKelvin | None, kind: str):
+        self.data, self.frequencies, self.kind = data, frequencies, kind
+        self.truth = None if model is None else parts_of(model.complex_compliance(2 * np.pi * frequencies))
+        self.findings: dict[str, DmaFinding] = {}
+        self.timing: dict[str, float] = {}
+        self._begin = time.perf_counter()
+
+    def add(self, finding: DmaFinding, seconds: float) -> None:
+        """Record a fit and how long it took."""
+        self.findings[finding.fit.method] = finding
+        self.timing[finding.fit.method] = seconds
+
+    def steps(self) -> tuple[StepRecord, ...]:
+        """One step per frequency; data stand only at theirs, no step without a fit."""
+        if not self.findings:
+            return ()
+        return tuple(StepRecord(k + 1, 0, 0.0, self._row(k)) for k in range(self.frequencies.size))
+
+    def _row(self, k: int) -> dict[str, float]:
+        """History values at the k-th frequency."""
+        values = {"frequency": float(self.frequencies[k])}
+        for row in np.flatnonzero(self.data.frequencies == self.frequencies[k]):
+            values |= {f"measured_{part}_compliance": float(self.data.parts[i, row]) for i, part in enumerate(PARTS)}
+        for method, finding in self.findings.items():
+            band = finding.band
+            for i, part in enumerate(PARTS):
+                name = f"{method}_{part}_compliance"
+                values[name] = float(band.centre[i, k])
+                values |= {f"{name}_lower": float(band.lower[i, k]), f"{name}_upper": float(band.upper[i, k])}
+        if self.truth is not None:
+            values |= {f"true_{part}_compliance": float(self.truth[i, k]) for i, part in enumerate(PARTS)}
+        return values
+
+    def result(self, status: Status, reason: str, assumptions: tuple[str, ...]) -> Result:
+        """The result with every fit that was made."""
+        quantities = self._quantities()
+        return Result(
+            kind=self.kind,
+            status=status,
+            reason=reason,
+            quantities=quantities,
+            assumptions=assumptions,
+            warnings=tuple(self._warnings(quantities)),
+            timing={**self.timing, "total": time.perf_counter() - self._begin},
+            steps=self.steps(),
+            units=HISTORY_UNITS,
+            details=self._details(),
+        )
+
+    def _quantities(self) -> dict[str, Quantity]:
+        found: dict[str, Quantity] = {}
+        for method, finding in self.findings.items():
+            found |= self._constants(finding, prefix="" if not found else f"{method}_")
+        for method, finding in self.findings.items():
+            found |= self._errors(method, finding)
+        if self.findings:
+            least = fit_least_squares(self.data, self._units, weighting="objective").objective
+            found["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
+            told = next(iter(self.findings.values())).determination
+            found["relative_noise"] = Quantity(told.noise, "1", "relative standard deviation of each number, known or estimated")
+            found["determined_combinations"] = Quantity(
+                told.determined_combinations, "1", f"combinations of the {len(told.names)} constants that the data determine"
+            )
+        return found
+
+    @property
+    def _units(self) -> int:
+        return len(next(iter(self.findings.values())).fit.constants.moduli)
+
+    @staticmethod
+    def _constants(finding: DmaFinding, prefix: str) -> dict[str, Quantity]:
+        constants, method = finding.fit.constants, finding.fit.method.replace("_", " ")
+        return {
+            f"{prefix}glassy_modulus": Quantity(constants.glassy_modulus, "Pa", f"E0, {method}"),
+            f"{prefix}moduli": Quantity(constants.moduli, "Pa", f"E_i of the Kelvin units, {method}"),
+            f"{prefix}retardation_times": Quantity(constants.retardation_times, "s", f"tau_i, {method}"),
+        }
+
+    def _errors(self, method: str, finding: DmaFinding) -> dict[str, Quantity]:
+        """Objective, errors and width of the band of one fit."""
+        fit, band = finding.fit, finding.band
+        errors = fit.parts(self.data.frequencies) / self.data.parts - 1
+        squares = float(((errors / relative_noise(self.data)) ** 2).sum())
+        width, both = float(np.median(band.relative_width)), "elastic and viscous"
+        found = {
+            f"{method}_objective": Quantity(fit.objective, "1/Pa**2", "eq. 4.5.2 with squared norms"),
+            f"{method}_weighted_squares": Quantity(squares, "1", "squared errors over the variance of the noise, summed"),
+            f"{method}_largest_error": Quantity(
+                float(np.abs(errors).max()), "1", f"largest relative difference from the data, {both}"
+            ),
+            f"{method}_band_width": Quantity(width, "1", f"median full width of the band over the curve, {both}"),
+        }
+        if self.truth is not None:
+            error = float(np.abs(band.centre / self.truth - 1).max())
+            found[f"{method}_curve_error"] = Quantity(error, "1", f"largest relative difference from the true curves, {both}")
+        return found
+
+    def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
+        warnings = [finding.determination.statement() for finding in list(self.findings.values())[:1]]
+        if "genetic" in self.findings:
+            reached, least = quantities["genetic_objective"].value, quantities["least_objective"].value
+            if reached > FAR_FROM_LEAST * least:
+                times = f"{reached / least:.3g} times" if reached < 1e6 * least else "more than a million times"
+                warnings.append(f"the genetic algorithm stopped at {times} the least of its objective: search longer")
+        return warnings
+
+    def _details(self) -> dict[str, Any]:
+        found: dict[str, Any] = {"data_frequencies": self.data.frequencies}
+        for method, finding in self.findings.items():
+            told, band, fit = finding.determination, finding.band, finding.fit
+            found[method] = {
+                "evaluations": fit.evaluations,
+                "statement": told.statement(),
+                "constants": dict(zip(told.names, told.values, strict=True)),
+                "standard_errors_of_logarithms": dict(zip(told.names, told.relative_errors, strict=True)),
+                "told": dict(zip(told.names, told.told.tolist(), strict=True)),
+                "singular_values": told.singular_values,
+                "confidence": band.confidence,
+                "band": "simultaneous" if band.simultaneous else "pointwise",
+            }
+            if fit.history:
+                shown = np.unique(np.geomspace(1, len(fit.history), SHOWN_GENERATIONS).round().astype(int))
+                found[method] |= {"generation": shown, "best_objective": np.array(fit.history)[shown - 1]}
+            if self.truth is not None:
+                found[method]["true_curves_inside_band"] = band.contains(self.truth)
+        return found

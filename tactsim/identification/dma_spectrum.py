@@ -1,0 +1,96 @@
+"""Non-negative retardation spectrum on a fixed grid of times: the convex form of the fit, with one minimum."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import nnls
+
+from tactsim.errors import ConvergenceError
+from tactsim.identification.dma_data import DmaData
+from tactsim.interfaces import Array
+
+POINTS_PER_DECADE = 12
+"""Neighbours 1.21 apart: a unit between them is a pair of units to 2.3e-3 of its compliance."""
+
+SHORTEST, LONGEST = 1e-2, 1e4
+"""Assumption: times from 1e-2 / omega_max, nearly a spring, to 1e4 / omega_min, nearly a dashpot."""
+
+MOST_ITERATIONS = 10_000
+ROUND_OFF = 1e-13
+"""Smallest relative noise that is told apart: what the data lose as floats."""
+
+
+def retardation_grid(frequencies: Array) -> Array:
+    """Retardation times in s, evenly spaced in the logarithm, for data at ``frequencies`` in Hz."""
+    omega = 2 * np.pi * np.asarray(frequencies)
+    shortest, longest = SHORTEST / omega.max(), LONGEST / omega.min()
+    return np.geomspace(shortest, longest, 1 + int(np.ceil(POINTS_PER_DECADE * np.log10(longest / shortest))))
+
+
+def retardation_basis(frequencies: Array, times: Array) -> Array:
+    """Elastic, then viscous compliance at ``frequencies`` in Hz per unit of glassy compliance and of each retardation compliance.
+
+    Dimensionless, shape (2 frequencies, 1 + times).
+    """
+    product = 2 * np.pi * np.asarray(frequencies)[:, None] * times
+    term = 1 / (1 + product**2)
+    spring = np.repeat([1.0, 0.0], len(product))
+    return np.column_stack([spring, np.concatenate([term, product * term])])
+
+
+def nonnegative_spectrum(basis: Array, compliance: Array, deviation: Array) -> Array:
+    r"""Glassy and retardation compliances in 1/Pa, shape (1 + times,).
+
+    .. math:: \min_{J \ge 0} \sum_k ((B J - D)_k / s_k)^2
+
+    Parameters
+    ----------
+    basis
+        ``B``, of ``retardation_basis``.
+    compliance, deviation
+        ``D`` and ``s`` in 1/Pa, shape (2 frequencies,).
+
+    Raises
+    ------
+    ConvergenceError
+        If the active set does not settle.
+
+    Source: Lawson & Hanson 1974, Solving Least Squares Problems, chapter 23; for spectra: Provencher 1982,
+    doi:10.1016/0010-4655(82)90173-4.
+    """
+    weighted = basis / deviation[:, None]
+    size = np.linalg.norm(weighted, axis=0)
+    try:
+        found, _ = nnls(weighted / size, compliance / deviation, maxiter=MOST_ITERATIONS)
+    except RuntimeError as error:
+        raise ConvergenceError(f"retardation spectrum: {error}") from None
+    return found / size
+
+
+def relative_noise(data: DmaData) -> Array:
+    """Relative standard deviation of the noise of each number, shape (2, n): as the data give it, else ``estimated_noise``."""
+    if data.relative_noise is not None:
+        return np.maximum(data.relative_noise, ROUND_OFF)
+    return estimated_noise(data)
+
+
+def estimated_noise(data: DmaData) -> Array:
+    r"""Relative standard deviation of the noise from the residuals of the best spectrum, shape (2, n), all equal.
+
+    .. math:: \hat\sigma^2 = \frac{1}{2 n - a} \sum_k \left(\frac{(B J)_k}{D_k} - 1\right)^2
+
+    with the spectrum J fitted to relative errors and a the number of its positive compliances, whose expectation is the number of
+    degrees of freedom that a non-negative fit uses.
+
+    Source: Meyer & Woodroofe 2000, doi:10.1214/aos/1015956708.
+    """
+    compliance = data.parts.ravel()
+    basis = retardation_basis(data.frequencies, retardation_grid(data.frequencies))
+    return np.full(data.parts.shape, residual_noise(basis, compliance, nonnegative_spectrum(basis, compliance, compliance)))
+
+
+def residual_noise(basis: Array, compliance: Array, spectrum: Array) -> float:
+    """Relative standard deviation of the noise from the residuals of a spectrum; see ``estimated_noise``."""
+    residual = basis @ spectrum / compliance - 1
+    free = max(1, residual.size - int((spectrum > 0).sum()))
+    return max(ROUND_OFF, float(np.sqrt(residual @ residual / free)))

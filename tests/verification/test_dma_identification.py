@@ -1,0 +1,78 @@
+"""Generalized Kelvin model from eight frequencies: exact data come back, noise is banded, and least squares beats the search."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from tactsim.analytic.atrial import TIMES, table_4_1
+from tactsim.identification.dma_bands import least_squares_band
+from tactsim.identification.dma_data import DmaData, parts_of, synthetic_dma
+from tactsim.identification.dma_genetic import GeneticSettings, fit_genetic
+from tactsim.identification.dma_least_squares import fit_least_squares
+
+FREQUENCIES = np.linspace(1, 36, 1000)
+BAND_FREQUENCIES = np.geomspace(1, 36, 120)
+NOISE, CONFIDENCE = 0.02, 0.95
+
+
+def true_parts(times, frequencies):
+    return parts_of(table_4_1(times).complex_compliance(2 * np.pi * frequencies))
+
+
+def trials(times, count, *, stretched=1.0, factor=1.0):
+    """Part of the trials in which the band holds the true curves times a factor, and the median full width of the band."""
+    true = factor * true_parts(times, BAND_FREQUENCIES)
+    inside, widths = [], []
+    for seed in range(count):
+        data = synthetic_dma(table_4_1(times), noise=NOISE, seed=5000 + seed)
+        known = DmaData(data.frequencies, data.compliance, stretched * data.relative_noise)
+        band = least_squares_band(fit_least_squares(known), BAND_FREQUENCIES, confidence=CONFIDENCE, replicates=300, seed=seed)
+        inside.append(band.contains(true))
+        widths.append(np.median(band.relative_width))
+    return np.mean(inside), np.median(widths)
+
+
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("times", TIMES)
+def test_exact_data_give_the_curves_back(times, known):
+    data = synthetic_dma(table_4_1(times))
+    fit = fit_least_squares(data if known else DmaData(data.frequencies, data.compliance))
+    error = np.abs(fit.parts(FREQUENCIES) / true_parts(times, FREQUENCIES) - 1).max()
+    tolerance = 1e-6  # relative, as demanded; the largest seen is 6e-8
+    assert error < tolerance
+    assert not np.abs((1 + 3 * tolerance) * fit.parts(FREQUENCIES) / true_parts(times, FREQUENCIES) - 1).max() < tolerance
+
+
+@pytest.mark.parametrize("noise", [0.0, NOISE])
+@pytest.mark.parametrize("times", TIMES)
+def test_least_squares_has_a_lower_objective_than_the_search(times, noise):
+    data = synthetic_dma(table_4_1(times), noise=noise, seed=1)
+    searched = fit_genetic(data, settings=GeneticSettings(population=100, generations=200, seed=1))
+    least = fit_least_squares(data, weighting="objective")
+    assert least.objective < searched.objective
+    if noise == 0:
+        assert fit_least_squares(data).objective < 1e-6 * searched.objective
+
+
+@pytest.mark.parametrize("times", TIMES)
+def test_the_band_holds_the_true_curves_in_forty_trials(times):
+    covered, width = trials(times, 40)
+    least = binom.ppf(1e-3, 40, CONFIDENCE) / 40  # one false alarm in a thousand
+    assert covered >= least
+    assert width < 4 * NOISE
+
+
+def test_a_band_of_too_little_noise_or_of_another_curve_fails():
+    least = binom.ppf(1e-3, 40, CONFIDENCE) / 40
+    assert trials(TIMES[0], 40, stretched=0.5)[0] < least
+    assert trials(TIMES[0], 40, factor=1.05)[0] < least
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("times", TIMES)
+def test_the_band_holds_the_true_curves_in_two_hundred_trials(times):
+    covered, width = trials(times, 200)
+    assert 0.895 <= covered <= 0.99  # 3.5 standard deviations of a binomial of 0.95
+    assert width < 4 * NOISE
