@@ -12,21 +12,22 @@ from tactsim.units import format_quantity
 def case_json_schema() -> dict[str, Any]:
     """JSON Schema (draft 7, which editors know) of a case file with every registered experiment; quantities are text."""
     schema = _readable(case_class(any_experiment()).model_json_schema(by_alias=True, mode="validation"))
-    for reference in _told_apart(schema):
+    for key, reference in sorted(_told_apart(schema)):
         definition = schema["$defs"][reference.rpartition("/")[2]]
-        definition["required"] = list(dict.fromkeys(["kind", *definition.get("required", ())]))
+        definition["required"] = list(dict.fromkeys([key, *definition.get("required", ())]))
     return {"$schema": "http://json-schema.org/draft-07/schema#", **schema, "title": "tactsim case"}
 
 
-def _told_apart(schema: dict[str, Any]) -> set[str]:
-    """References to the definitions that must name their ``kind``: the experiments and the members of unions."""
+def _told_apart(schema: dict[str, Any]) -> set[tuple[str, str]]:
+    """Keys that definitions must name, like ``kind``, with references to these: the experiments and the members of unions."""
     experiment = schema["properties"]["experiment"]
-    return {*_union_members(schema), *([experiment["$ref"]] if "$ref" in experiment else ())}
+    return {*_union_members(schema), *([("kind", experiment["$ref"])] if "$ref" in experiment else ())}
 
 
-def _union_members(fragment: Any) -> Iterator[str]:
-    if isinstance(fragment, dict):
-        yield from fragment.get("discriminator", {}).get("mapping", {}).values()
+def _union_members(fragment: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(fragment, dict) and "discriminator" in fragment:
+        told = fragment["discriminator"]
+        yield from ((told["propertyName"], reference) for reference in told.get("mapping", {}).values())
     for item in fragment.values() if isinstance(fragment, dict) else fragment if isinstance(fragment, list) else ():
         yield from _union_members(item)
 

@@ -101,7 +101,8 @@ class TimedPath:
         follower = PathFollower(advance, JUMP)
         *_, (last, _) = follower.follow(_JumpState(0.0, start), 1.0)
         self.rejected += follower.rejected
-        return last.state
+        # Once more with the contact as stiff as the new pressure asks, so that later steps do not have to.
+        return self._reached(last.state, last.state.time, target, last.state.unknowns)
 
     def _march(
         self, start: TimedState, segment: Segment, event: TimeEvent[TimedState] | None

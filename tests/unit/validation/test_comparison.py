@@ -28,7 +28,7 @@ def test_recorded_states_hold(tmp_path: Path) -> None:
     ("old", "new", "left", "said"),
     [
         ("125 N/m", "125.4 N/m", 0, "LEFT: was reproduced"),
-        ("250 N/m", "240 N/m", 1, "LEFT: outside by 0.521, was 0.5"),
+        ("250 N/m", "240 N/m", 1, "LEFT: outside by 0.5208, was 0.5"),
         ("250 N/m", "125 N/m", 1, "LEFT: outside by 1, was 0.5"),
     ],
 )

@@ -1,0 +1,72 @@
+"""Steps of time follow their error, land on the stops, find events, and give up with the time they reached."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from tactsim.errors import ConvergenceError
+from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
+
+
+@dataclass
+class Clock:
+    """A state that is its time; ``step`` led to it."""
+
+    time: float
+    step: float = 0.0
+    iterations: int = 2
+
+    @property
+    def unknowns(self):
+        return np.array([self.time**2])
+
+
+def marching(*, tolerance=1e-3, first=1e-3, scale=1.0, fail=lambda time: False):
+    def advance(now, time, guess):
+        if fail(time):
+            raise ConvergenceError("too far")
+        return Clock(time, time - now.time)
+
+    control = TimeControl(tolerance, first=first, smallest=1e-6)
+    return TimeMarcher(advance, lambda state: scale * state.step**3, control)
+
+
+def test_steps_grow_until_the_error_reaches_its_tolerance():
+    states = [state for state, _ in marching().march(Clock(0.0), [5.0], largest=5.0)]
+    steps = np.array([state.step for state in states])
+    assert states[-1].time == 5.0
+    assert (steps[1:8] <= 2 * steps[:7] * (1 + 1e-12)).all()
+    assert 0.06 < steps[-5] <= 0.1 * (1 + 1e-9), "the error is the cube of the step and stays below 1e-3"
+    finer = [state for state, _ in marching(tolerance=1e-3 / 8).march(Clock(0.0), [5.0], largest=5.0)]
+    assert len(finer) == pytest.approx(2 * len(states), rel=0.2)
+
+
+def test_steps_land_on_every_stop_without_a_sliver():
+    stops = [0.01, 0.011, 1.0, 1.0 + 1e-4, 3.0]
+    states = [state for state, _ in marching(first=1e-4).march(Clock(0.0), stops, largest=1.0)]
+    times = np.array([state.time for state in states])
+    assert all(np.isclose(times, stop, rtol=1e-14).any() for stop in stops)
+    assert np.diff(times).min() >= 4e-5
+
+
+def test_an_event_is_located():
+    event = TimeEvent(lambda state: state.time - np.sqrt(2))
+    *_, (last, happened) = marching().march(Clock(0.0), [5.0], largest=1.0, event=event)
+    assert happened
+    assert last.time == pytest.approx(np.sqrt(2), rel=1e-6)
+
+
+def test_a_step_that_never_converges_gives_up_with_its_time():
+    marcher = marching(fail=lambda time: time > 1.0)
+    with pytest.raises(ConvergenceError, match=r"gave up at (1|0\.9999\d*) s: too far"):
+        list(marcher.march(Clock(0.0), [5.0], largest=1.0))
+    assert marcher.rejected > 5
+
+
+def test_an_error_that_never_falls_gives_up():
+    marcher = TimeMarcher(lambda now, time, guess: Clock(time), lambda state: 1.0, TimeControl(1e-3, first=0.1, smallest=1e-4))
+    with pytest.raises(ConvergenceError, match="the error"):
+        list(marcher.march(Clock(0.0), [5.0], largest=1.0))
