@@ -11,7 +11,15 @@ from pathlib import Path
 from statistics import median
 
 ROOT = Path(__file__).parents[1]
-CASES = ("annulus_icf", "annulus_b1a", "annulus_icf_printed", "annulus_b1a_printed")
+CASES = (
+    "annulus_icf",
+    "annulus_b1a",
+    "annulus_icf_printed",
+    "annulus_b1a_printed",
+    "atrial_annulus",
+    "design_annulus",
+    "dma_atrial",
+)
 
 
 def _seconds(arguments: list[str], environment: dict[str, str]) -> tuple[float, int]:
@@ -21,7 +29,7 @@ def _seconds(arguments: list[str], environment: dict[str, str]) -> tuple[float, 
 
 
 def measure() -> dict[str, float]:
-    """Seconds of the first and a later main job, of every annulus case, and of ``--help`` (median of five)."""
+    """Seconds of the first and a later main job, of every other case, and of ``--help`` (median of five)."""
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as place:
         environment = {**os.environ, "NUMBA_CACHE_DIR": f"{place}/compiled"}

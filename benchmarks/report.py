@@ -14,6 +14,7 @@ from pathlib import Path
 
 import assembly
 import commands
+import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
 START = "<!-- performance table: written by `python benchmarks/report.py --readme` -->"
@@ -22,7 +23,7 @@ END = "<!-- end of performance table -->"
 
 def table(figures: dict[str, dict[str, float]]) -> str:
     """Markdown table of what was asked and what was measured."""
-    job, speed = figures["commands"], figures["assembly"]
+    job, speed, closed = figures["commands"], figures["assembly"], figures["viscoelasticity"]
     rows = [
         ("first run of the main job, compilation included", "under 60 s", f"{job['first_run_seconds']:.1f} s"),
         ("later runs of the main job", "under 20 s", f"{job['later_run_seconds']:.1f} s"),
@@ -31,6 +32,16 @@ def table(figures: dict[str, dict[str, float]]) -> str:
             "assembly, residual and tangent, P2/P1 tetrahedra",
             "80 000 per second",
             f"{round(speed['tetrahedra_per_second'], -3):,.0f} per second".replace(",", " "),
+        ),
+        (
+            "force-displacement pairs of the exact annulus, one core",
+            "1 000 000 per second",
+            f"{round(closed['pairs_per_second'], -5):,.0f} per second".replace(",", " "),
+        ),
+        (
+            "one step of the atrial model, compiled / from Python",
+            "under 5 µs",
+            f"{closed['step_compiled_microseconds']:.2f} / {closed['step_from_python_microseconds']:.2f} µs",
         ),
         *(
             (f"`{name}.yaml`", "under 120 s", f"{job[f'{name}_seconds']:.1f} s (exit {job[f'{name}_exit_code']:.0f})")
@@ -46,7 +57,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--readme", action="store_true", help="write the table into README.md")
     arguments = parser.parse_args()
-    figures = {"assembly": assembly.measure(), "commands": commands.measure()}
+    figures = {"assembly": assembly.measure(), "viscoelasticity": viscoelasticity.measure(), "commands": commands.measure()}
     text = table(figures)
     sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
     if arguments.readme:

@@ -1,0 +1,60 @@
+"""Speed of the closed forms and of the solver's steps in time; prints JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+
+import numba
+import numpy as np
+
+from tactsim.analytic.atrial import atrial_shear_compliance
+from tactsim.analytic.force_factor import annulus_force
+from tactsim.analytic.stepping import kelvin_step, rest_state, step_constants
+
+PAIRS = 1_000_000
+STEPS = 1_000_000
+REPEATS = 3
+
+
+def measure() -> dict[str, float]:
+    """Force-displacement pairs per second, and the time of one step of the atrial model from Python and compiled."""
+    generator = np.random.default_rng(1)
+    depth, ratio = generator.uniform(0, 1e-3, PAIRS), generator.uniform(0, 0.99, PAIRS)
+    annulus_force(depth[:10], 3e-3, ratio[:10], 1e3)
+    pairs = min(_seconds(lambda: annulus_force(depth, 3e-3, ratio, 1e3)) for _ in range(REPEATS))
+    model = atrial_shear_compliance()
+    constants, state = step_constants(model), rest_state(model)
+    kelvin_step(constants, state, 1e-3, 1.0)
+    called = min(_seconds(lambda: _called(constants, state)) for _ in range(REPEATS))
+    compiled = numba.njit(_looped)
+    compiled(kelvin_step, constants, state, 1)
+    looped = min(_seconds(lambda: compiled(kelvin_step, constants, state, STEPS)) for _ in range(REPEATS))
+    return {
+        "pairs_per_second": PAIRS / pairs,
+        "step_from_python_microseconds": 1e6 * called / (STEPS // 10),
+        "step_compiled_microseconds": 1e6 * looped / STEPS,
+    }
+
+
+def _called(constants: np.ndarray, state: np.ndarray) -> None:
+    for _ in range(STEPS // 10):
+        kelvin_step(constants, state, 1e-3, 1.0)
+
+
+def _looped(step, constants, state, count):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for _ in range(count):
+        total += step(constants, state, 1e-3, 1.0)
+    return total
+
+
+def _seconds(call) -> float:  # type: ignore[no-untyped-def]
+    begin = time.perf_counter()
+    call()
+    return time.perf_counter() - begin
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(measure(), indent=2) + "\n")
