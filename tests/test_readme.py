@@ -12,7 +12,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", README, re.M | re.S)
+FILES = iter(re.findall(r"Save this as\s+`(\w+\.yaml)`", README))
+NAMES = [next(FILES) if language == "yaml" else "" for language, _ in BLOCKS]
+"""Under which name the text tells to save each case."""
 SETUP = "scripts/run"
 
 
@@ -42,7 +46,7 @@ def test_no_block_is_left_out():
 def test_block(number, folder):
     language, text = BLOCKS[number]
     if language == "yaml":
-        (folder / "my_case.yaml").write_text(text)
+        (folder / NAMES[number]).write_text(text)
         return
     command = ["sh", "-e", "-c", text] if language == "sh" else [sys.executable, "-c", text]
     done = subprocess.run(
