@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.identification.dma_columns import read_columns
+from tactsim.identification.columns import read_columns
 from tactsim.interfaces import Array
 
 FEWEST_FREQUENCIES = 3

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.dma_columns import read_columns
+from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_data import DmaData
 from tactsim.interfaces import Array
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tactsim.errors import InvalidQuantity, StorageError
+from tactsim.errors import InvalidQuantity
+from tactsim.identification.columns import data_lines
 from tactsim.interfaces import Array
 from tactsim.units import parse_quantity
 
@@ -72,13 +73,7 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
         If it holds no usable curve, with file and line.
     """
     path = Path(path)
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise StorageError(f"{path}: {error}") from None
-    rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not rows:
-        raise InvalidQuantity(f"{path}: no header and no data")
+    rows = data_lines(path)
     header = [cell.strip() for cell in next(csv.reader([rows[0][1]]))]
     strain_at, strain_name, percent = _column(path, header, STRETCH_COLUMNS)
     stress_at, stress_name, unit = _column(path, header, STRESS_COLUMNS)

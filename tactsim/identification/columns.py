@@ -35,9 +35,7 @@ def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
         and line.
     """
     path = Path(path)
-    rows = _rows(path)
-    if not rows:
-        raise InvalidQuantity(f"{path}: no header and no data")
+    rows = data_lines(path)
     header = [_column(path, cell, units) for cell in next(csv.reader([rows[0][1]]))]
     names = [name for name, _ in header]
     for name in names:
@@ -47,13 +45,24 @@ def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
 
 
-def _rows(path: Path) -> list[tuple[int, str]]:
-    """Lines with their numbers, without blanks and comments."""
+def data_lines(path: Path) -> list[tuple[int, str]]:
+    """Header and data lines with their numbers, without blanks and comments.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be read.
+    InvalidQuantity
+        If nothing is left.
+    """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise StorageError(f"{path}: {error}") from None
-    return [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    if not rows:
+        raise InvalidQuantity(f"{path}: no header and no data")
+    return rows
 
 
 def _column(path: Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
