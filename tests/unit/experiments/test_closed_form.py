@@ -56,7 +56,10 @@ def test_a_pull_and_a_deep_displacement_are_told_and_drawn():
     assert result.status == "converged"
     assert any("outer radius" in warning for warning in result.warnings)
     assert not any("negative" in warning for warning in result.warnings), "0.2 N and 0.2 N just touch zero"
-    pieces = [{"kind": "jump", "to": 0.2, "duration": 2.0}, {"kind": "sine", "amplitude": 0.25, "frequency": 1.0, "duration": 2.0}]
+    pieces = [
+        {"kind": "jump", "to": 0.2, "duration": 2.0},
+        {"kind": "sine", "amplitude": 0.25, "frequency": 1.0, "duration": 2.0},
+    ]
     pulling = ForceLoading.model_validate({"control": "force", "pieces": pieces})
     pulled = ClosedForm.example().model_copy(update={"loading": pulling}).run(lambda step: None)
     assert any("a real contact opens there" in warning for warning in pulled.warnings)
