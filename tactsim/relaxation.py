@@ -11,6 +11,9 @@ from tactsim.units import FrozenModel, Time
 
 Array = np.ndarray
 
+SHORTEST, LONGEST = 1e-12, 1e12
+"""Relaxation times in s; beyond, nothing is measured and steps of time drown in round-off."""
+
 
 class Relaxation(FrozenModel):
     r"""The isochoric stress relaxes as the fading memory of its own history.
@@ -36,6 +39,9 @@ class Relaxation(FrozenModel):
     def _fades(self) -> Self:
         if len(self.fractions) != len(self.times):
             raise ValueError(f"{len(self.fractions)} fractions and {len(self.times)} times; each fraction needs its time")
+        for time in self.times:
+            if not SHORTEST <= time <= LONGEST:
+                raise ValueError(f"a relaxation time of {time:g} s; allowed are {SHORTEST:g} s to {LONGEST:g} s")
         if sum(self.fractions) >= 1:
             raise ValueError(f"the fractions add up to {sum(self.fractions):.9g}; a solid needs less than 1")
         return self

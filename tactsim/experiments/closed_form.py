@@ -36,7 +36,7 @@ class ClosedForm(Experiment):
 
     kind: Literal["closed_form"] = "closed_form"
     material: AnyMaterial
-    """Tissue; its small-strain shear relaxation counts, and it is taken as incompressible."""
+    """Tissue; its small-strain shear relaxation counts; incompressible."""
     inner_radius: Annotated[Length, Field(ge=0)] = 1.5e-3
     """Inner radius; 0 is a solid punch."""
     outer_radius: Annotated[Length, Field(gt=0)] = 3e-3
@@ -59,6 +59,8 @@ class ClosedForm(Experiment):
         if self.inner_radius > 0.99 * self.outer_radius:
             inner, outer = format_quantity(self.inner_radius, "m"), format_quantity(self.outer_radius, "m")
             raise ValueError(f"inner_radius {inner} must be at most 0.99 of the outer_radius {outer}")
+        if self.material.bulk_modulus is not None:
+            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula} is for a half-space; on a layer only exact is known")
         return self

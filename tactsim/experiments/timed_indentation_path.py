@@ -13,7 +13,7 @@ from tactsim.experiments.indentation_model import IndentationModel, IndentationS
 from tactsim.experiments.indentation_path import SWITCH_LENGTH
 from tactsim.experiments.timed_indentation_setup import LOAD_STEPS, SMALLEST_SHARE, TimedIndentationSetup
 from tactsim.fem.body import PastStress
-from tactsim.fem.loading import PathFollower, StepControl
+from tactsim.fem.loading import Event, PathFollower, StepControl
 from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
 from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.materials.viscoelasticity import shear_relaxation
@@ -70,8 +70,7 @@ class TimedPath:
         state = self._start()
         for segment in self._experiment.loading.segments():
             if segment.at(segment.start) != state.load:
-                state = self._jumped(state, segment.at(segment.start))
-                happened = event is not None and event.value(state) >= 0
+                state, happened = self._jumped(state, segment.at(segment.start), event)
                 yield state, happened
                 if happened:
                     return
@@ -91,18 +90,21 @@ class TimedPath:
         series = series_of(model.body)
         return TimedState(0.0, 0.0, contact, None if series is None else Memory.at_rest(model.body, series))
 
-    def _jumped(self, start: TimedState, target: float) -> TimedState:
-        """The state after a sudden, elastic change to another load."""
+    def _jumped(self, start: TimedState, target: float, event: TimeEvent[TimedState] | None) -> tuple[TimedState, bool]:
+        """The state after a sudden, elastic change to another load, or at the event on the way, and whether it is that."""
 
         def advance(now: _JumpState, share: float, guess: Array) -> _JumpState:
             load = start.load + share * (target - start.load)
             return _JumpState(share, self._reached(now.state, now.state.time, load, guess))
 
+        on_the_way = None if event is None else Event[_JumpState](lambda now: event.value(now.state), event.tolerance)
         follower = PathFollower(advance, JUMP)
-        *_, (last, _) = follower.follow(_JumpState(0.0, start), 1.0)
+        *_, (last, happened) = follower.follow(_JumpState(0.0, start), 1.0, on_the_way)
         self.rejected += follower.rejected
+        if happened:
+            return last.state, True
         # Once more with the contact as stiff as the new pressure asks, so that later steps do not have to.
-        return self._reached(last.state, last.state.time, target, last.state.unknowns)
+        return self._reached(last.state, last.state.time, target, last.state.unknowns), False
 
     def _march(
         self, start: TimedState, segment: Segment, event: TimeEvent[TimedState] | None

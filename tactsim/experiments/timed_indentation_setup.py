@@ -73,7 +73,7 @@ class TimedIndentationSetup(ContactSetup):
 
     def first_step(self, duration: float) -> float:
         """First step in s of a piece of this duration."""
-        return self.time.first or FIRST_SHARE * min(duration, self.shortest_time)
+        return min(duration, self.time.first or FIRST_SHARE * min(duration, self.shortest_time))
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -83,6 +83,8 @@ class TimedIndentationSetup(ContactSetup):
                 f"the force falls to {format_quantity(least, 'N')}: it must press all the time, or the contact opens and no "
                 "displacement answers it; preload more (at least 1.5 times the amplitude of a sine)"
             )
+        if self.loading.control == "displacement" and most <= 0:
+            raise ValueError("the displacement never becomes positive: nothing is pressed; positive is into the tissue")
         if self.loading.control == "displacement" and most >= self.specimen.thickness:
             given, thickness = format_quantity(most, "m"), format_quantity(self.specimen.thickness, "m")
             raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {thickness}")
@@ -97,3 +99,5 @@ class TimedIndentationSetup(ContactSetup):
             raise ValueError(f"a closed form exists for an annulus or a punch, not for a {self.body.kind}")
         if len(self.specimen.materials) > 1 or self.specimen.surface != "flat":
             raise ValueError("a closed form exists for one material and a flat surface")
+        if self.specimen.material.bulk_modulus is not None:
+            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")

@@ -16,6 +16,8 @@ from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
 
+TOUCH = 1e-6
+"""Penetration at first touch, as a part of the distance of the touching point from the middle of the body."""
 LARGEST_ROUND_OFF = 1e-2
 """Round-off of the contact force over the prescribed force, beyond which the answer is refused."""
 
@@ -25,24 +27,21 @@ class Border:
     """What a prescribed force adds to the linear system.
 
     ``column`` (size,): nodal forces per travel, on the right-hand side; ``row`` (size,): derivative of the force by the
-    unknowns; ``slope``: its derivative by the travel, with the sign turned; ``missing``: force that is missing, in N.
+    unknowns; ``slope``: its derivative by the travel, with the sign turned; ``missing``: force that is missing, in N;
+    ``approach``: travel in m after which a first point would touch.
     """
 
     column: Array
     row: Array
     slope: float
     missing: float
+    approach: float
 
     def travel(self, step: Array, along: Array) -> float:
-        """Step of the travel in m, from the step of the unknowns at rest and their step per travel.
-
-        Raises
-        ------
-        ConvergenceError
-            If nothing touches.
-        """
+        """Step of the travel in m, from the step of the unknowns at rest and their step per travel: to the touch if nothing
+        touches yet."""
         if self.slope == 0.0:
-            raise ConvergenceError("the contact is open, so no force can be prescribed; it must press at every time")
+            return self.approach
         return float((self.missing - self.row @ step) / (self.row @ along - self.slope))
 
 
@@ -63,7 +62,7 @@ class PrescribedForce:
             row += surface.force(np.einsum("i,ijn->jn", e, contact.derivative))
             slope += float(e @ surface.total(along))
             missing -= float(e @ surface.total(contact.traction))
-        return Border(column, row, slope, missing)
+        return Border(column, row, slope, missing, min(map(_approach, now)))
 
     def error(
         self, surfaces: Sequence[SurfaceAssembly], tractions: Sequence[Array], noise: Sequence[Array], tolerance: float
@@ -85,3 +84,9 @@ class PrescribedForce:
                 "allow more penetration (penetration_tolerance)"
             )
         return abs(missing) / max(abs(self.force), lost / tolerance)
+
+
+def _approach(contact: Any) -> float:
+    """Travel in m that brings a body into touch with the point nearest to it, and a little further."""
+    nearest = int(contact.gap.argmin())
+    return float(contact.gap[nearest] + TOUCH * np.abs(contact.points[:, nearest]).max())

@@ -21,6 +21,7 @@ from tactsim.relaxation import Relaxation
         ((0.0,), (1.0,), "greater than 0"),
         ((0.5, 0.5), (1.0, 2.0), "less than 1"),
         ((0.5,), (1.0, 2.0), "each fraction needs its time"),
+        ((0.5,), (1e-300,), "allowed are"),
         ((), (), "at least 1"),
         ((float("nan"),), (1.0,), "finite"),
     ],

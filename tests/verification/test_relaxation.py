@@ -215,8 +215,14 @@ def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law):
         assert found != pytest.approx(fading * (1 + 15e-4), rel=5e-4)
 
 
-def test_a_force_that_nothing_answers_is_an_error():
-    block = Block("axisymmetric", RUBBER, law=Coulomb(friction=0.0))
-    block.place = 2 * block.place
-    with pytest.raises(ConvergenceError, match="the contact is open"):
-        block.pressed(0.0, force=1e-3)
+def test_a_force_brings_a_distant_body_into_touch():
+    near, far = (Block("axisymmetric", RUBBER, law=Coulomb(friction=0.0), tolerance=1e-6) for _ in range(2))
+    far.place = 1.5 * far.place
+    assert far.pressed(0.0, force=0.1) == pytest.approx(near.pressed(0.0, force=0.1), rel=1e-8)
+    assert near.place[-1] < 0.999
+
+
+def test_a_force_below_the_round_off_of_the_contact_is_refused():
+    block = Block("axisymmetric", RUBBER, law=Coulomb(friction=0.0), tolerance=1e-12)
+    with pytest.raises(ConvergenceError, match="round-off of the contact"):
+        block.pressed(0.0, force=1e-9)

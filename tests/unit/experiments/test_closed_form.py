@@ -71,6 +71,7 @@ def test_a_pull_and_a_deep_displacement_are_told_and_drawn():
     [
         ({"inner_radius": 3e-3}, "at most 0.99"),
         ({"thickness": 3e-3, "formula": "smythe"}, "is for a half-space"),
+        ({"material": NeoHookean(c10=500.0, bulk_modulus=1e5)}, "incompressible"),
         ({"points": 1}, "greater than or equal to 2"),
     ],
 )
