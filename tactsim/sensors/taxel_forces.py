@@ -1,0 +1,149 @@
+"""Force on every taxel as the integral of the contact traction over the tissue that lies on it.
+
+The traction of a facet is the quadratic polynomial through its values at the quadrature points, so that integrals over pieces
+of the facet add up to the force that the equilibrium knows. The deformed facets are cut along the borders of the taxels; each
+piece then lies on one taxel, in a gap or outside, and what is cut is lost nowhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.errors import InputError
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+Array = np.ndarray
+
+AFFINE = 1e-9
+"""A facet whose mid-side nodes are off the middles by less than this part of its size is taken as straight."""
+SUBDIVISION = 4
+"""Parts per side into which a curved facet is divided, each taken as straight when it is cut."""
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class TaxelForces:
+    """Forces of one jaw in N: ``taxels`` (3, rows, columns), ``gaps`` (3,) between and ``outside`` (3,) beyond the matrix."""
+
+    taxels: Array
+    gaps: Array
+    outside: Array
+
+    @property
+    def total(self) -> Array:
+        """Sum (3,) of all."""
+        return self.taxels.sum(axis=(1, 2)) + self.gaps + self.outside
+
+
+def taxel_forces(layout: TaxelLayout, places: Array, forces: Array, points: Array) -> TaxelForces:
+    """Forces on the taxels of one jaw.
+
+    Parameters
+    ----------
+    layout : TaxelLayout
+    places : (F, 6, 2) deformed nodes of quadratic facets (corners, then mid-sides 01, 12, 02) in the jaw's plane, in m from its
+        middle
+    forces : (3, F, 6) traction times weight at the quadrature points of each facet, in N
+    points : (6, 2) these points on the reference triangle, whose weights integrate quadratic polynomials exactly
+
+    Raises
+    ------
+    InputError
+        If the points do not determine a quadratic polynomial.
+    """
+    pieces, facets = straight_pieces(places)
+    for axis, along in enumerate("xy"):
+        for border in np.unique(layout.borders(along)):
+            pieces, facets = cut(pieces, facets, axis, float(border))
+    amounts = _integrals(pieces[:, :, 2:], facets, _densities(forces, points))
+    middles = pieces[:, :, :2].mean(axis=1)
+    column, between_columns = _cell(middles[:, 0], layout.borders("x"))
+    row, between_rows = _cell(middles[:, 1], layout.borders("y"))
+    on = (column >= 0) & (row >= 0)
+    inside = between_columns & between_rows
+    number, count = (row * layout.columns + column)[on], layout.rows * layout.columns
+    taxels = np.stack([np.bincount(number, amount[on], count) for amount in amounts])
+    return TaxelForces(
+        taxels.reshape(3, layout.rows, layout.columns), amounts[:, inside & ~on].sum(axis=1), amounts[:, ~inside].sum(axis=1)
+    )
+
+
+def straight_pieces(places: Array) -> tuple[Array, Array]:
+    """Triangles (T, 3, 4), each corner by its place in m and its reference coordinates, and the facet (T,) of each."""
+    corners, middles = places[:, :3], places[:, 3:]
+    expected = (corners + np.roll(corners, -1, axis=1)) / 2
+    expected[:, 2] = (corners[:, 0] + corners[:, 2]) / 2
+    size = np.abs(corners - corners[:, :1]).max(axis=(1, 2))
+    curved = np.abs(middles - expected).max(axis=(1, 2)) > AFFINE * size
+    parts = []
+    for chosen, divisions in ((~curved, 1), (curved, SUBDIVISION)):
+        reference = _divided(divisions)
+        numbers = np.flatnonzero(chosen)
+        mapped = np.einsum("tca,fad->ftcd", _quadratic(reference), places[numbers])
+        both = np.concatenate([mapped, np.broadcast_to(reference, mapped.shape)], axis=-1)
+        parts.append((both.reshape(-1, 3, 4), np.repeat(numbers, len(reference))))
+    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+
+
+def cut(pieces: Array, facets: Array, axis: int, border: float) -> tuple[Array, Array]:
+    """The triangles cut where their coordinate ``axis`` is ``border``: none crosses it any more."""
+    side = pieces[:, :, axis] - border
+    crossing = (side.min(axis=1) < 0) & (side.max(axis=1) > 0)
+    if not crossing.any():
+        return pieces, facets
+    kept, split = (pieces[~crossing], facets[~crossing]), (pieces[crossing], side[crossing])
+    # The corner that is alone on its side comes first; a corner on the border belongs to the other two.
+    alone = np.where((split[1] > 0).sum(axis=1) == 1, (split[1] > 0).argmax(axis=1), (split[1] < 0).argmax(axis=1))
+    order = (alone[:, None] + np.arange(3)) % 3
+    a, b, c = np.moveaxis(np.take_along_axis(split[0], order[:, :, None], axis=1), 1, 0)
+    da, db, dc = np.take_along_axis(split[1], order, axis=1).T[:, :, None]
+    ab, ac = a + da / (da - db) * (b - a), a + da / (da - dc) * (c - a)
+    made = np.concatenate([np.stack(corners, axis=1) for corners in ((a, ab, ac), (ab, b, c), (ab, c, ac))])
+    return np.concatenate([kept[0], made]), np.concatenate([kept[1], np.tile(facets[crossing], 3)])
+
+
+def _divided(divisions: int) -> Array:
+    """The reference triangle in ``divisions``^2 equal triangles by their corners (T, 3, 2)."""
+    step, triangles = 1 / divisions, []
+    for i in range(divisions):
+        for j in range(divisions - i):
+            origin = step * np.array([i, j])
+            triangles.append(origin + step * CORNERS)
+            if i + j < divisions - 1:
+                triangles.append(origin + step * np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
+    return np.array(triangles)
+
+
+def _quadratic(x: Array) -> Array:
+    """Quadratic shape functions at reference points (..., 2): corners, then mid-sides 01, 12, 02, shape (..., 6)."""
+    r, s = x[..., 0], x[..., 1]
+    t = 1 - r - s
+    return np.stack([t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * t * r, 4 * r * s, 4 * s * t], axis=-1)
+
+
+def _densities(forces: Array, points: Array) -> Array:
+    """Nodal values (3, F, 6), per reference triangle, of the polynomial whose weighted values at the points are ``forces``."""
+    values = _quadratic(points)
+    moments = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 6
+    if points.shape != (6, 2) or np.linalg.matrix_rank(values) < 6:
+        raise InputError("six points that determine a quadratic polynomial are needed on each facet")
+    weights = np.linalg.solve(values.T, moments)
+    return np.einsum("aq,cfq->cfa", np.linalg.inv(values), forces / weights)
+
+
+def _integrals(reference: Array, facets: Array, densities: Array) -> Array:
+    """Integral (3, T) of each facet's density over triangles (T, 3, 2) of its reference triangle."""
+    middles = (reference + np.roll(reference, -1, axis=1)) / 2
+    (ux, uy), (vx, vy) = (np.moveaxis(reference[:, k] - reference[:, 0], -1, 0) for k in (1, 2))
+    area = np.abs(ux * vy - uy * vx) / 2
+    mean = np.einsum("tma,cta->ct", _quadratic(middles), densities[:, facets]) / 3
+    return area * mean
+
+
+def _cell(values: Array, borders: Array) -> tuple[Array, Array]:
+    """Number of the interval that holds each value, -1 if none does, and whether it lies between the first and the last."""
+    found = np.searchsorted(borders[:, 0], values, side="right") - 1
+    inside = (found >= 0) & (values < borders[np.maximum(found, 0), 1])
+    return np.where(inside, found, -1), (values >= borders[0, 0]) & (values < borders[-1, 1])

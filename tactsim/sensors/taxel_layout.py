@@ -1,0 +1,53 @@
+"""Where the taxels of a jaw lie."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.units import FrozenModel, Length, format_quantity
+
+Array = np.ndarray
+PositiveLength = Annotated[Length, Field(gt=0)]
+
+
+class TaxelLayout(FrozenModel):
+    """A matrix of rectangular force sensors on a jaw, centred on it.
+
+    Row 1 is nearest the front (smallest y), column 1 has the smallest x.
+
+    Source: thesis, section 6.3 and Fig. 6.3: 3 x 3 elements per jaw; pitch and size are not printed, they are assumptions.
+    """
+
+    rows: Annotated[int, Field(ge=1, le=256)] = 3
+    """Number of taxels along y."""
+    columns: Annotated[int, Field(ge=1, le=256)] = 3
+    """Number of taxels along x."""
+    pitch: PositiveLength = 10e-3
+    """Distance between the centres of neighbours."""
+    size: PositiveLength = 9e-3
+    """Side of a taxel; the rest of the pitch is a gap."""
+
+    @model_validator(mode="after")
+    def _apart(self) -> Self:
+        if self.size > self.pitch * (1 + 1e-12):
+            size, pitch = format_quantity(self.size, "m"), format_quantity(self.pitch, "m")
+            raise ValueError(f"taxels of {size} overlap at a pitch of {pitch}; size must be at most the pitch")
+        return self
+
+    @property
+    def area(self) -> float:
+        """Area of a taxel in m^2."""
+        return self.size**2
+
+    def borders(self, along: str) -> Array:
+        """Lower and upper border in m of every column (``along`` "x") or row ("y"), from the middle of the jaw, shape (n, 2)."""
+        count = self.columns if along == "x" else self.rows
+        centres = self.pitch * (np.arange(count) - (count - 1) / 2)
+        return centres[:, None] + np.array([-0.5, 0.5]) * self.size
+
+    def extent(self) -> tuple[float, float]:
+        """Width along x and depth along y of the whole matrix in m."""
+        return tuple(float(self.borders(along).max() - self.borders(along).min()) for along in "xy")  # type: ignore[return-value]
