@@ -65,6 +65,9 @@ class Material(Kind):
 class RigidBody(Kind):
     """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates."""
 
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    """Numbers of coordinates it is defined for; 2 means the section of a body of revolution."""
+
     @abstractmethod
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m (positive outside), unit outward normal and Hessian of the distance at points ``x`` of shape (d, n).

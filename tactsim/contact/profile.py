@@ -37,26 +37,26 @@ class Revolved(RigidBody):
 
 
 def rounded_box(p: Array, lower: Array, upper: Array, fillet: float) -> tuple[Array, Array, Array]:
-    """Signed distance, normal and Hessian of a rectangle with filleted corners in the plane.
+    """Signed distance, normal and Hessian of a rectangle or box with filleted edges and corners.
 
     Parameters
     ----------
-    p : (2, n) points in m
-    lower, upper : (2,) opposite corners in m
-    fillet : radius of the corners in m, at most half the smaller side
+    p : (d, n) points in m
+    lower, upper : (d,) opposite corners in m
+    fillet : radius of the edges in m, at most half the smallest side
     """
     below, above = lower[:, None] - p, p - upper[:, None]
     sign = np.where(below > above, -1.0, 1.0)
     beyond = np.maximum(below, above)
     outside = np.maximum(beyond + fillet, 0.0)
-    reach = np.hypot(*outside)
-    corner = (outside > 0).all(axis=0)
-    distance = np.where(corner, reach - fillet, beyond.max(axis=0))
-    flat = np.stack([beyond[0] >= beyond[1], beyond[0] < beyond[1]]).astype(float)
-    safe = np.where(corner, reach, 1.0)
-    normal = sign * np.where(corner, outside / safe, flat)
-    hessian = np.where(corner, 1.0 / safe, 0.0) * (np.eye(2)[:, :, None] - normal[:, None] * normal[None, :])
-    return distance, normal, hessian
+    reach = np.linalg.norm(outside, axis=0)
+    rounded = (outside > 0).sum(axis=0) > 1
+    distance = np.where(rounded, reach - fillet, beyond.max(axis=0))
+    flat = (np.arange(len(p))[:, None] == beyond.argmax(axis=0)).astype(float)
+    safe = np.where(rounded, reach, 1.0)
+    normal = sign * np.where(rounded, outside / safe, flat)
+    turning = np.eye(len(p))[:, :, None] * (outside > 0) - normal[:, None] * normal[None, :]
+    return distance, normal, np.where(rounded, 1.0 / safe, 0.0) * turning
 
 
 def check_fillet(fillet: float, largest: float) -> None:

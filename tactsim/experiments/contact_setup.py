@@ -14,12 +14,13 @@ from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.specimen import Specimen
 from tactsim.interfaces import ContactLaw, RigidBody
 from tactsim.mesh.axisymmetric import Size, edge_graded
-from tactsim.registry import tagged_union
+from tactsim.registry import kinds, tagged_union, union_of
 from tactsim.units import FrozenModel, Length, format_quantity
 
 Array = np.ndarray
 
-AnyBody: Any = tagged_union("tactsim.contact", RigidBody)
+BODIES: dict[str, Any] = kinds("tactsim.contact", RigidBody)
+AnyBody: Any = union_of({kind: body for kind, body in BODIES.items() if 2 in body.dimensions})
 AnyLaw: Any = tagged_union("tactsim.contact", ContactLaw)
 
 

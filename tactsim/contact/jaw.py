@@ -1,0 +1,69 @@
+"""One jaw of a grasper."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.contact.profile import check_fillet, rounded_box
+from tactsim.interfaces import RigidBody
+from tactsim.units import Angle, Length
+
+Array = np.ndarray
+
+
+class Jaw(RigidBody):
+    """A rigid plate with rounded edges, the middle of its face at the origin; tissue may bulge out beside it.
+
+    Source: thesis, section 6.1 and Fig. 6.1 (jaws that carry matrices of sensors); their size is not printed.
+    """
+
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
+    kind: Literal["jaw"] = "jaw"
+    width: Annotated[Length, Field(gt=0)] = 30e-3
+    """Along x."""
+    depth: Annotated[Length, Field(gt=0)] = 30e-3
+    """Along y."""
+    thickness: Annotated[Length, Field(gt=0)] = 10e-3
+    """Along z, away from the tissue."""
+    fillet: Annotated[Length, Field(ge=0)] = 1e-3
+    """Radius of the edges."""
+    side: Literal["upper", "lower"] = "upper"
+    """Whether the tissue is below or above the face."""
+    tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    """Rotation about the x axis, right-handed, before that about y."""
+    tilt_y: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    """Rotation about the y axis."""
+
+    @model_validator(mode="after")
+    def _rounded(self) -> Self:
+        check_fillet(self.fillet, min(self.width, self.depth, self.thickness) / 2)
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """The upper jaw, a little tilted."""
+        return cls(tilt_x=0.05, tilt_y=-0.03)
+
+    @property
+    def rotation(self) -> Array:
+        """Matrix (3, 3) that turns the jaw's own axes (x, y, and z away from the tissue) into those of the tissue."""
+        (sx, cx), (sy, cy) = ((np.sin(angle), np.cos(angle)) for angle in (self.tilt_x, self.tilt_y))
+        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
+        about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
+        facing = np.diag([1.0, 1.0, 1.0 if self.side == "upper" else -1.0])
+        return about_y @ about_x @ facing
+
+    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
+        """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""
+        turn = self.rotation
+        lower = np.array([-self.width / 2, -self.depth / 2, 0.0])
+        upper = np.array([self.width / 2, self.depth / 2, self.thickness])
+        distance, normal, hessian = rounded_box(turn.T @ x, lower, upper, self.fillet)
+        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
+
+    def face_coordinates(self, x: Array) -> Array:
+        """Places (2, n) in m on the face, from its middle, of points (3, n)."""
+        return (self.rotation.T @ x)[:2]
