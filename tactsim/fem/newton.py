@@ -25,6 +25,11 @@ ROUND_OFF = 128 * np.finfo(float).eps
 """Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
 
 
+FORCING, LARGEST_FORCING = 0.05, 1e-4
+"""Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
+nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
+
+
 class Interface(Protocol):
     """Forces at the points of one surface that depend on where the points are, and on forces carried by Newton's iterate."""
 
@@ -151,7 +156,9 @@ class Problem:
             if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
                 break
             now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
-            step, further = self._linear_step((body, unknowns, kinematics), internal, (interfaces, now, loads), push)
+            accuracy = min(FORCING * history[-1], LARGEST_FORCING)
+            parts = (interfaces, now, loads, accuracy)
+            step, further = self._linear_step((body, unknowns, kinematics), internal, parts, push)
             largest = options.relaxation if self._cycles(history) else 1.0
             damping, kinematics = self._damped(unknowns, step, kinematics, largest)
             unknowns, travel = unknowns + damping * step, travel + damping * further
@@ -202,7 +209,7 @@ class Problem:
     ) -> tuple[Array, float]:
         """Newton's step of the unknowns, and of the interfaces' travel if their force is prescribed."""
         body, unknowns, kinematics = state
-        interfaces, now, loads = parts
+        interfaces, now, loads, accuracy = parts
         residual, data = internal.copy(), body.tangent(unknowns, kinematics)
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
@@ -211,11 +218,11 @@ class Problem:
         for load in loads:
             data += load.stiffness(u)
         matrix = body.pattern.matrix(self.constraints.apply(data))
-        step = solved(self.solver, matrix, -self.constraints.free(residual))
+        step = solved(self.solver, matrix, -self.constraints.free(residual), accuracy)
         if push is None:
             return step, 0.0
         border = push.border([interface.surface for interface in interfaces], now)
-        along = resolved(self.solver, matrix, self.constraints.free(border.column))
+        along = resolved(self.solver, matrix, self.constraints.free(border.column), accuracy)
         further = border.travel(step, along)
         return step + further * along, further
 

@@ -13,10 +13,12 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem import linear
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
+from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SOLVERS = ["pardiso", "superlu"]
+ALL = [*SOLVERS, "pardiso_symmetric"]
 
 
 def tangent_of(dim: int, *, axes: int, bulk_modulus: float | None = None) -> tuple[csr_matrix, np.ndarray]:
@@ -40,7 +42,7 @@ def test_pardiso_and_superlu_agree(dim, bulk_modulus):
         assert_close(pardiso * (1 + 3e-9), superlu, 1e-9)
 
 
-@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize(("dim", "axes"), [(2, 0), (2, 1), (3, 0), (3, 1)])
 def test_a_body_that_is_not_held_is_an_error_with_a_diagnosis(name, dim, axes):
     matrix, right = tangent_of(dim, axes=axes)
@@ -105,3 +107,46 @@ def test_pardiso_releases_its_memory_when_it_is_forgotten(monkeypatch):
 def test_an_unknown_solver_is_refused_by_name():
     with pytest.raises(InputError, match=r"'mumps'.*pardiso, superlu"):
         direct_solver("mumps")
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("bulk_modulus", [None, 1e6])
+def test_the_symmetric_solver_is_as_exact(dim, bulk_modulus):
+    matrix, right = tangent_of(dim, axes=dim, bulk_modulus=bulk_modulus)
+    symmetric, general = (solved(direct_solver(name), matrix, right) for name in ("pardiso_symmetric", "pardiso"))
+    assert_close(symmetric, general, 1e-9)
+    with pytest.raises(AssertionError):
+        assert_close(symmetric * (1 + 3e-9), general, 1e-9)
+
+
+def changed(matrix, amount, *, skew=0.0):
+    """The matrix with its entries changed at random, symmetrically and not, in the same pattern."""
+    noise = np.random.default_rng(4).normal(size=matrix.shape[0])
+    rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+    factors = 1 + amount * noise[rows] * noise[matrix.indices] + skew * (noise[rows] - noise[matrix.indices])
+    return csr_matrix((matrix.data * factors, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+@pytest.mark.parametrize("skew", [0.0, 2e-3])
+def test_an_old_factor_solves_what_changed_little_to_the_accuracy(skew):
+    matrix, right = tangent_of(3, axes=3)
+    solver = ReusedFactor(direct_solver("pardiso_symmetric"))
+    for amount in (0.0, 1e-3, 3e-3):
+        now = changed(matrix, amount, skew=skew if amount else 0.0)
+        found = solved(solver, now, right, 1e-8)
+        assert np.linalg.norm(now @ found - right) <= 2e-8 * np.linalg.norm(right)
+        assert_close(found, solved(direct_solver("pardiso"), now, right), 1e-4)  # accuracy times condition number
+    assert solver.factorisations <= 2
+    assert solver.solutions > 3
+
+
+def test_a_factor_too_old_is_made_again_and_closing_forgets_it():
+    matrix, right = tangent_of(3, axes=3)
+    solver = ReusedFactor(direct_solver("pardiso_symmetric"))
+    solved(solver, matrix, right, 1e-8)
+    solved(solver, changed(matrix, 0.2), right, 1e-8)
+    assert solver.factorisations == 2
+    assert not solved(solver, matrix, 0 * right, 1e-8).any()
+    solver.close()
+    with pytest.raises(InputError, match="factor a matrix"):
+        solver.solve(right)
