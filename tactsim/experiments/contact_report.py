@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_setup import ContactSetup
-from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.fem.body import PastStress
 from tactsim.fem.memory import mean_stress
 from tactsim.interfaces import RigidBody
@@ -17,7 +18,7 @@ Array = np.ndarray
 
 
 def contact_values(
-    model: IndentationModel, state: IndentationState, past: PastStress | None = None
+    model: IndentationModel, state: ContactEquilibrium, past: PastStress | None = None
 ) -> tuple[dict[str, float], list[float]]:
     """History values of a state in SI, and the force in N on each body; ``past`` is what relaxing materials remembered."""
     displacement = model.displacement(state.unknowns)
@@ -34,7 +35,9 @@ def contact_values(
     return values, forces
 
 
-def tissue_rise(model: IndentationModel, state: IndentationState, body: RigidBody, starting_height: float) -> tuple[float, float]:
+def tissue_rise(
+    model: IndentationModel, state: ContactEquilibrium, body: RigidBody, starting_height: float
+) -> tuple[float, float]:
     """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m.
 
     ``starting_height`` in m of the body's reference point at first touch.
@@ -44,7 +47,7 @@ def tissue_rise(model: IndentationModel, state: IndentationState, body: RigidBod
     return highest - face, axis - face
 
 
-def elliptic_points(model: IndentationModel, state: IndentationState) -> Array:
+def elliptic_points(model: IndentationModel, state: ContactEquilibrium) -> Array:
     """Whether the material is strongly elliptic at each point (E, Q)."""
     body = model.body
     elliptic = np.ones(state.kinematics.J.shape, bool)
@@ -54,7 +57,9 @@ def elliptic_points(model: IndentationModel, state: IndentationState) -> Array:
     return elliptic
 
 
-def section_frame(model: IndentationModel, state: IndentationState, *, time: float, isochoric: Array | None = None) -> FieldFrame:
+def section_frame(
+    model: IndentationModel, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None
+) -> FieldFrame:
     """Fields of a state for ParaView; ``time`` stands in the index.
 
     ``isochoric`` (6, E, Q) is the relaxed isochoric stress in Pa, whose trace in the deformed state counts to the pressure.

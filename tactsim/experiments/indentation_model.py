@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
-from tactsim.errors import ConvergenceError
+from tactsim.experiments.contact_equilibrium import ContactEquilibrium, contact_equilibrium
 from tactsim.experiments.posed_contact import PosedContact
-from tactsim.fem.body import Body, Kinematics, PastStress
+from tactsim.fem.body import Body, PastStress
 from tactsim.fem.newton import Problem
-from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody
@@ -24,21 +23,6 @@ from tactsim.mesh.quadratic import QuadraticMesh
 Array = np.ndarray
 
 DOWN = np.array([0.0, -1.0])
-PENALTY_ATTEMPTS = 5
-"""How often a step is solved again with a stiffer contact before it counts as failed."""
-
-
-@dataclass(frozen=True)
-class IndentationState:
-    """An accepted state: ``load`` is the body's displacement in m from first touch."""
-
-    load: float
-    unknowns: Array
-    iterations: int
-    residual: float
-    contacts: tuple[PosedContact, ...]
-    regularisation: Regularisation
-    kinematics: Kinematics
 
 
 class IndentationModel:
@@ -80,22 +64,22 @@ class IndentationModel:
 
     def start(
         self, bodies: Sequence[tuple[RigidBody, float]], law: ContactLaw, regularisation: Regularisation
-    ) -> IndentationState:
+    ) -> ContactEquilibrium:
         """The undeformed tissue under bodies, each with the height in m of its reference point."""
         contacts = tuple(self.contact(body, law, height) for body, height in bodies)
         unknowns = np.zeros(self.space.size)
-        return IndentationState(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
 
     def contact(self, body: RigidBody, law: ContactLaw, height: float) -> PosedContact:
         """A body above the tissue that has not touched it."""
         return PosedContact.apart(self.surface, self.reference, ContactPair(body, law), np.array([0.0, height]))
 
-    def with_contact(self, state: IndentationState, contact: PosedContact) -> IndentationState:
+    def with_contact(self, state: ContactEquilibrium, contact: PosedContact) -> ContactEquilibrium:
         """A state with one more body, which starts from the points where the tissue is now."""
         committed = contact.committed(self.displacement(state.unknowns))
         return replace(state, contacts=(*state.contacts, committed))
 
-    def advance(self, state: IndentationState, load: float, guess: Array) -> IndentationState:
+    def advance(self, state: ContactEquilibrium, load: float, guess: Array) -> ContactEquilibrium:
         """Equilibrium with the bodies at displacement ``load``, its penetration below the tolerance.
 
         Raises
@@ -106,44 +90,16 @@ class IndentationModel:
         return self.equilibrium(state, load, guess)
 
     def equilibrium(
-        self, state: IndentationState, load: float, guess: Array, *, force: float | None = None, past: PastStress | None = None
-    ) -> IndentationState:
+        self, state: ContactEquilibrium, load: float, guess: Array, *, force: float | None = None, past: PastStress | None = None
+    ) -> ContactEquilibrium:
         """As ``advance``; with a ``force`` in N the bodies move on from ``load`` until they press so hard.
 
         ``past`` is what materials that relax remember.
         """
-        regularisation, iterations = state.regularisation, 0
-        push = None if force is None else PrescribedForce(DOWN, force)
-        for _ in range(PENALTY_ATTEMPTS):
-            contacts = self._moved(state, load, regularisation)
-            solved = self.problem.solve(guess, interfaces=contacts, push=push, past=past)
-            load += solved.travel
-            contacts = self._moved(state, load, regularisation)
-            iterations += solved.iterations
-            displacement = self.displacement(solved.unknowns)
-            results = [contact.at(displacement) for contact in contacts]
-            deepest = max(float(-result.gap.min()) for result in results)
-            regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
-            if deepest <= regularisation.tolerance:
-                return IndentationState(
-                    load,
-                    solved.unknowns,
-                    iterations,
-                    solved.history[-1],
-                    tuple(contact.committed(displacement) for contact in contacts),
-                    regularisation,
-                    solved.kinematics,
-                )
-            guess = solved.unknowns
-        raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+        directions = (DOWN,) * len(state.contacts)
+        return contact_equilibrium(self.problem, state, load, guess, directions=directions, force=force, past=past)
 
-    @staticmethod
-    def _moved(state: IndentationState, load: float, regularisation: Regularisation) -> list[PosedContact]:
-        """The contacts of a state with their bodies at another displacement in m."""
-        shift = (load - state.load) * DOWN
-        return [c.moved(c.place + shift, regularisation.applied(c.pair)) for c in state.contacts]
-
-    def too_coarse(self, state: IndentationState, size: Size, factor: float) -> Array:
+    def too_coarse(self, state: ContactEquilibrium, size: Size, factor: float) -> Array:
         """Elements (numbers) whose longest deformed edge exceeds ``factor`` times the size wanted where it is now."""
         place = state.contacts[0].place
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0] - place
@@ -153,7 +109,7 @@ class IndentationModel:
         wanted = size(middles.reshape(-1, 2)).reshape(-1, 3)
         return np.flatnonzero((np.linalg.norm(edges, axis=2) > factor * wanted).any(axis=1))
 
-    def refined(self, state: IndentationState, marked: Array) -> tuple[IndentationModel, IndentationState, Refinement]:
+    def refined(self, state: ContactEquilibrium, marked: Array) -> tuple[IndentationModel, ContactEquilibrium, Refinement]:
         """A model with these elements split, and the same state on it: nested spaces lose nothing of the displacement."""
         u, p = self.space.split(state.unknowns)
         split = refined(self.mesh, marked, self.mesh.nodes + u)

@@ -8,7 +8,8 @@ from dataclasses import replace
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.punch import Punch
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.contact_equilibrium import ContactEquilibrium
+from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.fem.loading import Event, PathFollower
@@ -32,7 +33,7 @@ PAST_PEAK = 0.95
 
 def indentation_path(
     experiment: IndentationSetup, model: IndentationModel, record: IndentationRecord
-) -> Iterator[tuple[IndentationState, bool]]:
+) -> Iterator[tuple[ContactEquilibrium, bool]]:
     """Accepted states, each with whether it is the threshold.
 
     Raises
@@ -48,7 +49,7 @@ def indentation_path(
     recess, touched = experiment.recess, False
     event = None
     if recess is not None:
-        event = Event[IndentationState](lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
+        event = Event[ContactEquilibrium](lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
     first = state
     peak, peak_load = 0.0, 0.0
     for state, touched in course.follow(first, event):
@@ -73,7 +74,9 @@ class _Course:
         self._size = experiment.size()
         self._most = LARGEST_GROWTH * len(model.mesh.elements)
 
-    def follow(self, state: IndentationState, event: Event[IndentationState] | None) -> Iterator[tuple[IndentationState, bool]]:
+    def follow(
+        self, state: ContactEquilibrium, event: Event[ContactEquilibrium] | None
+    ) -> Iterator[tuple[ContactEquilibrium, bool]]:
         """Accepted states up to the event or the displacement."""
         control, target = self._experiment.control(), self._experiment.displacement
         first, more = control.first, True
@@ -90,12 +93,12 @@ class _Course:
                     state, more = self._refine(state), True
                     break
 
-    def _needs_refinement(self, state: IndentationState) -> bool:
+    def _needs_refinement(self, state: ContactEquilibrium) -> bool:
         if not self._experiment.mesh.adaptive or len(self.model.mesh.elements) >= self._most:
             return False
         return len(self.model.too_coarse(state, self._size, TOO_LONG)) > 0
 
-    def _refine(self, state: IndentationState) -> IndentationState:
+    def _refine(self, state: ContactEquilibrium) -> ContactEquilibrium:
         while len(marked := self.model.too_coarse(state, self._size, LONG)) and len(self.model.mesh.elements) < self._most:
             self.model, state, split = self.model.refined(state, marked)
             self._record.adapted(self.model, split)

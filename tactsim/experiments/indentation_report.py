@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_report import contact_assumptions, contact_values, elliptic_points, section_frame, tissue_rise
-from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
@@ -37,8 +38,8 @@ class IndentationRecord:
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
-        self._at_threshold: list[tuple[IndentationModel, IndentationState]] = []
-        self._last: list[tuple[IndentationModel, IndentationState]] = []
+        self._at_threshold: list[tuple[IndentationModel, ContactEquilibrium]] = []
+        self._last: list[tuple[IndentationModel, ContactEquilibrium]] = []
         self.threshold: dict[str, float] = {}
         self.adaptations = 0
         self.rejected_steps = 0
@@ -50,7 +51,7 @@ class IndentationRecord:
         """Whether the tissue has touched the inner sensor."""
         return bool(self.threshold)
 
-    def rise(self, state: IndentationState) -> tuple[float, float]:
+    def rise(self, state: ContactEquilibrium) -> tuple[float, float]:
         """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m."""
         return tissue_rise(self.model, state, self.experiment.body, self.starting_height)
 
@@ -63,7 +64,7 @@ class IndentationRecord:
         self.model = model
         self.adaptations += 1
 
-    def accept(self, state: IndentationState, *, threshold: bool) -> StepRecord:
+    def accept(self, state: ContactEquilibrium, *, threshold: bool) -> StepRecord:
         """Record an accepted state."""
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
@@ -74,7 +75,7 @@ class IndentationRecord:
             self._last = [(self.model, state)]
         return record
 
-    def _values(self, state: IndentationState) -> dict[str, float]:
+    def _values(self, state: ContactEquilibrium) -> dict[str, float]:
         self._unstable |= ~elliptic_points(self.model, state)
         weights = self.model.body.points.weights
         values, forces = contact_values(self.model, state)

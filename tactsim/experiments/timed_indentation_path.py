@@ -9,7 +9,8 @@ import numpy as np
 
 from tactsim.analytic.histories import Segment
 from tactsim.contact.penalty import Regularisation
-from tactsim.experiments.indentation_model import IndentationModel, IndentationState
+from tactsim.experiments.contact_equilibrium import ContactEquilibrium
+from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.indentation_path import SWITCH_LENGTH
 from tactsim.experiments.timed_indentation_setup import LOAD_STEPS, SMALLEST_SHARE, TimedIndentationSetup
 from tactsim.fem.body import PastStress
@@ -35,7 +36,7 @@ class TimedState:
 
     time: float
     load: float
-    contact: IndentationState
+    contact: ContactEquilibrium
     memory: Memory | None
     past: PastStress | None = None
     """What the step that led here remembered."""

@@ -144,7 +144,7 @@ class Problem:
             internal = body.residual(unknowns, kinematics)
             scale = np.abs(internal[: body.space.displacement_size]).max()
             internal -= self._nodal(unknowns, loads, nodal_force)
-            moved = [self._displacement(unknowns, interface, push, travel) for interface in interfaces]
+            moved = self._displacements(unknowns, interfaces, push, travel)
             tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
             noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
             history.append(self._residual_norm(internal, scale, interfaces, (tractions, noise)))
@@ -162,10 +162,8 @@ class Problem:
             largest = options.relaxation if self._cycles(history) else 1.0
             damping, kinematics = self._damped(unknowns, step, kinematics, largest)
             unknowns, travel = unknowns + damping * step, travel + damping * further
-            carried = [
-                interface.advanced(n, c, self._displacement(step, interface, push, further), damping)
-                for interface, n, c in zip(interfaces, now, carried, strict=True)
-            ]
+            moves = self._displacements(step, interfaces, push, further)
+            carried = [i.advanced(n, c, move, damping) for i, n, c, move in zip(interfaces, now, carried, moves, strict=True)]
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
     @staticmethod
@@ -185,10 +183,14 @@ class Problem:
             total += load.force(u)
         return total if nodal_force is None else total + nodal_force
 
-    def _displacement(self, unknowns: Array, interface: Interface, push: PrescribedForce | None, travel: float) -> Array:
-        """Displacement (d, n) of the surface relative to the interface's travel."""
-        moved = interface.surface.points.interpolate(self.body.space.split(unknowns)[0])
-        return moved if push is None else moved - travel * push.direction[:, None]
+    def _displacements(
+        self, unknowns: Array, interfaces: Sequence[Interface], push: PrescribedForce | None, travel: float
+    ) -> list[Array]:
+        """Displacement (d, n) of each surface relative to the travel of its interface."""
+        moved = [interface.surface.points.interpolate(self.body.space.split(unknowns)[0]) for interface in interfaces]
+        if push is None:
+            return moved
+        return [displacement - travel * e[:, None] for displacement, e in zip(moved, push.directions, strict=True)]
 
     def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]) -> float:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume

@@ -47,16 +47,17 @@ class Border:
 
 @dataclass(frozen=True)
 class PrescribedForce:
-    """A force in N that the interfaces together exert along the unit vector ``direction`` (d,); their common travel follows."""
+    """A force in N that the interfaces together exert, each along its own unit vector (d,) of ``directions``; their common travel
+    along these follows."""
 
-    direction: Array
+    directions: tuple[Array, ...]
     force: float
 
     def border(self, surfaces: Sequence[SurfaceAssembly], now: Sequence[Any]) -> Border:
         """The border of the linear system for contacts with ``traction`` and ``derivative`` on their surfaces."""
-        e, slope, missing = self.direction, 0.0, self.force
+        slope, missing = 0.0, self.force
         column, row = np.zeros(surfaces[0].size), np.zeros(surfaces[0].size)
-        for surface, contact in zip(surfaces, now, strict=True):
+        for surface, contact, e in zip(surfaces, now, self.directions, strict=True):
             along = np.einsum("ijn,j->in", contact.derivative, e)
             column -= surface.force(along)
             row += surface.force(np.einsum("i,ijn->jn", e, contact.derivative))
@@ -75,8 +76,8 @@ class PrescribedForce:
             If round-off hides the force.
         """
         missing, lost = self.force, 0.0
-        for surface, traction, uncertain in zip(surfaces, tractions, noise, strict=True):
-            missing -= float(self.direction @ surface.total(traction))
+        for surface, traction, uncertain, direction in zip(surfaces, tractions, noise, self.directions, strict=True):
+            missing -= float(direction @ surface.total(traction))
             lost += float(uncertain @ surface.points.weights)
         if lost > LARGEST_ROUND_OFF * abs(self.force):
             raise ConvergenceError(

@@ -77,7 +77,7 @@ class Block:
 
     def pressed(self, time_step, *, height=None, force=None):
         """Force in N on the plane at a height, or its height under a force, after a step."""
-        push = None if force is None else PrescribedForce(-np.eye(self.dim)[-1], force)
+        push = None if force is None else PrescribedForce((-np.eye(self.dim)[-1],), force)
         if height is not None:
             self.place = height * np.eye(self.dim)[-1]
         contact = self.contact.moved(self.place, self.scale.applied(self.contact.pair))

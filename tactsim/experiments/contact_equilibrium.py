@@ -1,0 +1,86 @@
+"""Equilibrium of a body with rigid bodies that move together, the contact as stiff as the penetration tolerance asks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.contact.penalty import Regularisation
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.posed_contact import PosedContact
+from tactsim.fem.body import Kinematics, PastStress
+from tactsim.fem.newton import FollowerLoad, Problem
+from tactsim.fem.prescribed_force import PrescribedForce
+
+Array = np.ndarray
+
+PENALTY_ATTEMPTS = 5
+"""How often a step is solved again with a stiffer contact before it counts as failed."""
+
+
+@dataclass(frozen=True)
+class ContactEquilibrium:
+    """An accepted state: ``load`` is the displacement in m of the rigid bodies from first touch."""
+
+    load: float
+    unknowns: Array
+    iterations: int
+    residual: float
+    contacts: tuple[PosedContact, ...]
+    regularisation: Regularisation
+    kinematics: Kinematics
+
+
+def contact_equilibrium(
+    problem: Problem,
+    state: ContactEquilibrium,
+    load: float,
+    guess: Array,
+    *,
+    directions: Sequence[Array],
+    force: float | None = None,
+    past: PastStress | None = None,
+    loads: Sequence[FollowerLoad] = (),
+) -> ContactEquilibrium:
+    """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
+
+    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``past`` is what
+    materials that relax remember, ``loads`` are further loads on the body.
+
+    Raises
+    ------
+    ConvergenceError
+        If Newton fails, or no penalty keeps the tissue out of the bodies.
+    """
+    regularisation, iterations = state.regularisation, 0
+    push = None if force is None else PrescribedForce(tuple(directions), force)
+    for _ in range(PENALTY_ATTEMPTS):
+        contacts = _moved(state, load, directions, regularisation)
+        solved = problem.solve(guess, interfaces=contacts, loads=loads, push=push, past=past)
+        load += solved.travel
+        contacts = _moved(state, load, directions, regularisation)
+        iterations += solved.iterations
+        u = problem.body.space.split(solved.unknowns)[0]
+        displacements = [contact.surface.points.interpolate(u) for contact in contacts]
+        results = [contact.at(displacement) for contact, displacement in zip(contacts, displacements, strict=True)]
+        deepest = max(float(-result.gap.min()) for result in results)
+        regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
+        if deepest <= regularisation.tolerance:
+            committed = tuple(c.committed(d) for c, d in zip(contacts, displacements, strict=True))
+            return ContactEquilibrium(
+                load, solved.unknowns, iterations, solved.history[-1], committed, regularisation, solved.kinematics
+            )
+        guess = solved.unknowns
+    raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+
+
+def _moved(
+    state: ContactEquilibrium, load: float, directions: Sequence[Array], regularisation: Regularisation
+) -> list[PosedContact]:
+    """The contacts of a state with their bodies at another displacement in m."""
+    return [
+        contact.moved(contact.place + (load - state.load) * direction, regularisation.applied(contact.pair))
+        for contact, direction in zip(state.contacts, directions, strict=True)
+    ]
