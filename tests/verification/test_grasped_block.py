@@ -1,0 +1,98 @@
+"""A block between two jaws: taxels read the exact Cauchy pressure, forces add up, halves mirror each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from solids import box, facets_where, on_plane
+
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.jaw import Jaw
+from tactsim.contact.penalty import Regularisation
+from tactsim.experiments.grasp_model import GraspModel
+from tactsim.fem.loading import PathFollower, StepControl
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIZE = np.array([0.04, 0.03, 0.02])
+RUBBER = MooneyRivlin2(c10=1000.0, c01=250.0)
+HARD = MooneyRivlin2(c10=8000.0, c01=2000.0)
+LAYOUT = TaxelLayout(rows=2, columns=3, pitch=10e-3, size=8e-3)
+WIDE = {"width": 0.08, "depth": 0.08, "fillet": 1e-3}
+
+
+def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=WIDE):
+    """The model and its state with both jaws closed; ``lump`` is the centre and radius of a hard region."""
+    mesh = box(SIZE, cells)
+    if lump is not None:
+        centres = mesh.nodes[mesh.elements[:, :4]].mean(axis=1)
+        mesh = QuadraticMesh(mesh.nodes, mesh.elements, (np.linalg.norm(centres - lump[0], axis=1) < lump[1]).astype(int))
+    facets = {"upper": facets_where(mesh, on_plane(2, SIZE[2])), "lower": facets_where(mesh, on_plane(2, 0.0))}
+    jaws = [Jaw(side=side, **jaw) for side in ("upper", "lower")]
+    materials = [RUBBER] if lump is None else [RUBBER, HARD]
+    model = GraspModel(mesh, materials, facets, jaws=jaws, offsets=np.tile(SIZE[:2] / 2, (2, 1)))
+    scale = Regularisation(1e-6, RUBBER.shear_modulus, switch_length=1e-3)
+    state = model.start(Coulomb(friction=friction), scale)
+    control = StepControl(first=closing / steps, largest=closing, smallest=1e-3 * closing)
+    *_, (state, _) = PathFollower(model.equilibrium, control).follow(state, closing)
+    return model, state
+
+
+def test_frictionless_taxels_read_the_cauchy_pressure():
+    model, state = grasped(friction=0.0)
+    u = model.space.split(state.unknowns)[0]
+    top, bottom = (model.mesh.nodes[:, 2] == height for height in (SIZE[2], 0.0))
+    stretch = 1 + (u[top, 2].mean() - u[bottom, 2].mean()) / SIZE[2]
+    cauchy = 2 * (stretch**-1 - stretch**2) * (1000.0 + 250.0 / stretch)
+    nominal = cauchy / stretch
+    for side in ("upper", "lower"):
+        found = model.taxels(state, side, LAYOUT)
+        pressure = found.taxels[2] / LAYOUT.area
+        np.testing.assert_allclose(pressure, cauchy, rtol=1e-8)
+        assert not np.allclose(pressure, nominal, rtol=1e-2)
+        assert not np.allclose(pressure, cauchy * (1 + 3e-8), rtol=1e-8, atol=0)
+        np.testing.assert_allclose(found.total[2], abs(model.jaw_force(state, side)[2]), rtol=1e-10)
+
+
+def test_friction_forces_add_up_and_balance():
+    model, state = grasped(friction=0.6)
+    upper, lower = (model.taxels(state, side, LAYOUT) for side in ("upper", "lower"))
+    force = model.jaw_force(state, "upper")
+    np.testing.assert_allclose(upper.total, force, rtol=1e-8, atol=1e-8 * abs(force[2]))
+    np.testing.assert_allclose(model.jaw_force(state, "lower"), -force, rtol=1e-6, atol=1e-6 * abs(force[2]))
+    np.testing.assert_allclose(upper.taxels[2], lower.taxels[2], rtol=0.05, err_msg="the tetrahedra are not mirrored")
+    assert np.abs(upper.gaps[2]) > 0
+    assert np.abs(upper.outside[2]) > 0
+
+
+@pytest.mark.slow
+def test_a_hard_lump_is_felt_by_the_jaw_that_is_nearer():
+    lump = (np.array([0.02, 0.015, 0.014]), 5e-3)
+    model, state = grasped(friction=0.6, lump=lump, cells=(8, 6, 5))
+    upper, lower = (model.taxels(state, side, LAYOUT).taxels[2] for side in ("upper", "lower"))
+    assert upper[:, 1].mean() > 1.05 * lower[:, 1].mean()
+    plain_model, plain = grasped(friction=0.6, cells=(8, 6, 5))
+    before = plain_model.taxels(plain, "upper", LAYOUT).taxels[2]
+    assert upper[:, 1].mean() > 1.1 * before[:, 1].mean()
+
+
+def test_narrow_jaws_let_the_tissue_bulge_beside_them():
+    model, state = grasped(friction=0.0, cells=(8, 6, 3), jaw={"width": 0.02, "depth": 0.02, "fillet": 2e-3}, closing=3e-4)
+    heights = (model.mesh.nodes + model.space.split(state.unknowns)[0])[np.unique(model.facets["upper"]), 2]
+    assert heights.max() > SIZE[2] + 1e-5
+    assert state.regularisation.tolerance >= -min(c.at(_moved(model, state, c)).gap.min() for c in state.contacts)
+
+
+def test_a_force_closes_both_jaws_alike():
+    model, closed = grasped(friction=0.6)
+    force = abs(model.jaw_force(closed, "upper")[2])
+    begun = model.start(Coulomb(friction=0.6), Regularisation(1e-6, RUBBER.shear_modulus, switch_length=1e-3))
+    half = model.equilibrium(begun, 5e-4, begun.unknowns)
+    pressed = model.equilibrium(half, 5e-4, half.unknowns, force=force)
+    assert pressed.load == pytest.approx(1e-3, rel=1e-3)
+    assert abs(model.jaw_force(pressed, "lower")[2]) == pytest.approx(force, rel=1e-6)
+
+
+def _moved(model, state, contact):
+    return contact.surface.points.interpolate(model.space.split(state.unknowns)[0])
