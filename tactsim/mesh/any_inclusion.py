@@ -1,0 +1,84 @@
+"""The inclusion of a case file: any registered kind, told apart by ``kind``; and what a set of them must satisfy."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from tactsim.errors import InvalidQuantity
+from tactsim.mesh.solid import Array, Inclusion, Solid
+from tactsim.registry import tagged_union
+from tactsim.units import format_quantity
+
+PACKAGE = "tactsim.mesh.inclusions"
+AnyInclusion = tagged_union(PACKAGE, Inclusion)
+"""Pydantic type of a sphere, an ellipsoid, a tube or a surface."""
+SMALLEST = 0.01
+"""Least diameter of an inclusion over the shortest side of the block: a smaller one is a mistaken unit."""
+SAMPLES_ACROSS = 40
+"""Sample triangles along the extent of a body when its distance from another is measured."""
+
+
+def inclusion_name(number: int, inclusion: Inclusion) -> str:
+    """How messages and results call the inclusion of a number, counted from 1."""
+    return f"{inclusion.kind} {number}"
+
+
+def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -> None:
+    """Refuse inclusions that overlap, touch, protrude or do not suit a block of size (3,) in m.
+
+    Parameters
+    ----------
+    gap : least distance in m between two inclusions, and between an inclusion and a face that it does not leave through
+
+    Raises
+    ------
+    InputError
+        Naming the inclusions, the face, the distance and what is allowed.
+    """
+    if size.shape != (3,) or not np.isfinite(size).all() or not (size > 0).all():
+        raise InvalidQuantity(f"the block has the size {size.tolist()} m; allowed: three positive lengths")
+    solids = []
+    for number, inclusion in enumerate(inclusions, 1):
+        name = inclusion_name(number, inclusion)
+        body = inclusion.solids(size)[0]
+        _check_extent(body, size, name)
+        inclusion.check_in_block(size, gap, name)
+        solids.append((name, body, len(inclusion.solids(size)) > 1))
+    for first, second in itertools.combinations(solids, 2):
+        _check_apart(first, second, size, gap)
+
+
+def _check_extent(body: Solid, size: Array, name: str) -> None:
+    extent = np.ptp(body.bounds(), axis=0)
+    if extent.min() < SMALLEST * size.min():
+        small, least = format_quantity(float(extent.min()), "m"), format_quantity(float(SMALLEST * size.min()), "m")
+        raise InvalidQuantity(f"{name} measures only {small}; allowed: at least {least} in this block; is its unit right?")
+    if extent.min() > size.max():
+        large, most = format_quantity(float(extent.min()), "m"), format_quantity(float(size.max()), "m")
+        raise InvalidQuantity(f"{name} measures {large}; allowed: less than the block, {most}; is its unit right?")
+
+
+def _check_apart(first: tuple[str, Solid, bool], second: tuple[str, Solid, bool], size: Array, gap: float) -> None:
+    """Refuse two bodies, each with its name and whether it is hollow, that are nearer than ``gap``."""
+    for (name, body, hollow), (other, other_body, _) in ((first, second), (second, first)):
+        distance = body.signed_distance(_samples(other_body, size))
+        if distance.max() < 0:
+            raise InvalidQuantity(
+                f"{other} lies inside {name}; allowed: inclusions {'beside' if hollow else 'outside'} each other"
+            )
+        if distance.min() < gap:
+            nearest, allowed = format_quantity(float(abs(distance.min())), "m"), format_quantity(gap, "m")
+            how = f"overlap by {nearest}" if distance.min() < 0 else f"are {nearest} apart"
+            raise InvalidQuantity(f"{name} and {other} {how}; allowed: at least {allowed} between inclusions")
+
+
+def _samples(body: Solid, size: Array) -> Array:
+    """Points (n, 3) on the surface of a body in the block."""
+    extent = float(np.ptp(body.bounds(), axis=0).max())
+    vertices, triangles = body.triangles(extent / SAMPLES_ACROSS)
+    points = np.vstack([vertices, vertices[triangles].mean(axis=1)])
+    within = ((points >= 0) & (points <= size)).all(axis=1)
+    return points[within] if within.any() else points

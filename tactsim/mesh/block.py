@@ -1,0 +1,96 @@
+"""The mesh of a block with inclusions: what it holds, and the wishes of who asks for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import Positive
+from tactsim.units import FrozenModel, Time
+
+Array = np.ndarray
+VOLUME_TOLERANCE = 5e-3
+"""Largest relative error of the volume of a region."""
+FLATNESS = 1e-9
+"""Largest distance of a node from the plane of its face, over the longest side of the block."""
+SMALLEST_GAP = 0.3
+"""Least distance between inclusions, and from faces, in element sizes near inclusions."""
+
+
+class BlockMeshSettings(FrozenModel):
+    """Element sizes in a block with inclusions; the defaults give the default grasp about 40 000 unknowns."""
+
+    size: Positive = 4e-3
+    """Edge length far from inclusions and jaw edges."""
+    inclusion_size: Positive = 1.6e-3
+    """Edge length at inclusions; a thin wall gets smaller ones by itself."""
+    edge_size: Positive | None = None
+    """Edge length at the edges of the jaws; null means 0.75 of size."""
+    jaw: tuple[Positive, Positive] | None = None
+    """Columns and rows of the jaws, centred on the block; null means jaws that cover the block."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 0.5
+    """Growth of the edge length per distance."""
+    stop_energy: Annotated[float, Field(ge=4, le=100)] = 10.0
+    """Shape energy at which the mesher stops improving (3 is a regular tetrahedron)."""
+    time_limit: Annotated[Time, Field(gt=0)] = 300.0
+    """Time after which the mesher is stopped."""
+
+    @property
+    def least_gap(self) -> float:
+        """Least distance in m between inclusions, and from faces."""
+        return SMALLEST_GAP * self.inclusion_size
+
+
+@dataclass(frozen=True)
+class Quality:
+    """How good the elements of a mesh are.
+
+    Attributes
+    ----------
+    minimum, mean : mean ratio of the straight tetrahedra (1 if regular)
+    curvature : least ratio of the smallest to the greatest Jacobian in a curved tetrahedron (1 if straight)
+    straightened : number of edges left short of their curved surface because an element would have been nearly inverted
+    """
+
+    minimum: float
+    mean: float
+    curvature: float
+    straightened: int
+
+
+@dataclass(frozen=True)
+class BlockMesh:
+    """A block from (0, 0, 0) to its size, meshed with its inclusions.
+
+    Attributes
+    ----------
+    mesh : curved quadratic tetrahedra; region 0 is the tissue, region k the inclusion k, counted from 1
+    region_names : "tissue", then such as "sphere 1"
+    facets : outward boundary facets (F, 6) by name: the six faces of the block, and "lumen:k" for a hollow inclusion k
+    quality : of the elements
+    volumes : (R, 2) volume in m^3 of each region in the mesh, and the exact one
+    seconds : time that meshing took
+    key : hash of what was asked for
+    """
+
+    mesh: QuadraticMesh
+    region_names: tuple[str, ...]
+    facets: dict[str, Array]
+    quality: Quality
+    volumes: Array
+    seconds: float
+    key: str
+
+    @property
+    def volume_errors(self) -> Array:
+        """Relative errors (R,) of the volumes of the regions."""
+        return self.volumes[:, 0] / self.volumes[:, 1] - 1
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the mixed P2/P1 form."""
+        return int(self.mesh.nodes.size) + self.mesh.corner_count

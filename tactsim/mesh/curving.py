@@ -1,0 +1,209 @@
+"""From straight labelled tetrahedra to a block of curved ones that fit its surfaces."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError
+from tactsim.mesh.any_inclusion import inclusion_name
+from tactsim.mesh.block import FLATNESS, VOLUME_TOLERANCE, BlockMesh, Quality
+from tactsim.mesh.constrained import Constraints
+from tactsim.mesh.labelling import Interfaces, Surfaces, interfaces
+from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
+from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
+from tactsim.mesh.smoothing import smoothed
+from tactsim.mesh.solid import FACES, Inclusion
+
+Array = np.ndarray
+LEAST_CURVATURE = 0.2
+"""Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""
+SMALLEST_SHARE = 0.25
+"""Part of the way to its surface below which a mid-node goes back between its corners."""
+LEAST_QUALITY = 0.02
+"""Mean ratio below which a mesh is refused."""
+_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+
+
+def fitted(
+    corners: Array,
+    simplices: Array,
+    labels: Array,
+    *,
+    size: Array,
+    inclusions: Sequence[Inclusion],
+    key: str,
+    started: float,
+    slide: bool = True,
+) -> BlockMesh:
+    """The block mesh made of labelled tetrahedra, nodes moved onto the surfaces.
+
+    Parameters
+    ----------
+    corners, simplices, labels : (n, 3) in m, (E, 4), (E,) as in ``labelling``
+    started : what ``time.perf_counter`` gave when meshing began
+    slide : whether nodes may move along curved surfaces for better shapes
+
+    Raises
+    ------
+    ConvergenceError
+        If a region misses its volume, a face is not flat or an element is inverted.
+    """
+    surfaces = Surfaces(size, [inclusion.solids(size) for inclusion in inclusions])
+    walls = interfaces(corners, simplices, labels, surfaces)
+    corners, simplices, labels, walls = _kept(corners, simplices, labels, walls)
+    corners, simplices, labels = _split_between(corners, simplices, labels, walls)
+    constraints = walls.constraints(len(corners), surfaces)
+    corners = constraints.restored(corners)
+    if slide:
+        constraints = constraints.holding_edges(corners, walls.triangles, walls.patch)
+    else:
+        constraints = replace(constraints, held=np.asarray(constraints.on[:, len(FACES) :].any(axis=1)))
+    corners = smoothed(corners, simplices, constraints.directions, constraints.restored)
+    ratios = mean_ratio(corners, simplices)
+    if ratios.min() < LEAST_QUALITY:
+        raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios.min():.2g}; allowed: {LEAST_QUALITY}")
+    mesh, straightened = curved(quadratic_mesh(corners, simplices, labels), walls, constraints)
+    seconds = time.perf_counter() - started
+    return assembled(mesh, surfaces, inclusions, key=key, seconds=seconds, straightened=straightened)
+
+
+def assembled(
+    mesh: QuadraticMesh,
+    surfaces: Surfaces,
+    inclusions: Sequence[Inclusion],
+    *,
+    key: str,
+    seconds: float,
+    straightened: int,
+    fitting: bool = True,
+) -> BlockMesh:
+    """The block mesh of a mesh, measured; and checked if it is ``fitting``, that is made to follow the surfaces."""
+    ratios = mean_ratio(mesh.nodes, mesh.elements[:, :4])
+    curvature = float(jacobian_ratio(mesh.nodes, mesh.elements).min())
+    block = BlockMesh(
+        mesh=mesh,
+        region_names=("tissue", *(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))),
+        facets=named_facets(mesh, surfaces),
+        quality=Quality(float(ratios.min()), float(ratios.mean()), curvature, straightened),
+        volumes=np.stack([region_volumes(mesh, len(inclusions) + 1), exact_volumes(surfaces)], axis=1),
+        seconds=seconds,
+        key=key,
+    )
+    if fitting:
+        check(block, surfaces.size)
+    return block
+
+
+def exact_volumes(surfaces: Surfaces) -> Array:
+    """Volumes (R,) in m^3 of the tissue and of every inclusion without its empty space."""
+    contents = [[solid.volume() for solid in group] for group in surfaces.solids]
+    regions = [outer - sum(hollow) for outer, *hollow in contents]
+    return np.array([surfaces.size.prod() - sum(outer for outer, *_ in contents), *regions])
+
+
+def check(block: BlockMesh, size: Array) -> None:
+    """Refuse a mesh whose regions miss their volumes, whose faces are not flat, or of which an element is inverted.
+
+    Raises
+    ------
+    ConvergenceError
+        Naming the region or the face and by how much it misses.
+    """
+    for name, error in zip(block.region_names, block.volume_errors, strict=True):
+        if not abs(error) <= VOLUME_TOLERANCE:
+            raise ConvergenceError(
+                f"the mesh of {name} misses its volume by {100 * error:.2g} %; allowed: {100 * VOLUME_TOLERANCE:g} %; "
+                "take smaller elements"
+            )
+    for name, axis, end in FACES:
+        facets = block.facets[name]
+        off = float(np.abs(block.mesh.nodes[facets, axis] - end * size[axis]).max()) if len(facets) else np.inf
+        if not off <= FLATNESS * size.max():
+            raise ConvergenceError(
+                f"the {name} face of the mesh is {off:.2g} m off its plane; allowed: {FLATNESS * size.max():.2g} m"
+            )
+    if not block.quality.curvature > 0:
+        raise ConvergenceError("the mesh has an inverted element; take smaller elements at inclusions")
+
+
+def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> tuple[QuadraticMesh, int]:
+    """The mesh with the mid-nodes of interfaces on them, and how many stay short of them to keep elements sound."""
+    edges = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
+    patch = np.tile(walls.patch, 3)
+    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    on = np.zeros((len(unique), constraints.on.shape[1]), bool)
+    on[number.reshape(-1), patch] = True
+    bent = on[:, len(FACES) :].any(axis=1)
+    middles = _middle_nodes(mesh, unique[bent])
+    straight = mesh.nodes[middles]
+    nodes = mesh.nodes.copy()
+    nodes[middles] = Constraints(constraints.patches, on[bent], constraints.size).restored(straight)
+    share, fitting = np.ones(len(middles)), nodes[middles].copy()
+    while True:
+        poor = jacobian_ratio(nodes, mesh.elements) < LEAST_CURVATURE
+        touched = np.isin(middles, mesh.elements[poor, 4:]) & (share > 0)
+        if not touched.any():
+            return mesh.moved(nodes), int((share < 1).sum())
+        share[touched] = np.where(share[touched] > SMALLEST_SHARE, share[touched] / 2, 0.0)
+        nodes[middles] = np.where(share[:, None] < 1, straight + share[:, None] * (fitting - straight), fitting)
+
+
+def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
+    """Outward boundary facets (F, 6) by name: the faces of the block, and "lumen:k" for the wall of the empty space in k."""
+    facets, _ = mesh.boundary_facets()
+    numbers = np.full(len(facets), -1)
+    for face, (_, axis, end) in enumerate(FACES):
+        off = np.abs(mesh.nodes[facets, axis] - surfaces.size[axis] * end).max(axis=1)
+        numbers[off <= FLATNESS * surfaces.size.max()] = face
+    names, hollow = [name for name, _, _ in FACES], []
+    for number, (_, *spaces) in enumerate(surfaces.solids, 1):
+        names += [f"lumen:{number}"] * len(spaces)
+        hollow += spaces
+    rest = np.flatnonzero(numbers < 0)
+    if len(rest) and hollow:
+        centres = mesh.nodes[facets[rest, 3:]].mean(axis=1)
+        distances = np.abs([solid.signed_distance(centres) for solid in hollow])
+        numbers[rest] = len(FACES) + distances.argmin(axis=0)
+    elif len(rest):
+        raise ConvergenceError(f"{len(rest)} boundary facets of the mesh lie on no face of the block")
+    return {name: facets[numbers == number] for number, name in enumerate(names)}
+
+
+def _kept(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array, Interfaces]:
+    """Everything without the tetrahedra outside and in empty spaces, nodes numbered anew."""
+    used, renumbered = np.unique(simplices[labels >= 0], return_inverse=True)
+    triangles = np.searchsorted(used, walls.triangles)
+    return corners[used], renumbered.reshape(-1, 4), labels[labels >= 0], Interfaces(triangles, walls.patch)
+
+
+def _split_between(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array]:
+    """Four tetrahedra in place of each that has two sides on one curved patch, where its Jacobian would vanish."""
+    table = {tuple(triangle): int(patch) for triangle, patch in zip(walls.triangles.tolist(), walls.patch, strict=True)}
+    sides = np.sort(np.stack([np.delete(simplices, k, axis=1) for k in range(4)], axis=1), axis=2)
+    touching = np.isin(simplices, walls.triangles).sum(axis=1) >= 3
+    patches = np.full((len(simplices), 4), -1)
+    for element in np.flatnonzero(touching):
+        patches[element] = [table.get(tuple(side), -1) for side in sides[element].tolist()]
+    curved_side = np.sort(np.where(patches >= len(FACES), patches, -1), axis=1)
+    between = ((np.diff(curved_side, axis=1) == 0) & (curved_side[:, 1:] >= 0)).any(axis=1)
+    parents = simplices[between]
+    centres = len(corners) + np.arange(len(parents))
+    children = [np.where(np.arange(4) == k, centres[:, None], parents) for k in range(4)]
+    return (
+        np.vstack([corners, corners[parents].mean(axis=1)]),
+        np.vstack([simplices[~between], *children]),
+        np.concatenate([labels[~between], np.tile(labels[between], 4)]),
+    )
+
+
+def _middle_nodes(mesh: QuadraticMesh, pairs: Array) -> Array:
+    """Numbers (m,) of the nodes between corners (m, 2), ascending."""
+    count = mesh.corner_count
+    edges = np.concatenate([np.sort(mesh.elements[:, list(edge)], axis=1) for edge in _EDGES])
+    keys, first = np.unique(edges[:, 0] * count + edges[:, 1], return_index=True)
+    middles = mesh.elements[:, 4:].T.ravel()[first]
+    return middles[np.searchsorted(keys, pairs[:, 0] * count + pairs[:, 1])]

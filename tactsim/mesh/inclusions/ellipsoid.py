@@ -1,0 +1,115 @@
+"""A lump in the shape of an ellipsoid."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+import numpy as np
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from tactsim.mesh.solid import Array, Inclusion, Point, Positive, Solid, Triangles, outward
+from tactsim.units import Angle
+
+BISECTIONS = 110
+"""Halvings of the bracket of the nearest point: down to round-off from any ratio of the axes."""
+EQUILATERAL = np.sqrt(3) / 4
+"""Area of an equilateral triangle over its squared edge."""
+
+
+class Ellipsoid(Inclusion):
+    """An ellipsoid wholly inside the block."""
+
+    kind: Literal["ellipsoid"] = "ellipsoid"
+    center: Point
+    """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
+    semi_axes: tuple[Positive, Positive, Positive]
+    """Half the length of each axis before rotation."""
+    rotation: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
+    """Angles of the rotations about the fixed axes x, y, z, in this order."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """A flat lump in the middle of the default block."""
+        return cls(center=(20e-3, 20e-3, 10e-3), semi_axes=(6e-3, 5e-3, 4e-3), rotation=(0.0, 0.0, np.pi / 6))
+
+    def solids(self, size: Array) -> tuple[Solid, ...]:
+        """The ellipsoid."""
+        turn = Rotation.from_euler("xyz", self.rotation).as_matrix()
+        return (EllipsoidSolid(np.array(self.center), np.array(self.semi_axes), turn),)
+
+
+class EllipsoidSolid(Solid):
+    r"""The ellipsoid ``|A^{-1} R^T (x - c)| <= 1`` with semi-axes A, rotation R (3, 3) and centre c."""
+
+    def __init__(self, center: Array, semi_axes: Array, turn: Array):
+        self.center, self.semi_axes, self.turn = center, semi_axes, turn
+        self.patches = (self.project,)
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points and outward normals, both (n, 3)."""
+        local = (points - self.center) @ self.turn
+        near = nearest_on_ellipsoid(local, self.semi_axes)
+        normal = near / self.semi_axes**2
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        return near @ self.turn.T + self.center, normal @ self.turn.T
+
+    def inside(self, points: Array) -> Array:
+        """Whether points (n, 3) lie inside."""
+        return np.linalg.norm((points - self.center) @ self.turn / self.semi_axes, axis=1) < 1
+
+    def signed_distance(self, points: Array) -> Array:
+        """Distance in m, negative inside."""
+        distance = np.linalg.norm(points - self.project(points)[0], axis=1)
+        return np.where(self.inside(points), -distance, distance)
+
+    def triangles(self, edge: float) -> Triangles:
+        """Hull of the image of a spiral of points on the unit sphere."""
+        count = max(40, round(2 * np.pi * self.semi_axes.max() ** 2 / (EQUILATERAL * edge**2)))
+        unit = spiral(count)
+        faces = outward(unit, ConvexHull(unit).simplices, np.zeros(3))
+        return unit * self.semi_axes @ self.turn.T + self.center, faces
+
+    def volume(self) -> float:
+        """Volume in m^3."""
+        return float(4 / 3 * np.pi * self.semi_axes.prod())
+
+    def bounds(self) -> Array:
+        """Lowest and highest coordinates (2, 3) in m."""
+        reach = np.linalg.norm(self.turn * self.semi_axes, axis=1)
+        return np.array([self.center - reach, self.center + reach])
+
+
+def nearest_on_ellipsoid(points: Array, semi_axes: Array) -> Array:
+    r"""Nearest points (n, 3) in m on the ellipsoid with semi-axes a, aligned with the coordinates.
+
+    The nearest point is :math:`x_i = a_i^2 y_i / (t + a_i^2)` where t is the largest root of
+    :math:`\sum (a_i y_i/(t + a_i^2))^2 = 1`.
+
+    Source: Eberly 2013, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", section 3.
+    """
+    scale = semi_axes.min()
+    axes = semi_axes / scale
+    excess = axes**2 - 1  # counted from the least axis, so that the root near its pole keeps its digits
+    y = np.maximum(np.abs(points) / scale, 1e-14 * axes)  # off the planes of symmetry, where the root hides in a limit
+    lower = (axes * y - excess).max(axis=1)
+    upper = np.linalg.norm(axes * y, axis=1)
+    for _ in range(BISECTIONS):
+        middle = (lower + upper) / 2
+        outside = ((axes * y / (middle[:, None] + excess)) ** 2).sum(axis=1) > 1
+        lower, upper = np.where(outside, middle, lower), np.where(outside, upper, middle)
+    near = axes**2 * y / (upper[:, None] + excess)
+    near /= np.linalg.norm(near / axes, axis=1, keepdims=True)
+    return np.copysign(near, points) * scale
+
+
+def spiral(count: int) -> Array:
+    """Evenly spread points (count, 3) on the unit sphere.
+
+    Source: Gonzalez 2010, Mathematical Geosciences 42, 49-64, doi:10.1007/s11004-009-9257-x.
+    """
+    step = np.arange(count) + 0.5
+    height = 1 - 2 * step / count
+    angle = np.pi * (1 + np.sqrt(5)) * step
+    radius = np.sqrt(1 - height**2)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)

@@ -1,0 +1,48 @@
+"""A lump in the shape of a sphere."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+import numpy as np
+
+from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
+from tactsim.mesh.solid import Array, Inclusion, Point, Positive, Solid
+
+
+class Sphere(Inclusion):
+    """A sphere wholly inside the block."""
+
+    kind: Literal["sphere"] = "sphere"
+    center: Point
+    """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
+    radius: Positive
+    """Radius."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The lump of the thesis' section 6.5 in the middle of the default block."""
+        return cls(center=(20e-3, 20e-3, 10e-3), radius=5e-3)
+
+    def solids(self, size: Array) -> tuple[Solid, ...]:
+        """The ball."""
+        return (Ball(np.array(self.center), self.radius),)
+
+
+class Ball(EllipsoidSolid):
+    """An ellipsoid with equal axes, whose nearest points have a closed form."""
+
+    def __init__(self, center: Array, radius: float):
+        super().__init__(center, np.full(3, radius), np.eye(3))
+        self.radius = radius
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points and outward normals, both (n, 3); the centre goes to the top."""
+        offset = points - self.center
+        reach = np.linalg.norm(offset, axis=1, keepdims=True)
+        normal = np.where(reach > 0, offset / np.where(reach > 0, reach, 1.0), np.eye(3)[2])
+        return self.center + self.radius * normal, normal
+
+    def signed_distance(self, points: Array) -> Array:
+        """Distance in m, negative inside."""
+        return np.linalg.norm(points - self.center, axis=1) - self.radius

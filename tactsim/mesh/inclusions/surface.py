@@ -1,0 +1,114 @@
+"""A lump bounded by a closed surface of triangles from a file, such as a segmentation of an image."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import lru_cache
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from tactsim.errors import InputError, StorageError
+from tactsim.mesh.foreign import read_foreign
+from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
+from tactsim.mesh.solid import Array, Inclusion, Point, Solid, Triangles
+from tactsim.units import Angle
+
+FORMATS = (".stl", ".ply", ".obj")
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
+MOST_TRIANGLES = 500_000
+
+
+class Surface(Inclusion):
+    """A closed surface, turned about the origin of the file and then moved."""
+
+    kind: Literal["surface"] = "surface"
+    path: str
+    """STL, PLY or OBJ file of triangles."""
+    unit: Literal["m", "cm", "mm", "um"]
+    """Unit of the coordinates in the file."""
+    translation: Point = (0.0, 0.0, 0.0)
+    """Where the origin of the file comes to lie in the block."""
+    rotation: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
+    """Angles of the rotations about the fixed axes x, y, z through the origin of the file, in this order."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """A lump from a file in millimetres, put into the middle of the default block."""
+        return cls(path="meshes/lump.stl", unit="mm", translation=(20e-3, 20e-3, 10e-3))
+
+    def identity(self) -> str:
+        """Text that changes with the geometry, whatever the file is called."""
+        vertices, triangles = read_surface(self.path)
+        place = repr((self.unit, self.translation, self.rotation)).encode()
+        return hashlib.sha256(vertices.tobytes() + triangles.tobytes() + place).hexdigest()
+
+    def solids(self, size: Array) -> tuple[Solid, ...]:
+        """The body inside the surface."""
+        return (_placed(self, _state(self.path)),)
+
+
+def _state(path: str) -> tuple[int, int]:
+    """What changes when a file is written anew."""
+    try:
+        state = Path(path).stat()
+    except OSError as error:
+        raise StorageError(f"cannot read {path}: {error.strerror or error}") from None
+    return state.st_mtime_ns, state.st_size
+
+
+@lru_cache(maxsize=8)
+def _placed(surface: Surface, state: tuple[int, int]) -> TriangulatedSolid:
+    vertices, triangles = read_surface(surface.path)
+    turn = Rotation.from_euler("xyz", surface.rotation).as_matrix()
+    placed = vertices * UNITS[surface.unit] @ turn.T + np.array(surface.translation)
+    return TriangulatedSolid(placed, triangles, surface.path)
+
+
+def read_surface(path: str) -> Triangles:
+    """Vertices (n, 3) in the unit of the file and triangles (m, 3), equal vertices joined.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be read or is damaged.
+    InputError
+        If it holds anything other than triangles in space.
+    """
+    return _read_surface(path, _state(path))
+
+
+@lru_cache(maxsize=8)
+def _read_surface(path: str, state: tuple[int, int]) -> Triangles:
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InputError(f"{path}: surfaces are read from {', '.join(FORMATS)} files")
+    mesh = read_foreign(path)
+    others = {kind for kind, cells in mesh.cells if kind != "triangle" and len(cells)}
+    triangles = [cells for kind, cells in mesh.cells if kind == "triangle"]
+    if others or not sum(map(len, triangles)):
+        raise InputError(f"{path}: holds {', '.join(sorted(others)) or 'no triangles'}; allowed: triangles only")
+    return joined(mesh.points, np.vstack(triangles), path)
+
+
+def joined(points: Array, triangles: Array, name: str) -> Triangles:
+    """The triangles with equal points joined and collapsed ones left out.
+
+    Raises
+    ------
+    InputError
+        If there are too many triangles, or they do not lie in space or collapse to a point.
+    """
+    if points.shape[1] != 3:
+        raise InputError(f"{name}: the points have {points.shape[1]} coordinates; allowed: 3")
+    if len(triangles) > MOST_TRIANGLES:
+        raise InputError(f"{name}: {len(triangles)} triangles; allowed: at most {MOST_TRIANGLES}")
+    extent = np.ptp(points[triangles].reshape(-1, 3), axis=0).max()
+    if not extent > 0:
+        raise InputError(f"{name}: all points of the surface coincide")
+    rounded = np.round((points - points.min(axis=0)) / (1e-7 * extent)).astype(np.int64)  # STL stores single precision
+    _, first, number = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    faces = number.reshape(-1)[triangles]
+    kept = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    return points[first].astype(float), faces[kept]

@@ -1,0 +1,178 @@
+"""Meshes of blocks, made once and kept: the mesher gives another mesh every time, and results must repeat.
+
+A mesh is looked up among those shipped with the cases, then in the user's cache, and only then made.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import threading
+import zipfile
+import zlib
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError, InputError, StorageError
+from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.curving import assembled
+from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.manifest import shipped_entry
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import Inclusion
+from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
+
+Array = np.ndarray
+SHIPPED = Path("meshes")
+_DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError)
+
+
+@dataclass(frozen=True)
+class StoredMesh:
+    """A mesh and where it came from.
+
+    Attributes
+    ----------
+    content : hash of nodes, elements and regions, by which a result names its mesh
+    origin : "shipped", "cache", or "made" just now
+    """
+
+    block: BlockMesh
+    content: str
+    origin: Literal["shipped", "cache", "made"]
+
+
+def stored_block_mesh(
+    size: Sequence[float],
+    inclusions: Sequence[Inclusion] = (),
+    settings: BlockMeshSettings | None = None,
+    *,
+    shipped: Path = SHIPPED,
+    cache: Path | None = None,
+) -> StoredMesh:
+    """The block mesh that ``tetrahedra.block_mesh`` makes, made at most once.
+
+    Parameters
+    ----------
+    shipped : folder of the meshes that come with the cases, with its manifest
+    cache : folder of meshes made before; by default the user's cache folder
+
+    Raises
+    ------
+    StorageError
+        If a shipped mesh is not the one its manifest describes.
+    InputError, ConvergenceError
+        As ``block_mesh``.
+    """
+    settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
+    check_inclusions(extent, inclusions, settings.least_gap)
+    key = mesh_key(size, inclusions, settings)
+    entry = shipped_entry(shipped, key)
+    if entry is not None:
+        found = _read(shipped / entry.file, extent, inclusions, key)
+        if found is None or found[1] != entry.content:
+            raise StorageError(f"{shipped / entry.file} is not the mesh that the manifest describes; restore the file")
+        return StoredMesh(*found, "shipped")
+    place = (cache or cache_folder()) / f"{key}-{mesher_version()}.npz"
+    found = _read(place, extent, inclusions, key)
+    if found is not None:
+        return StoredMesh(*found, "cache")
+    block = block_mesh(size, inclusions, settings)
+    content = content_hash(block.mesh)
+    if _kept(block, place):
+        return StoredMesh(block, content, "made")
+    found = _read(place, extent, inclusions, key)  # another process was first: all use its mesh
+    return StoredMesh(block, content, "made") if found is None else StoredMesh(*found, "cache")
+
+
+def cache_folder() -> Path:
+    """The user's folder of meshes, which can be made again."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "meshes"
+
+
+def content_hash(mesh: QuadraticMesh) -> str:
+    """Thirty-two hexadecimal digits that change with any node, element or region."""
+    digest = hashlib.sha256()
+    for array, kind in ((mesh.nodes, "<f8"), (mesh.elements, "<i8"), (mesh.regions, "<i8")):
+        digest.update(repr(array.shape).encode())
+        digest.update(np.ascontiguousarray(array, kind).tobytes())
+    return digest.hexdigest()[:32]
+
+
+def write_block_mesh(block: BlockMesh, place: Path) -> None:
+    """Write nodes, elements, regions and how the mesh was made into a file of arrays.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be written.
+    """
+    try:
+        with open(place, "wb") as file:
+            np.savez_compressed(
+                file,
+                nodes=block.mesh.nodes,
+                elements=block.mesh.elements.astype(np.int64),
+                regions=block.mesh.regions.astype(np.int64),
+                straightened=np.array(block.quality.straightened),
+                seconds=np.array(block.seconds),
+                content=np.array(content_hash(block.mesh)),
+            )
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise StorageError(f"cannot write {place}: {error.strerror or error}") from None
+
+
+def _arrays(place: Path) -> dict[str, Array] | None:
+    """The arrays in a file, None if there is none, it is damaged, or the mesh is not the one it was written with."""
+    try:
+        with np.load(io.BytesIO(place.read_bytes()), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
+        return arrays if str(arrays["content"]) == content_hash(mesh) else None
+    except _DAMAGE:
+        return None
+
+
+def _read(place: Path, size: Array, inclusions: Sequence[Inclusion], key: str) -> tuple[BlockMesh, str] | None:
+    """The mesh in a file and its content hash, None if there is none or it is damaged."""
+    arrays = _arrays(place)
+    if arrays is None:
+        return None
+    surfaces = Surfaces(size, [inclusion.solids(size) for inclusion in inclusions])
+    mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
+    made = {"seconds": float(arrays["seconds"]), "straightened": int(arrays["straightened"])}
+    try:
+        block = assembled(mesh, surfaces, inclusions, key=key, **made)  # type: ignore[arg-type]
+    except (*_DAMAGE, IndexError, ConvergenceError, InputError):
+        return None
+    return block, content_hash(mesh)
+
+
+def _kept(block: BlockMesh, place: Path) -> bool:
+    """Put a mesh into the cache unless a sound one is there; whether it was put. A cache that refuses costs only time."""
+    waiting = place.with_name(f".{place.name}.{os.getpid()}-{threading.get_ident()}.partial")
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        write_block_mesh(block, waiting)
+        try:
+            os.link(waiting, place)
+        except OSError:
+            if _arrays(place) is not None:
+                return False
+            os.replace(waiting, place)
+    except OSError:
+        return True
+    finally:
+        with suppress(OSError):
+            waiting.unlink(missing_ok=True)
+    return True

@@ -1,0 +1,77 @@
+"""Better shaped tetrahedra by moving their corners, each along what it must stay on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize
+
+from tactsim.mesh.quality import TO_REGULAR, mean_ratio, regular_map
+
+Array = np.ndarray
+ROUNDS = 6
+STEPS = 20
+SHARES = (1.0, 0.5, 0.25, 0.1)
+"""Parts of a step that are tried until the worst tetrahedron is better, after moving back onto the surfaces."""
+POWER = 3
+"""Exponent of the inverse mean ratio in the energy: the worse a tetrahedron, the more it counts."""
+BARRIER = 1e-3
+"""Determinant, as a part of the mean, below which the energy rises steeply but stays finite."""
+
+
+def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Array], restore: Callable[[Array], Array]) -> Array:
+    """Corner coordinates (n, 3) in m after minimising the sum of the inverse mean ratios, each to the power POWER.
+
+    Parameters
+    ----------
+    simplices : (E, 4)
+    directions : projectors (n, 3, 3) on the directions in which corners (n, 3) may move
+    restore : puts moved corners (n, 3) back exactly on what they must stay on
+    """
+    best = corners
+    length = float(np.linalg.norm(corners[simplices[:, 1]] - corners[simplices[:, 0]], axis=1).mean())
+    for _ in range(ROUNDS):
+        start, free = best / length, directions(best)
+        size = np.abs(np.linalg.det(regular_map(start, simplices)))
+
+        def objective(step: Array, start: Array = start, size: Array = size, free: Array = free) -> tuple[float, Array]:
+            moved = start + np.einsum("nij,nj->ni", free, step.reshape(-1, 3))
+            value, gradient = _energy(moved, simplices, BARRIER * size)
+            return value, np.einsum("nij,ni->nj", free, gradient).ravel()
+
+        found = minimize(objective, np.zeros(start.size), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
+        step = length * np.einsum("nij,nj->ni", free, found.x.reshape(-1, 3))
+        worst = mean_ratio(best, simplices).min()
+        tried = (restore(best + share * step) for share in SHARES)
+        better = next((moved for moved in tried if mean_ratio(moved, simplices).min() > worst), None)
+        if better is None:
+            break
+        best = better
+    return best
+
+
+def _energy(corners: Array, simplices: Array, barrier: Array) -> tuple[float, Array]:
+    r"""Sum of :math:`(|T|^2 / (3 h^{2/3}))^p` and its gradient (n, 3), with :math:`h = (d + \sqrt{d^2 + 4 b^2})/2`.
+
+    T is the map from the regular tetrahedron, d its determinant and b the barrier.
+
+    Source: Escobar et al. 2003, Comput. Methods Appl. Mech. Engrg. 192, 2775-2787, doi:10.1016/S0045-7825(03)00299-8.
+    """
+    map_ = regular_map(corners, simplices)
+    determinant = np.linalg.det(map_)
+    root = np.sqrt(determinant**2 + 4 * barrier**2)
+    h = (determinant + root) / 2
+    h = np.where(determinant < 0, 2 * barrier**2 / (root - determinant), h)
+    norm2 = (map_**2).sum(axis=(1, 2))
+    shape = norm2 / (3 * h ** (2 / 3))
+    cofactor = np.stack([np.cross(map_[:, :, (k + 1) % 3], map_[:, :, (k + 2) % 3]) for k in range(3)], axis=2)
+    slope = POWER * shape ** (POWER - 1)
+    by_map = (2 * slope / (3 * h ** (2 / 3)))[:, None, None] * map_
+    by_map -= (slope * shape * 2 / 3 / root)[:, None, None] * cofactor
+    by_side = by_map @ TO_REGULAR.T
+    gradient = np.zeros_like(corners)
+    for k in range(3):
+        np.add.at(gradient, simplices[:, k + 1], by_side[:, :, k])
+        np.add.at(gradient, simplices[:, 0], -by_side[:, :, k])
+    return float((shape**POWER).sum()), gradient

@@ -1,0 +1,163 @@
+"""Conforming tetrahedra of a block with inclusions by fTetWild, run in a process of its own.
+
+The mesher may hang, crash or exhaust the memory on hostile input, and it gives another mesh every time: a caller is protected
+from the first by the process, from the second by ``mesh_store``.
+
+Source: Hu et al. 2020, ACM Trans. Graph. 39, 117, doi:10.1145/3386569.3392385.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.curving import fitted
+from tactsim.mesh.labelling import Surfaces, tidied
+from tactsim.mesh.sizing import background
+from tactsim.mesh.solid import Inclusion, Triangles, outward
+
+Array = np.ndarray
+ENVELOPE = 0.03
+"""Distance that the mesher's surface may keep from the given one, in element sizes; projection then removes it."""
+FACET_SIZE = 0.6
+"""Edge length of the triangles given to the mesher, in element sizes."""
+REVISION = 1
+"""Raised when the same input shall give another mesh."""
+MODULE = "tactsim.mesh.tetrahedra"
+
+
+def block_mesh(
+    size: Sequence[float], inclusions: Sequence[Inclusion] = (), settings: BlockMeshSettings | None = None
+) -> BlockMesh:
+    """A block of ``size`` (3,) in m with inclusions, in curved quadratic tetrahedra that conform to every surface.
+
+    The mesher is not deterministic; ``mesh_store.stored_block_mesh`` makes a mesh once.
+
+    Raises
+    ------
+    InputError
+        If inclusions overlap, touch, protrude or do not suit the block.
+    ConvergenceError
+        If the mesher fails or takes too long, or the mesh misses the volumes, the flatness or the shape asked for.
+    """
+    started = time.perf_counter()
+    settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
+    check_inclusions(extent, inclusions, settings.least_gap)
+    vertices, triangles = input_surface(extent, inclusions, settings)
+    bounds = np.array([vertices.min(axis=0), vertices.max(axis=0)])
+    finest = min([settings.inclusion_size, *(inclusion.refine(settings.inclusion_size) for inclusion in inclusions)])
+    points, cells, wanted = background(bounds, extent, inclusions, settings)
+    request = {
+        "vertices": vertices,
+        "faces": triangles.astype(np.int32),
+        "edge_length_abs": np.array(settings.size),
+        "epsilon": np.array(ENVELOPE * finest / np.linalg.norm(np.ptp(bounds, axis=0))),
+        "stop_energy": np.array(settings.stop_energy),
+        "bg_vertices": points,
+        "bg_tets": cells,
+        "bg_values": wanted,
+    }
+    corners, simplices = tetrahedra_in_child(request, settings.time_limit)
+    surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
+    labels = tidied(simplices, surfaces.labels(corners[simplices].mean(axis=1)))
+    key = mesh_key(size, inclusions, settings)
+    return fitted(corners, simplices, labels, size=extent, inclusions=inclusions, key=key, started=started)
+
+
+def mesh_key(size: Sequence[float], inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> str:
+    """Sixteen hexadecimal digits that change with the geometry and the settings."""
+    document = {
+        "size": [float(length) for length in size],
+        "inclusions": [inclusion.identity() for inclusion in inclusions],
+        "settings": settings.model_dump(exclude={"time_limit"}),
+        "revision": REVISION,
+    }
+    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def mesher_version() -> str:
+    """Version of pytetwild, "absent" if it is not installed."""
+    try:
+        return version("pytetwild")
+    except PackageNotFoundError:
+        return "absent"
+
+
+def input_surface(size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> Triangles:
+    """The surfaces of the block and of every solid in one set of triangles."""
+    corners = np.array([[x, y, z] for x in (0.0, size[0]) for y in (0.0, size[1]) for z in (0.0, size[2])])
+    quads = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]])
+    faces = outward(corners, np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]), size / 2)
+    vertices, triangles, count = [corners], [faces], len(corners)
+    for inclusion in inclusions:
+        for solid in inclusion.solids(size):
+            points, facets = solid.triangles(FACET_SIZE * inclusion.refine(settings.inclusion_size))
+            vertices.append(points)
+            triangles.append(facets + count)
+            count += len(points)
+    return np.vstack(vertices), np.vstack(triangles)
+
+
+def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[Array, Array]:
+    """Corners (n, 3) in m and tetrahedra (E, 4) that fTetWild makes of a request, in a process that is stopped in time.
+
+    Raises
+    ------
+    ConvergenceError
+        If the mesher dies, takes longer than ``time_limit`` in s, or gives no tetrahedra.
+    InputError
+        If pytetwild is not installed.
+    """
+    with tempfile.TemporaryDirectory(prefix="tactsim-mesh-") as folder:
+        asked, answer = Path(folder) / "request.npz", Path(folder) / "answer.npz"
+        np.savez(asked, **request)  # type: ignore[arg-type]
+        command = [sys.executable, "-m", MODULE, str(asked), str(answer)]
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=time_limit, check=False, stdin=subprocess.DEVNULL)
+        except subprocess.TimeoutExpired:
+            raise ConvergenceError(
+                f"the mesher was stopped after {time_limit:g} s; take larger elements or a longer time_limit"
+            ) from None
+        if done.returncode or not answer.exists():
+            raise _failure(done)
+        with np.load(answer, allow_pickle=False) as found:
+            corners, simplices = found["corners"], found["simplices"]
+    if not len(simplices) or not np.isfinite(corners).all():
+        raise ConvergenceError("the mesher gave no tetrahedra")
+    return corners, simplices.astype(np.int64)
+
+
+def _failure(done: subprocess.CompletedProcess[bytes]) -> InputError | ConvergenceError:
+    last = done.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
+    if "No module named 'pytetwild'" in last[0]:
+        return InputError("meshing a block with inclusions needs the package pytetwild: pip install pytetwild")
+    how = f"was ended by signal {-done.returncode}" if done.returncode < 0 else f"failed with code {done.returncode}"
+    return ConvergenceError(f"the mesher {how}: {last[0]}")
+
+
+def main(asked: str, answer: str) -> None:
+    """Answer one request; what the child process does."""
+    import pytetwild
+
+    with np.load(asked, allow_pickle=False) as file:
+        request: dict[str, Any] = {name: file[name] for name in file.files}
+    request |= {name: float(request[name]) for name in ("edge_length_abs", "epsilon", "stop_energy")}
+    corners, simplices = pytetwild.tetrahedralize(**request, vtk_ordering=True, disable_filtering=True, quiet=True)
+    np.savez(answer, corners=corners, simplices=simplices)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

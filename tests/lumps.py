@@ -1,0 +1,60 @@
+"""Inclusions, surfaces and measurements that the tests of block meshes share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from tactsim.mesh.inclusions.ellipsoid import Ellipsoid, spiral
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import outward
+
+Array = np.ndarray
+SIZE = (40e-3, 40e-3, 20e-3)
+ARTERY = Tube.example()
+LUMP = Sphere.example()
+TURNED = Ellipsoid(center=(28e-3, 26e-3, 11e-3), semi_axes=(6e-3, 4e-3, 5e-3), rotation=(0.3, 0.2, 0.5))
+CURVED = Tube(
+    centre_line=((0.0, 8e-3, 10e-3), (15e-3, 15e-3, 9e-3), (28e-3, 26e-3, 11e-3), (40e-3, 30e-3, 10e-3)),
+    inner_radius=2e-3,
+    wall=0.6e-3,
+)
+
+
+def irregular(count: int = 300) -> tuple[Array, Array]:
+    """Vertices in mm and outward triangles of a bumpy closed surface of about 4.5 mm radius."""
+    unit = spiral(count)
+    faces = outward(unit, ConvexHull(unit).simplices, np.zeros(3))
+    radius = 4.5 * (1 + 0.15 * np.sin(3 * unit[:, 0]) * np.cos(4 * unit[:, 1]) + 0.1 * np.sin(4 * unit[:, 2] + 1))
+    return unit * radius[:, None], faces
+
+
+def write_cells(path: Path, points: Array, **cells: Array) -> Path:
+    """A file of cells by meshio's names of their types."""
+    import meshio
+
+    meshio.write(path, meshio.Mesh(points, list(cells.items())))
+    return path
+
+
+def enclosed_volume(vertices: Array, triangles: Array) -> float:
+    """Volume inside a closed surface by the divergence theorem."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return float((np.cross(a, b) * c).sum() / 6)
+
+
+def sides(mesh: QuadraticMesh) -> tuple[Array, Array]:
+    """Triangles (F, 6) of a mesh by node number, ascending, each once, and how many tetrahedra have them."""
+    local = ((1, 2, 3, 5, 9, 8), (0, 2, 3, 6, 9, 7), (0, 1, 3, 4, 8, 7), (0, 1, 2, 4, 5, 6))
+    every = np.sort(np.concatenate([mesh.elements[:, list(side)] for side in local]), axis=1)
+    return np.unique(every, axis=0, return_counts=True)
+
+
+def interface_nodes(mesh: QuadraticMesh, first: int, second: int) -> Array:
+    """Numbers of the nodes that elements of two regions share."""
+    nodes = [np.unique(mesh.elements[mesh.regions == region]) for region in (first, second)]
+    return np.intersect1d(*nodes)
