@@ -6,6 +6,7 @@ from tactsim.interfaces import Material
 from tactsim.materials.library import LIBRARY, MaterialSet
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.materials.stability_range import Interval, StabilityReport, stability_range
+from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.units import format_quantity
 
 
@@ -17,7 +18,8 @@ def material_report(name: str, material: Material) -> str:
     entry = LIBRARY.get(name)
     lines = [f"{name} ({material.kind})", *_origin_lines(entry, material), "", "Constants"]
     lines += [f"  {label:<16} {value}" for label, value in _constants(material)]
-    lines += ["", "Moduli at small strain", *_moduli_lines(material), "", *_stability_lines(stability_range(material))]
+    lines += ["", "Moduli at small strain", *_moduli_lines(material), *_relaxation_lines(material)]
+    lines += ["", *_stability_lines(stability_range(material))]
     return "\n".join(lines)
 
 
@@ -53,6 +55,24 @@ def _moduli_lines(material: Material) -> list[str]:
     bulk = "infinite (exactly incompressible)" if K is None else format_quantity(K, "Pa")
     rows = (("shear G", format_quantity(G, "Pa")), ("Young's E", format_quantity(youngs_modulus(G, K), "Pa")), ("bulk K", bulk))
     return [f"  {label:<16} {value}" for label, value in rows]
+
+
+def _relaxation_lines(material: Material) -> list[str]:
+    """Shear modulus at once and in the end, and every part that relaxes, as a part of the first."""
+    if material.relaxation is None:
+        return []
+    shear = shear_relaxation(material)
+    first = shear.instantaneous_modulus
+    ends = ((f"shear G {when}", value) for when, value in (("at once", first), ("in the end", shear.equilibrium_modulus)))
+    lines = [
+        "",
+        "Relaxation of the isochoric stress",
+        *(f"  {words:<18} {format_quantity(value, 'Pa')}" for words, value in ends),
+    ]
+    return lines + [
+        f"  {modulus / first:<18.6g} relaxes in {format_quantity(time, 's')}"
+        for modulus, time in zip(shear.moduli.tolist(), shear.times.tolist(), strict=True)
+    ]
 
 
 def _stability_lines(report: StabilityReport) -> list[str]:

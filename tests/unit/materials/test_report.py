@@ -9,6 +9,7 @@ from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.report import material_report
+from tactsim.relaxation import Relaxation
 
 
 @pytest.mark.parametrize("name", sorted(LIBRARY))
@@ -53,3 +54,12 @@ def test_the_name_of_a_set_does_not_lend_its_source_to_other_constants():
 
 def test_incompressible_is_said():
     assert "infinite (exactly incompressible)" in material_report("mine", NeoHookean(c10=3e3))
+
+
+def test_relaxation_is_told_with_its_times():
+    relaxing = NeoHookean(c10=1000.0, relaxation=Relaxation(fractions=(0.25,), times=(2.0,)))
+    text = material_report("mine", relaxing)
+    assert "shear G at once    2 kPa" in text
+    assert "shear G in the end 1.5 kPa" in text
+    assert "0.25               relaxes in 2 s" in text
+    assert "Relaxation" not in material_report("mine", NeoHookean(c10=1000.0))
