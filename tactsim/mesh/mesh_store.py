@@ -31,7 +31,7 @@ from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
 
 Array = np.ndarray
 SHIPPED = Path("meshes")
-_DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError)
+_DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, RuntimeError)
 
 
 @dataclass(frozen=True)
