@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Self
 
-from tactsim.contact.traction import ContactPair
+import numpy as np
+
+from tactsim.contact.traction import ContactPair, ContactState
 
 TARGET_SHARE = 0.5
 """Part of the tolerance that the penetration should use at the pressure of the last step."""
@@ -12,6 +15,8 @@ EXPECTED_RISE = 1.3
 """By how much the largest pressure may grow in the next step without another adaptation."""
 TANGENTIAL_SHARE = 0.1
 """Tangential over normal penalty: elastic slip is ten times the penetration at equal traction."""
+SLIP_SHARE = 10.0
+"""Largest elastic slip over the largest penetration."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +31,50 @@ class Regularisation:
     switch_length: float
     largest_pressure: float = 0.0
 
+    augments = False
+    """Whether the forces found serve as multipliers of the next solution, instead of a stiffer penalty."""
+
     @property
     def penalty(self) -> float:
         """Penalty in Pa/m for the largest pressure seen so far."""
-        pressure = max(self.softest, EXPECTED_RISE * self.largest_pressure)
-        return pressure / (TARGET_SHARE * self.tolerance)
+        return max(self.softest, EXPECTED_RISE * self.largest_pressure) / (TARGET_SHARE * self.tolerance)
 
-    def seen(self, pressure: float) -> Regularisation:
+    def holds(self, penetration: float, elastic_slip: float) -> bool:
+        """Whether lengths in m are small enough."""
+        return penetration <= self.tolerance
+
+    def seen(self, pressure: float) -> Self:
         """Adapted to the largest contact pressure in Pa of an accepted step; it never softens."""
         return replace(self, largest_pressure=max(pressure, self.largest_pressure))
 
-    def applied(self, pair: ContactPair) -> ContactPair:
-        """The pair with this regularisation."""
-        switch = max(self.softest, self.largest_pressure) / self.switch_length
-        return pair.with_penalty(self.penalty, TANGENTIAL_SHARE * self.penalty, switch)
+    def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
+        """The pair with this regularisation; ``state`` is what the last solution left at its points."""
+        penalty = self.penalty
+        return pair.with_penalty(penalty, TANGENTIAL_SHARE * penalty, self._switch)
+
+    @property
+    def _switch(self) -> float:
+        return max(self.softest, self.largest_pressure) / self.switch_length
+
+
+@dataclass(frozen=True)
+class Augmentation(Regularisation):
+    """A penalty so soft that Newton converges in space with friction, and multipliers that bring the penetration below the
+    tolerance (augmented Lagrangian, Simo & Laursen 1992, doi:10.1016/0045-7949(92)90540-G).
+
+    ``softness`` in m is the penetration at the largest pressure without multipliers.
+    """
+
+    softness: float = 1e-5
+
+    augments = True
+
+    def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
+        """The pair with penalties that suit the last pressure at each point, for slip as for penetration."""
+        pressure = 0.0 if state is None else state.pressure
+        penalty = np.maximum(self.softest, EXPECTED_RISE * pressure) / self.softness
+        return pair.with_penalty(penalty, penalty, self._switch)
+
+    def holds(self, penetration: float, elastic_slip: float) -> bool:
+        """Whether lengths in m are small enough."""
+        return penetration <= self.tolerance and elastic_slip <= SLIP_SHARE * self.tolerance

@@ -15,30 +15,39 @@ from tactsim.interfaces import ContactLaw, RigidBody
 
 Array = np.ndarray
 
+AT_LIMIT = 1e-9
+"""A point slips if its traction is this near to the limit."""
+
 
 @dataclass(frozen=True)
 class ContactState:
     """What the last accepted step left at n surface points, in the body's frame.
 
     ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
-    ``normals`` (d, n) of the rigid body there.
+    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration.
     """
 
     pressure: Array
     tangential: Array
     points: Array
     normals: Array
+    multiplier: Array | float = 0.0
 
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
         """No contact yet."""
         return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
 
+    def augmented(self, now: ContactTraction) -> ContactState:
+        """The same step with the forces found for it as multipliers: solved once more, it needs far less penetration and slip."""
+        return ContactState(now.pressure, now.tangential, self.points, now.normal, now.pressure)
+
 
 @dataclass(frozen=True)
 class ContactTraction:
     """Contact at n surface points: ``gap`` in m (negative is penetration), ``pressure`` and ``tangential`` traction on the
-    tissue in Pa, ``normal`` of the body, ``derivative`` (d, d, n) of the whole traction with respect to the point in Pa/m.
+    tissue in Pa, ``normal`` of the body, ``derivative`` (d, d, n) of the whole traction with respect to the point in Pa/m,
+    ``coupling`` the part of it that makes friction grow with the pressure.
     """
 
     gap: Array
@@ -47,6 +56,7 @@ class ContactTraction:
     normal: Array
     points: Array
     derivative: Array
+    coupling: Array
 
     @property
     def traction(self) -> Array:
@@ -56,6 +66,15 @@ class ContactTraction:
     def commit(self) -> ContactState:
         """The state that an accepted step leaves behind."""
         return ContactState(self.pressure, self.tangential, self.points, self.normal)
+
+    def elastic_slip(self, state: ContactState, law: ContactLaw) -> Array:
+        """Way (n,) in m that points moved along the body since a state although friction holds them."""
+        travel = self.points - state.points
+        along = np.einsum("in,in->n", self.normal, travel)
+        held = (self.pressure > 0) & (
+            np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * law.traction_limit(self.pressure)
+        )
+        return np.where(held, np.linalg.norm(travel - along * self.normal, axis=0), 0.0)
 
 
 @dataclass(frozen=True)
@@ -80,11 +99,11 @@ class ContactPair:
 
     body: RigidBody
     law: ContactLaw
-    penalty: float = 1.0
-    tangential_penalty: float = 1.0
+    penalty: Array | float = 1.0
+    tangential_penalty: Array | float = 1.0
     switch_stiffness: float = 1.0
 
-    def with_penalty(self, penalty: float, tangential_penalty: float, switch_stiffness: float) -> ContactPair:
+    def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
         """The same pair, regularised otherwise (all in Pa/m)."""
         return replace(self, penalty=penalty, tangential_penalty=tangential_penalty, switch_stiffness=switch_stiffness)
 
@@ -95,12 +114,13 @@ class ContactPair:
     def converged(self, points: Array, state: ContactState) -> ContactTraction:
         """Traction at points (d, n) by the return mapping itself: what holds at the end of a step."""
         gap, normal, hessian = self.body.signed_distance(points)
-        pressure = np.maximum(0.0, -self.penalty * gap)
+        pressure = np.maximum(0.0, state.multiplier - self.penalty * gap)
         trial, _ = self._elastic_trial(points, normal, hessian, state)
         limit = np.where(pressure > 0, self.law.traction_limit(pressure), 0.0)
         size = np.linalg.norm(trial, axis=0)
         scale = np.where(size > limit, limit / np.where(size > 0, size, 1.0), 1.0)
-        return ContactTraction(gap, pressure, scale * trial, normal, points, np.zeros((len(points), *points.shape)))
+        none = np.zeros((len(points), *points.shape))
+        return ContactTraction(gap, pressure, scale * trial, normal, points, none, none)
 
     def linearised(self, points: Array, state: ContactState, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative at points (d, n), each point open, sticking or slipping as the iterate decides.
@@ -109,8 +129,9 @@ class ContactPair:
         the direction of its slip, unless that has turned back against the force it carries.
         """
         gap, normal, hessian = self.body.signed_distance(points)
-        closed = (iterate.pressure > 0) | (gap < 0)
-        pressure = np.where(closed, -self.penalty * gap, 0.0)
+        closing = state.multiplier - self.penalty * gap
+        closed = (iterate.pressure > 0) | (closing > 0)
+        pressure = np.where(closed, closing, 0.0)
         weight = np.where(iterate.pressure > 0, iterate.pressure, np.maximum(pressure, 0.0))
         slope = np.where(closed, -self.penalty, 0.0) * normal
         trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
@@ -126,11 +147,11 @@ class ContactPair:
         spread = np.where(slips, limit, 0.0) / np.where(slips, size, 1.0)
         tangential_slope = spread * np.einsum("ijn,jkn->ikn", across, decider_slope) + np.where(sticks, trial_slope, 0.0)
         limit_slope = np.where(slips, self.law.traction_limit_slope(weight), 0.0)
-        tangential_slope = tangential_slope + limit_slope * direction[:, None] * slope[None, :]
+        coupling = limit_slope * direction[:, None] * slope[None, :]
         at_limit = np.where(slips, limit, 0.0) + limit_slope * (pressure - weight)
         tangential = np.where(slips, at_limit * direction, np.where(sticks, trial, 0.0))
-        derivative = normal[:, None] * slope[None, :] + weight * hessian + tangential_slope
-        return ContactTraction(gap, pressure, tangential, normal, points, derivative)
+        derivative = normal[:, None] * slope[None, :] + weight * hessian + tangential_slope + coupling
+        return ContactTraction(gap, pressure, tangential, normal, points, derivative, coupling)
 
     def advanced(self, now: ContactTraction, step: Array) -> ContactIterate:
         """The iterate after moving the points by ``step`` (d, n), by the linearisation that ``now`` carries."""
@@ -146,7 +167,7 @@ class ContactPair:
 
         It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
         """
-        share = min(1.0, self.switch_stiffness / self.tangential_penalty)
+        share = np.minimum(1.0, self.switch_stiffness / self.tangential_penalty)
         across = np.einsum("in,in->n", carried, normal)
         plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
         in_plane = carried - across * normal

@@ -18,6 +18,10 @@ Array = np.ndarray
 
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
+AUGMENTATIONS = 12
+"""How often with better multipliers."""
+COARSE = 1e-3
+"""Residual that suffices between augmentations."""
 
 
 @dataclass(frozen=True)
@@ -54,33 +58,45 @@ def contact_equilibrium(
     ConvergenceError
         If Newton fails, or no penalty keeps the tissue out of the bodies.
     """
-    regularisation, iterations = state.regularisation, 0
+    regularisation, iterations, before = state.regularisation, 0, state.contacts
+    if regularisation.augments:
+        before = tuple(contact.expected(load - state.load) for contact in before)
     push = None if force is None else PrescribedForce(tuple(directions), force)
-    for _ in range(PENALTY_ATTEMPTS):
-        contacts = _moved(state, load, directions, regularisation)
-        solved = problem.solve(guess, interfaces=contacts, loads=loads, push=push, past=past)
+    coarse = COARSE if regularisation.augments else 0.0
+    for _ in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
+        contacts = _moved(before, load - state.load, directions, regularisation)
+        solved = problem.solve(guess, interfaces=contacts, loads=loads, push=push, past=past, coarse=coarse)
         load += solved.travel
-        contacts = _moved(state, load, directions, regularisation)
+        contacts = _moved(before, load - state.load, directions, regularisation)
         iterations += solved.iterations
         u = problem.body.space.split(solved.unknowns)[0]
         displacements = [contact.surface.points.interpolate(u) for contact in contacts]
         results = [contact.at(displacement) for contact, displacement in zip(contacts, displacements, strict=True)]
         deepest = max(float(-result.gap.min()) for result in results)
+        slips = [r.elastic_slip(contact.state, contact.pair.law) for r, contact in zip(results, contacts, strict=True)]
+        within = regularisation.holds(deepest, max(float(slip.max()) for slip in slips))
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
-        if deepest <= regularisation.tolerance:
+        if within and coarse:
+            coarse = 0.0
+            before = tuple(old.resumed(result) for old, result in zip(before, results, strict=True))
+        elif within:
             committed = tuple(c.committed(d) for c, d in zip(contacts, displacements, strict=True))
+            way = load - state.load
+            committed = tuple(c.grown(start, way) for c, start in zip(committed, state.contacts, strict=True))
             return ContactEquilibrium(
                 load, solved.unknowns, iterations, solved.history[-1], committed, regularisation, solved.kinematics
             )
+        elif regularisation.augments:
+            before = tuple(old.augmented(result) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
     raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
 
 
 def _moved(
-    state: ContactEquilibrium, load: float, directions: Sequence[Array], regularisation: Regularisation
+    contacts: Sequence[PosedContact], way: float, directions: Sequence[Array], regularisation: Regularisation
 ) -> list[PosedContact]:
-    """The contacts of a state with their bodies at another displacement in m."""
+    """The contacts with their bodies moved on by ``way`` in m."""
     return [
-        contact.moved(contact.place + (load - state.load) * direction, regularisation.applied(contact.pair))
-        for contact, direction in zip(state.contacts, directions, strict=True)
+        contact.moved(contact.place + way * direction, regularisation.applied(contact.pair, contact.state))
+        for contact, direction in zip(contacts, directions, strict=True)
     ]

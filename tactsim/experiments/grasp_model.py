@@ -14,6 +14,7 @@ from tactsim.experiments.contact_equilibrium import ContactEquilibrium, contact_
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.newton import FollowerLoad, Problem
+from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
@@ -61,7 +62,7 @@ class GraspModel:
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}
         self.references = {side: points[side].interpolate(mesh.nodes) for side in SIDES}
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(SIDES, offsets, strict=True)}
-        self.problem = Problem(self.body, np.zeros(0, int))
+        self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body))
         self.hold = WeakHold(self.body)
 
     def touching_place(self, side: str) -> Array:

@@ -20,7 +20,8 @@ class PosedContact:
     """One contact pair on one surface, the body's reference point at ``place``.
 
     ``reference`` (d, n) are the undeformed surface points in m, ``place`` (d,) the body's reference point, ``state`` what the
-    last accepted step left.
+    last accepted step left, ``growth`` how its forces grew per m of the body's way in Pa/m, if that is known,
+    ``begin`` forces that Newton starts from, if not from those of the state.
     """
 
     surface: SurfaceAssembly
@@ -28,6 +29,8 @@ class PosedContact:
     pair: ContactPair
     place: Array
     state: ContactState
+    growth: ContactIterate | None = None
+    begin: ContactIterate | None = None
 
     @classmethod
     def apart(cls, surface: SurfaceAssembly, reference: Array, pair: ContactPair, place: Array) -> PosedContact:
@@ -41,7 +44,30 @@ class PosedContact:
 
     def committed(self, displacement: Array) -> PosedContact:
         """The pair after a step was accepted at displacements (d, n) of the points."""
-        return replace(self, state=self.at(displacement).commit())
+        return replace(self, state=self.at(displacement).commit(), begin=None)
+
+    def grown(self, start: PosedContact, way: float) -> PosedContact:
+        """The pair after a step from ``start`` along ``way`` in m, with the growth of its forces."""
+        if way == 0.0:
+            return replace(self, growth=None)
+        pressure, tangential = self.state.pressure - start.state.pressure, self.state.tangential - start.state.tangential
+        return replace(self, growth=ContactIterate(pressure / way, tangential / way))
+
+    def expected(self, way: float) -> PosedContact:
+        """The pair with the multipliers that it should have further on by ``way`` in m."""
+        pressure, tangential = self.state.pressure, self.state.tangential
+        if self.growth is not None:
+            pressure = np.maximum(0.0, pressure + way * self.growth.pressure)
+            tangential = np.where(pressure > 0, tangential + way * self.growth.tangential, 0.0)
+        return replace(self, state=replace(self.state, pressure=pressure, tangential=tangential, multiplier=pressure))
+
+    def resumed(self, now: ContactTraction) -> PosedContact:
+        """The pair for a solution that goes on from forces found already."""
+        return replace(self, begin=ContactIterate(now.pressure, now.tangential))
+
+    def augmented(self, now: ContactTraction) -> PosedContact:
+        """The pair before the step, with the forces that were found for it as multipliers."""
+        return replace(self, state=self.state.augmented(now))
 
     def on(self, surface: SurfaceAssembly, reference: Array, displacement: Array) -> PosedContact:
         """The same contact on the finer points of another mesh: forces interpolated along the surface, by the undeformed radius.
@@ -64,8 +90,8 @@ class PosedContact:
         return self.pair.converged(self._points(displacement), self.state)
 
     def start(self) -> ContactIterate:
-        """Newton starts from the forces of the last accepted step."""
-        return self.pair.iterate(self.state)
+        """Newton starts from the forces of the last accepted step, or those of a solution to be made exact."""
+        return self.pair.iterate(self.state) if self.begin is None else self.begin
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa."""
@@ -76,7 +102,7 @@ class PosedContact:
         along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
         gap = self.pair.body.signed_distance(self._points(displacement))[0]
         lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
-        return np.where(gap <= ROUND_OFF * (along + across), lost, 0.0)
+        return np.where((gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
 
     def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
         """Traction and derivative as the carried forces decide."""

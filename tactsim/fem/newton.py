@@ -25,9 +25,13 @@ ROUND_OFF = 128 * np.finfo(float).eps
 """Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
 
 
-FORCING, LARGEST_FORCING = 0.05, 1e-4
+FORCING, LARGEST_FORCING = 0.05, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
+
+
+SHARE_OF_TOLERANCE = 0.1
+"""Part of Newton's tolerance that the error of the last linear step may leave."""
 
 
 class Interface(Protocol):
@@ -47,7 +51,8 @@ class Interface(Protocol):
         """Traction (n,) in Pa that is lost in the round-off of the positions."""
 
     def linearised(self, displacement: Array, carried: Any) -> Any:
-        """An object with ``traction`` (d, n) in Pa and ``derivative`` (d, d, n) in Pa/m."""
+        """An object with ``traction`` (d, n) in Pa, ``derivative`` (d, d, n) in Pa/m, and ``coupling``, the part of the
+        derivative without which it is symmetric but for curvature."""
 
     def advanced(self, now: Any, carried: Any, step: Array, damping: float) -> Any:
         """The carried forces after the points moved by ``damping * step``."""
@@ -117,6 +122,7 @@ class Problem:
         push: PrescribedForce | None = None,
         travel: float = 0.0,
         past: PastStress | None = None,
+        coarse: float = 0.0,
     ) -> Equilibrium:
         """Equilibrium nearest to the guess, which holds the prescribed values.
 
@@ -127,6 +133,7 @@ class Problem:
         push : the force that the interfaces must exert, if it is prescribed instead of their place
         travel : first guess of their travel in m
         past : what materials that relax remember
+        coarse : a residual that suffices, if it is above the tolerance of the options
 
         Raises
         ------
@@ -134,6 +141,7 @@ class Problem:
             If Newton does not converge or an element would turn inside out; the history is in the error.
         """
         options, history = self.options, []
+        tolerance = max(options.tolerance, coarse)
         body = self.body if past is None else self.body.with_past(past)
         carried = [interface.start() for interface in interfaces]
         unknowns = guess.copy()
@@ -151,12 +159,13 @@ class Problem:
             if push is not None:
                 surfaces = [interface.surface for interface in interfaces]
                 history[-1] = max(history[-1], push.error(surfaces, tractions, noise, options.tolerance))
-            if history[-1] < options.tolerance:
+            if history[-1] < tolerance:
                 return Equilibrium(unknowns, kinematics, tractions, tuple(history), travel)
             if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
                 break
             now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
-            accuracy = min(FORCING * history[-1], LARGEST_FORCING)
+            needed = SHARE_OF_TOLERANCE * tolerance / history[-1]
+            accuracy = min(max(FORCING * history[-1], needed), LARGEST_FORCING)
             parts = (interfaces, now, loads, accuracy)
             step, further = self._linear_step((body, unknowns, kinematics), internal, parts, push)
             largest = options.relaxation if self._cycles(history) else 1.0
@@ -213,14 +222,18 @@ class Problem:
         body, unknowns, kinematics = state
         interfaces, now, loads, accuracy = parts
         residual, data = internal.copy(), body.tangent(unknowns, kinematics)
+        coupling = np.zeros(len(data))
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
             data += interface.surface.stiffness(force.derivative)
+            if force.coupling.any():
+                coupling += interface.surface.stiffness(force.coupling)
         u, _ = body.space.split(unknowns)
         for load in loads:
             data += load.stiffness(u)
         matrix = body.pattern.matrix(self.constraints.apply(data))
-        step = solved(self.solver, matrix, -self.constraints.free(residual), accuracy)
+        nearby = body.pattern.matrix(self.constraints.apply(data - coupling)) if coupling.any() else matrix
+        step = solved(self.solver, matrix, -self.constraints.free(residual), accuracy, nearby)
         if push is None:
             return step, 0.0
         border = push.border([interface.surface for interface in interfaces], now)

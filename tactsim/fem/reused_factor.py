@@ -15,7 +15,7 @@ from tactsim.fem.linear import DirectSolver
 
 Array = np.ndarray
 
-WORTH_A_FACTOR = 14
+WORTH_A_FACTOR = 24
 """Solutions with a factor that cost as much as a new one; a system that needs more is factored."""
 MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
@@ -29,11 +29,11 @@ class ReusedFactor:
     def __init__(self, direct: DirectSolver):
         self.name = f"{direct.name}, reused"
         self.factorisations = self.solutions = 0
-        self._direct, self._matrix, self._stale = direct, None, True
+        self._direct, self._matrix, self._nearby, self._stale = direct, None, None, True
 
-    def factor(self, matrix: csr_matrix) -> None:
-        """Keep the matrix; it is factored only if the last factor no longer helps."""
-        self._matrix = matrix
+    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
+        """Keep the matrix; it, or the one nearby, is factored only if the last factor no longer helps."""
+        self._matrix, self._nearby = matrix, matrix if nearby is None else nearby
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``."""
@@ -45,7 +45,7 @@ class ReusedFactor:
             solution, reached = self._iterated(right, max(accuracy, FINEST), cycles=1)
             if reached:
                 return solution
-        self._direct.factor(self._matrix)
+        self._direct.factor(self._nearby)
         self.factorisations += 1
         self._stale = False
         solution, _ = self._iterated(right, max(accuracy, FINEST), cycles=MOST_CYCLES)
@@ -54,13 +54,14 @@ class ReusedFactor:
     def close(self) -> None:
         """Release the factor's memory."""
         self._direct.close()
-        self._matrix, self._stale = None, True
+        self._matrix, self._nearby, self._stale = None, None, True
 
     def _iterated(self, right: Array, accuracy: float, *, cycles: int) -> tuple[Array, bool]:
-        """GMRES with the last factor, and whether it reached the accuracy."""
+        """GMRES, preconditioned from the right by the last factor so that it judges the true residual; whether it got there."""
         size = len(right)
-        preconditioner = LinearOperator((size, size), matvec=self._counted, dtype=float)
-        solution, _ = gmres(self._matrix, right, rtol=accuracy, restart=WORTH_A_FACTOR, maxiter=cycles, M=preconditioner)
+        operator = LinearOperator((size, size), matvec=lambda vector: self._matrix @ self._counted(vector), dtype=float)
+        image, _ = gmres(operator, right, rtol=accuracy, restart=WORTH_A_FACTOR, maxiter=cycles)
+        solution = self._counted(image)
         left = np.linalg.norm(self._matrix @ solution - right) / np.linalg.norm(right)
         return solution, bool(left <= 2 * accuracy)
 

@@ -8,7 +8,7 @@ from solids import box, facets_where, on_plane
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
-from tactsim.contact.penalty import Regularisation
+from tactsim.contact.penalty import Augmentation
 from tactsim.experiments.grasp_model import GraspModel
 from tactsim.fem.loading import PathFollower, StepControl
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -19,6 +19,7 @@ SIZE = np.array([0.04, 0.03, 0.02])
 RUBBER = MooneyRivlin2(c10=1000.0, c01=250.0)
 HARD = MooneyRivlin2(c10=8000.0, c01=2000.0)
 LAYOUT = TaxelLayout(rows=2, columns=3, pitch=10e-3, size=8e-3)
+SCALE = Augmentation(1e-6, RUBBER.shear_modulus, switch_length=1e-3, softness=5e-5)
 WIDE = {"width": 0.08, "depth": 0.08, "fillet": 1e-3}
 
 
@@ -32,7 +33,7 @@ def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=
     jaws = [Jaw(side=side, **jaw) for side in ("upper", "lower")]
     materials = [RUBBER] if lump is None else [RUBBER, HARD]
     model = GraspModel(mesh, materials, facets, jaws=jaws, offsets=np.tile(SIZE[:2] / 2, (2, 1)))
-    scale = Regularisation(1e-6, RUBBER.shear_modulus, switch_length=1e-3)
+    scale = SCALE
     state = model.start(Coulomb(friction=friction), scale)
     control = StepControl(first=closing / steps, largest=closing, smallest=1e-3 * closing)
     *_, (state, _) = PathFollower(model.equilibrium, control).follow(state, closing)
@@ -87,7 +88,7 @@ def test_narrow_jaws_let_the_tissue_bulge_beside_them():
 def test_a_force_closes_both_jaws_alike():
     model, closed = grasped(friction=0.6)
     force = abs(model.jaw_force(closed, "upper")[2])
-    begun = model.start(Coulomb(friction=0.6), Regularisation(1e-6, RUBBER.shear_modulus, switch_length=1e-3))
+    begun = model.start(Coulomb(friction=0.6), SCALE)
     half = model.equilibrium(begun, 5e-4, begun.unknowns)
     pressed = model.equilibrium(half, 5e-4, half.unknowns, force=force)
     assert pressed.load == pytest.approx(1e-3, rel=1e-3)

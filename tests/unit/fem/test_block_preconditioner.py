@@ -1,0 +1,114 @@
+"""The iterative solver against the factor, on blocks with and without contact, and on systems that have no solution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from solids import body_of, box, facets_where, held, on_plane
+
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.block_preconditioner import BlockPreconditioned
+from tactsim.fem.constraints import Constraints
+from tactsim.fem.linear import direct_solver, solved
+from tactsim.fem.solver_choice import solver_for
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.two_level import linear_interpolation
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+
+SIZE = np.array([0.02, 0.02, 0.01])
+BULK = {"exactly": None, "nearly": 1e6}
+FRICTION = 0.6
+
+
+def system(cells, *, bulk_modulus=None, contact=True, hold=True):
+    """The body, its tangent at a strain of percents and a right-hand side, the floor held and a slipping contact on the top."""
+    mesh = box(SIZE, cells)
+    body = body_of(mesh, "solid", MooneyRivlin2(c10=1000.0, c01=685.0, bulk_modulus=bulk_modulus))
+    generator, space = np.random.default_rng(3), body.space
+    unknowns = np.zeros(space.size)
+    u, p = space.split(unknowns)
+    u[:] = np.einsum("ij,nj->ni", [[0.02, 0.01, 0.0], [0.0, 0.02, 0.01], [0.0, 0.0, -0.04]], mesh.nodes)
+    p[:] = -100.0
+    data = body.tangent(unknowns)
+    if contact:
+        facets = facets_where(mesh, on_plane(2, SIZE[2]))
+        points = space.surface_points(facets)
+        penalty = np.where(points.interpolate(mesh.nodes)[0] < 0.7 * SIZE[0], 3370.0 / 5e-7, 0.0)
+        derivative = np.zeros((3, 3, len(penalty)))
+        derivative[2, 2], derivative[0, 2] = -penalty, FRICTION * penalty
+        data += SurfaceAssembly(points, body.pattern, 3).stiffness(derivative)
+    floor = np.concatenate([held(mesh, axis, on_plane(2, 0.0)) for axis in range(3)]) if hold else np.zeros(0, int)
+    constraints = Constraints(floor, body.pattern)
+    matrix = body.pattern.matrix(constraints.apply(data))
+    forces = np.repeat(body.rounding_forces(), 3) * generator.normal(size=space.displacement_size)
+    volumes = 0.01 * body.points.weights.sum() / space.corner_count * generator.normal(size=space.corner_count)
+    return body, matrix, constraints.free(np.concatenate([forces, volumes]))
+
+
+@pytest.mark.parametrize("bulk", BULK)
+@pytest.mark.parametrize("contact", [False, True])
+def test_it_solves_as_the_factor_does(bulk, contact):
+    body, matrix, right = system((5, 5, 3), bulk_modulus=BULK[bulk], contact=contact)
+    direct, iterative = direct_solver(), BlockPreconditioned(body)
+    expected = solved(direct, matrix, right)
+    found = solved(iterative, matrix, right, 1e-11)
+    for exact, mine in zip(body.space.split(expected), body.space.split(found), strict=True):
+        # 1e-10 of the largest, the residual being asked to 1e-11
+        np.testing.assert_allclose(mine, exact, rtol=0, atol=1e-10 * np.abs(exact).max())
+        assert not np.allclose(1.0000001 * mine, exact, rtol=0, atol=1e-10 * np.abs(exact).max())
+    direct.close()
+    iterative.close()
+
+
+def test_the_coarser_accuracy_is_kept_and_cheaper():
+    body, matrix, right = system((5, 5, 3))
+    solver = BlockPreconditioned(body)
+    counts = {}
+    for accuracy in (1e-4, 1e-10):
+        exact = solved(solver, matrix, right, 1e-11)
+        coarse = solved(solver, matrix, right, accuracy)
+        counts[accuracy] = solver.iterations
+        assert np.abs(coarse - exact)[: body.space.displacement_size].max() < 100 * accuracy * np.abs(exact).max()
+    assert counts[1e-4] < 0.7 * counts[1e-10]
+
+
+@pytest.mark.parametrize("contact", [False, True])
+def test_iterations_hardly_grow_with_refinement(contact):
+    counts = []
+    for cells in ((4, 4, 2), (8, 8, 4)):
+        body, matrix, right = system(cells, contact=contact)
+        solver = BlockPreconditioned(body)
+        solved(solver, matrix, right, 1e-6)
+        counts.append(solver.iterations)
+    assert counts[1] < 1.5 * counts[0] + 5
+    assert counts[1] < 60
+
+
+def test_a_body_that_nothing_holds_is_an_error():
+    body, matrix, right = system((3, 3, 2), contact=False, hold=False)
+    with pytest.raises(ConvergenceError):
+        solved(BlockPreconditioned(body), matrix, right, 1e-8)
+
+
+def test_numbers_that_are_not_finite_are_an_error():
+    body, matrix, right = system((2, 2, 2))
+    with pytest.raises(ConvergenceError, match="not finite"):
+        solved(BlockPreconditioned(body), matrix * np.nan, right)
+
+
+def test_it_must_have_a_matrix_first():
+    body, _, right = system((2, 2, 2))
+    with pytest.raises(InputError):
+        BlockPreconditioned(body).solve(right)
+
+
+def test_linear_functions_are_interpolated_exactly():
+    body, _, _ = system((2, 2, 2))
+    nodes = body.space.nodes
+    np.testing.assert_allclose(linear_interpolation(body.space) @ nodes[: body.space.corner_count], nodes, atol=1e-15)
+
+
+def test_the_size_decides():
+    body, _, _ = system((2, 2, 2))
+    assert not isinstance(solver_for(body), BlockPreconditioned)
+    assert isinstance(solver_for(body, largest_factor=10), BlockPreconditioned)
