@@ -37,10 +37,10 @@ def indentation_figure(result: Result) -> Figure:
         axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
         if has_section:
             draw_contact_section(axes[0], result, result.frames[-1].time)
-        _draw_curve(axes[-1], result)
+        draw_curve(axes[-1], result)
         figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
-            _mark_failure(figure, result)
+            mark_failure(figure, result)
     return figure
 
 
@@ -49,7 +49,7 @@ def _title(result: Result) -> str:
     return given or f"Indentation by a rigid {result.details.get('body', {}).get('kind', 'body')}"
 
 
-def _mark_failure(figure: Figure, result: Result) -> None:
+def mark_failure(figure: Figure, result: Result) -> None:
     """The status and its reason across the foot of the figure, and a coloured frame."""
     last = format_quantity(result.steps[-1].values["displacement"], "m")
     words = f"{str(result.status).upper()} after a displacement of {last}: {result.reason}"
@@ -61,7 +61,8 @@ def _shortened(words: str, most: int) -> str:
     return words if len(words) <= most else f"{words[: most - 1]}…"
 
 
-def _draw_curve(axis: Axes, result: Result) -> None:
+def draw_curve(axis: Axes, result: Result) -> None:
+    """Force and rise against the displacement, with the threshold, and a cross where a run stopped short."""
     displacement, force, rise = (_history(result, name) for name in ("displacement", "reaction_force", "tissue_rise"))
     along, length = scale_of(float(displacement.max()), "m")
     up, unit = scale_of(float(np.abs(force).max()), "N")

@@ -14,6 +14,7 @@ from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.specimen import Specimen
 from tactsim.interfaces import ContactLaw, RigidBody
 from tactsim.mesh.axisymmetric import Size, edge_graded
+from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.registry import kinds, tagged_union, union_of
 from tactsim.units import FrozenModel, Length, format_quantity
 
@@ -119,12 +120,19 @@ class ContactSetup(FrozenModel):
         n = settings.refinement
         return edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
 
+    def section(self) -> QuadraticMesh:
+        """The mesh of the specimen's section."""
+        return self.specimen.mesh(self.size(), self._focus()[0])
+
+    def top_edges(self, section: QuadraticMesh) -> Array:
+        """Boundary edges (F, 3) of the section that the body may touch, by node numbers."""
+        facets, _ = section.boundary_facets()
+        return facets[self._on_top(section.nodes[facets])]
+
     def model(self) -> IndentationModel:
-        """The finite element model."""
-        mesh = self.specimen.mesh(self.size(), self._focus()[0])
-        facets, _ = mesh.boundary_facets()
-        flat_top = self._on_top(mesh.nodes[facets])
-        return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=facets[flat_top])
+        """The axisymmetric finite element model."""
+        mesh = self.section()
+        return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=self.top_edges(mesh))
 
     def _focus(self) -> tuple[tuple[float, ...], float, float]:
         """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""

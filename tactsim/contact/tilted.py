@@ -1,0 +1,56 @@
+"""A rigid body turned about its reference point."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.plane import Plane
+from tactsim.contact.punch import Punch
+from tactsim.contact.sphere import Sphere
+from tactsim.interfaces import RigidBody
+from tactsim.units import Angle
+
+Array = np.ndarray
+
+TiltableBody = Annotated[Annulus | Plane | Punch | Sphere, Field(discriminator="kind")]
+Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
+
+
+class Tilted(RigidBody):
+    """A body of revolution whose axis leans; its reference point, the middle of its face, stays at the origin."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
+    kind: Literal["tilted"] = "tilted"
+    body: TiltableBody
+    """The body that is turned."""
+    tilt_x: Tilt = 0.0
+    """Rotation about the x axis, right-handed, before that about y."""
+    tilt_y: Tilt = 0.0
+    """Rotation about the y axis."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The sensor of chapter 3, held a little askew."""
+        return cls(body=Annulus.example(), tilt_x=0.05, tilt_y=-0.03)
+
+    @property
+    def rotation(self) -> Array:
+        """Matrix (3, 3) that turns the body's own axes into those of the tissue."""
+        (sx, cx), (sy, cy) = ((np.sin(angle), np.cos(angle)) for angle in (self.tilt_x, self.tilt_y))
+        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
+        about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
+        return about_y @ about_x
+
+    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
+        """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""
+        turn = self.rotation
+        distance, normal, hessian = self.body.signed_distance(turn.T @ x)
+        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
+
+    def own_coordinates(self, x: Array) -> Array:
+        """Points (3, n) in m in the body's own axes, of which the third is that of its revolution."""
+        return self.rotation.T @ x
