@@ -1,0 +1,50 @@
+"""The block that the benchmarks squeeze, against FElupe in mixed form on the same mesh.
+
+FElupe 11.3.0 (tensortrax 0.29.0), ``NearlyIncompressible`` bodies, P2 displacement, continuous P1 pressure and volume ratio:
+``python benchmarks/peers.py --cells 6,6,3 --agreement 6,6,3``, its nodal reactions read by ``readings``. The three-field form is
+tactsim's two-field form but where nodes belong to both materials, whose bulk moduli differ: 1.4e-5 of the largest pressure.
+"""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+PROGRAMS = Path(__file__).parents[2] / "benchmarks" / "peer_programs"
+CELLS = (6, 6, 3)
+FORCE = 3.443137
+"""On the top in N, after four steps of 0.5 mm."""
+PRESSURES = (2109.650, 2136.529, 2090.276, 2136.529, 2404.115, 2144.862, 2090.276, 2144.862, 2110.551)
+"""Means on nine squares of the top in Pa, nominal."""
+TOLERANCE = 1e-3
+"""Of every number over itself: what was asked of programs that solve one discrete problem."""
+
+
+@pytest.fixture(scope="module")
+def measured() -> np.ndarray:
+    """Force in N and nine mean pressures in Pa."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(PROGRAMS)
+        block, ours = (importlib.import_module(name) for name in ("block_problem", "tactsim_block"))
+        problem = block.block_problem(CELLS)
+        return block.readings(problem, ours.solve(problem)["forces"])
+
+
+def test_force_and_nine_pressures_are_those_of_felupe(measured):
+    np.testing.assert_allclose(measured, [FORCE, *PRESSURES], rtol=TOLERANCE)
+
+
+@pytest.mark.parametrize("place", range(10))
+def test_a_wrong_value_is_noticed(measured, place):
+    wrong = np.array([FORCE, *PRESSURES])
+    wrong[place] *= 1 + 3 * TOLERANCE
+    with pytest.raises(AssertionError):
+        np.testing.assert_allclose(measured, wrong, rtol=TOLERANCE)
+
+
+def test_squares_add_up_to_the_force(measured):
+    area = 0.04**2 / 9
+    assert area * measured[1:].sum() == pytest.approx(measured[0], rel=1e-10), "round-off of the mass matrix"
