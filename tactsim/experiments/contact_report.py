@@ -6,11 +6,12 @@ import numpy as np
 
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_setup import ContactSetup
+from tactsim.experiments.ellipticity import elliptic_in
 from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.fem.body import PastStress
 from tactsim.fem.memory import mean_stress
 from tactsim.interfaces import RigidBody
-from tactsim.materials.stability import principal_stretches, strongly_elliptic
+from tactsim.materials.stability import principal_stretches
 from tactsim.results.result import FieldFrame
 from tactsim.units import format_quantity
 
@@ -49,12 +50,7 @@ def tissue_rise(
 
 def elliptic_points(model: IndentationModel, state: ContactEquilibrium) -> Array:
     """Whether the material is strongly elliptic at each point (E, Q)."""
-    body = model.body
-    elliptic = np.ones(state.kinematics.J.shape, bool)
-    for index, material in enumerate(body.materials):
-        mine = body.regions == index
-        elliptic[mine] = strongly_elliptic(material, state.kinematics.F[:, :, mine])
-    return elliptic
+    return elliptic_in(model.body, state.kinematics)
 
 
 def section_frame(

@@ -139,7 +139,7 @@ class Loading(FrozenModel):
         return min([*ends[1:], *waves]), max([*ends, *waves])
 
 
-def _pieces(quantity: Any, name: str) -> Any:
+def pieces_of(quantity: Any, name: str) -> Any:
     """Type of a tuple of pieces whose values are of this quantity."""
     dimensional = [_of_quantity(cls, quantity, name) for cls in (Jump, Ramp, Sine, Samples)]
     kinds: Any = functools.reduce(operator.or_, dimensional, Hold)
@@ -159,7 +159,7 @@ class ForceLoading(Loading):
     """The body presses with a prescribed force; its displacement follows."""
 
     control: Literal["force"]
-    pieces: _pieces(Force, "Force")  # type: ignore[valid-type]
+    pieces: pieces_of(Force, "Force")  # type: ignore[valid-type]
     """Force over time, one piece after the other, from zero; it presses from the first moment on."""
 
 
@@ -167,7 +167,7 @@ class DisplacementLoading(Loading):
     """The body is displaced as prescribed, counted from first touch; the force follows."""
 
     control: Literal["displacement"]
-    pieces: _pieces(Length, "Displacement")  # type: ignore[valid-type]
+    pieces: pieces_of(Length, "Displacement")  # type: ignore[valid-type]
     """Displacement over time, one piece after the other, from zero."""
 
 

@@ -9,9 +9,10 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.loading import DisplacementLoading
 from tactsim.experiments.specimen import Specimen
-from tactsim.experiments.timed_indentation_path import TimedPath, TimedState
+from tactsim.experiments.timed_indentation_path import TimedIndentationPath
 from tactsim.experiments.timed_indentation_report import TimedRecord
 from tactsim.experiments.timed_indentation_setup import TimedIndentationSetup
+from tactsim.experiments.timed_path import TimedState
 from tactsim.fem.time_steps import TimeEvent
 from tactsim.interfaces import Experiment, Progress
 from tactsim.materials.library import named_material
@@ -38,7 +39,7 @@ class TimedIndentation(TimedIndentationSetup, Experiment):
         """Follow the history to its end or to the touch; see ``TimedRecord`` for what is reported."""
         begin = time.perf_counter()
         model = self.model()
-        path = TimedPath(self, model)
+        path = TimedIndentationPath(self, model)
         record = TimedRecord(self, model, path, begin)
         event = None
         if self.stop == "touch":

@@ -11,8 +11,9 @@ import numpy as np
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.experiments.contact_report import contact_assumptions, contact_values, elliptic_points, section_frame, tissue_rise
 from tactsim.experiments.indentation_model import IndentationModel
-from tactsim.experiments.timed_indentation_path import TimedPath, TimedState
+from tactsim.experiments.timed_indentation_path import TimedIndentationPath
 from tactsim.experiments.timed_indentation_setup import TimedIndentationSetup
+from tactsim.experiments.timed_path import TimedState
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -40,7 +41,7 @@ class TimedRecord:
         "closed_form_difference": "1",
     }
 
-    def __init__(self, experiment: TimedIndentationSetup, model: IndentationModel, path: TimedPath, begin: float):
+    def __init__(self, experiment: TimedIndentationSetup, model: IndentationModel, path: TimedIndentationPath, begin: float):
         self.experiment, self.model, self._path, self._begin = experiment, model, path, begin
         self.steps: list[StepRecord] = []
         self.touched = False
@@ -81,10 +82,10 @@ class TimedRecord:
             return {}
         now = np.array([state.time])
         if self.experiment.loading.control == "displacement":
-            force, displacement = float(closed_form.force(self._history, now)[0]), state.load
+            force, displacement = float(closed_form.force(self._history, now)[0]), state.loads[0]
             difference = values["reaction_force"] / force - 1 if force else math.nan
         else:
-            displacement, force = float(closed_form.displacement(self._history, now)[0]), state.load
+            displacement, force = float(closed_form.displacement(self._history, now)[0]), state.loads[0]
             difference = values["displacement"] / displacement - 1 if displacement else math.nan
         return {"closed_form_displacement": displacement, "closed_form_force": force, "closed_form_difference": difference}
 

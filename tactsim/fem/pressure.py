@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from skfem.quadrature import get_quadrature
 
@@ -35,6 +37,12 @@ class FollowerPressure:
         rows = np.repeat(self._unknowns[:, :, None], self._unknowns.shape[1], axis=2)
         self._positions = pattern.positions(rows, rows.transpose(0, 2, 1))
         self._entries, self._size = len(pattern.indices), pattern.size
+
+    def at(self, pressure: float) -> FollowerPressure:
+        """The same facets under another pressure in Pa."""
+        other = copy(self)
+        other.pressure = pressure
+        return other
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at nodal displacements (n, d) in m."""

@@ -8,6 +8,7 @@ from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.errors import UnknownName
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
+from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.viscoelasticity import neo_hookean_of
 
 
@@ -95,5 +96,47 @@ ATRIAL_PRINTED = MaterialSet(
     note=_ATRIAL_NOTE,
 )
 
-LIBRARY = {entry.name: entry for entry in (ATRIAL, ATRIAL_PRINTED, B1A_PRINTED, B1A_STABLE, ICF_PRINTED, ICF_STABLE)}
+LUMP = MaterialSet(
+    name="lump",
+    material=NeoHookean(c10=18e3 / 6),
+    source="thesis, 6.5: Young's modulus 18 kPa, isotropic; c10 = E/6 of an incompressible material",
+    note="a neo-Hookean energy is an assumption; soft in B1-A (E = 264 kPa), 1.8 times as stiff as ICF (erratum E15)",
+)
+
+ARTERY_WALL = MaterialSet(
+    name="artery_wall",
+    material=NeoHookean(c10=130e3 / 6),
+    source="thesis, 6.5: Young's modulus 130 kPa, isotropic; c10 = E/6 of an incompressible material",
+    note="a neo-Hookean energy is an assumption; alone, a wall with radii of 4 and 4.6 mm bears at most 45 mmHg (erratum E14)",
+)
+
+HARD_BALL = MaterialSet(
+    name="hard_ball",
+    material=NeoHookean(c10=3e6 / 6),
+    source="thesis, 6.3: plastic balls of a much higher modulus than the elastomers; none is printed",
+    note="E = 3 MPa is an assumption: beyond ten times the modulus of the tissue a harder ball cannot be told from this one",
+)
+
+HARD_TUBE = MaterialSet(
+    name="hard_tube",
+    material=NeoHookean(c10=1.5e6 / 6),
+    source="thesis, 6.4: soft plastic tubes in place of arteries; their modulus is known there but not printed",
+    note="E = 1.5 MPa is an assumption: six times B1-A, 150 times ICF",
+)
+
+LIBRARY = {
+    entry.name: entry
+    for entry in (
+        ARTERY_WALL,
+        ATRIAL,
+        ATRIAL_PRINTED,
+        B1A_PRINTED,
+        B1A_STABLE,
+        HARD_BALL,
+        HARD_TUBE,
+        ICF_PRINTED,
+        ICF_STABLE,
+        LUMP,
+    )
+}
 """Shipped sets by name."""

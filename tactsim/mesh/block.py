@@ -24,12 +24,12 @@ SMALLEST_GAP = 0.3
 class BlockMeshSettings(FrozenModel):
     """Element sizes in a block with inclusions; the defaults give the default grasp about 40 000 unknowns."""
 
-    size: Positive = 4e-3
+    size: Positive = 3.3e-3
     """Edge length far from inclusions and jaw edges."""
-    inclusion_size: Positive = 1.6e-3
+    inclusion_size: Positive = 2.6e-3
     """Edge length at inclusions; a thin wall gets smaller ones by itself."""
     edge_size: Positive | None = None
-    """Edge length at the edges of the jaws; null means 0.75 of size."""
+    """Edge length at the edges of the jaws; null means two thirds of size."""
     jaw: tuple[Positive, Positive] | None = None
     """Columns and rows of the jaws, centred on the block; null means jaws that cover the block."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.5

@@ -11,7 +11,7 @@ from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.solid import Inclusion
 
 Array = np.ndarray
-EDGE_SHARE = 0.75
+EDGE_SHARE = 2 / 3
 """Element size at the edges of the jaws over that far away, where none is given."""
 MOST_CELLS = 60
 """Cells of the background grid along the longest side."""

@@ -1,0 +1,168 @@
+"""The cut of deformed quadratic tetrahedra by a plane across an axis, in which no element needs to end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.results import FieldFrame
+
+Array = np.ndarray
+
+FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
+"""Nodes of the faces of a quadratic tetrahedron, as quadratic triangles seen from outside, in the order of VTK."""
+_TURNED = [0, 2, 1, 5, 4, 3]
+QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""Corners of the straight triangles in a quadratic triangle."""
+_EIGHTHS = np.array(
+    [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5], [4, 9, 5, 6]]
+)
+"""Corners of the straight tetrahedra in a quadratic tetrahedron."""
+EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+FACE_EDGES = EDGES[:3]
+"""Corners at the ends of the edges of a tetrahedron and of a triangle."""
+PARTS = 4
+"""Straight parts, a power of two, in which a curved edge is drawn."""
+BEYOND_NODES = 0.15
+"""How far a curved element may reach beyond its nodes, over its size; a parabola through three values overshoots by an eighth."""
+SLIVER = 1e-4
+"""Triangles thinner than this part of the block are left out: nobody sees the gap."""
+OUTER = -1
+"""Stands for the region beyond the boundary."""
+
+
+@dataclass(frozen=True)
+class PlaneCut:
+    """What a plane shows of a deformed body.
+
+    Attributes
+    ----------
+    triangles : (T, 3, 2) corners in m, along the two other axes in their order
+    values : (T, 3) at the corners
+    segments : (S, 2, 2) ends in m of the pieces of the outline and of the interfaces
+    between : (S, 2) regions on both sides of each piece, the lower first; ``OUTER`` beyond the boundary
+    """
+
+    triangles: Array
+    values: Array
+    segments: Array
+    between: Array
+
+    def areas(self) -> Array:
+        """Areas (T,) in m^2."""
+        return np.abs(np.linalg.det(self.triangles[:, 1:] - self.triangles[:, :1])) / 2
+
+
+def deformed(frame: FieldFrame) -> Array:
+    """Deformed nodes (n, 3) in m."""
+    return frame.points + frame.point_data["displacement [m]"]
+
+
+def regions_of(frame: FieldFrame) -> Array:
+    """Region (E,) of every element: 0 is the tissue, k the inclusion k."""
+    count = len(frame.cells["tetra10"])
+    return np.asarray(frame.cell_data.get("region [1]", np.zeros(count))).ravel().round().astype(int)
+
+
+def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> PlaneCut:
+    """The cut where the deformed coordinate ``axis`` is ``level`` in m, with nodal ``values`` (n,) interpolated on it."""
+    nodes, others = deformed(frame), [k for k in range(3) if k != axis]
+    carried = np.column_stack([nodes[:, axis] - level, nodes[:, others], values])
+    elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
+    cut = _cut_tetrahedra(_divided(carried, _crossed(carried, elements)))
+    pieces, number = _cut_triangles(_divided(carried[:, :3], faces))
+    longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
+    return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[number // PARTS**2])
+
+
+def _crossed(carried: Array, elements: Array) -> Array:
+    """The elements that the plane may pass: between their nodes a curved one may reach a little farther than these."""
+    side = carried[elements, 0]
+    beyond = BEYOND_NODES * np.ptp(side, axis=1)
+    return elements[(side.min(axis=1) < beyond) & (side.max(axis=1) >= -beyond)]
+
+
+def _divided(carried: Array, elements: Array) -> Array:
+    """What is carried (n, c) at the corners of small straight simplices (S, d + 1, c) in quadratic ones (E, 6 or 10)."""
+    flat = elements.shape[1] == 6
+    corners = _TRIANGLES if flat else _TETRAHEDRA
+    shapes = _quadratic(corners, FACE_EDGES if flat else EDGES)
+    return np.einsum("pka,eac->epkc", shapes, carried[elements]).reshape(-1, corners.shape[1], carried.shape[1])
+
+
+def _quadratic(corners: Array, edges: Sequence[tuple[int, int]]) -> Array:
+    """Quadratic shape functions, corners first, at barycentric coordinates (..., d + 1)."""
+    middles = [4 * corners[..., i] * corners[..., j] for i, j in edges]
+    return np.concatenate([corners * (2 * corners - 1), np.stack(middles, axis=-1)], axis=-1)
+
+
+def _parts(edges: Sequence[tuple[int, int]], children: Array) -> Array:
+    """Barycentric coordinates (P, d + 1, d + 1) of the corners of the parts of a simplex, halved as often as PARTS needs."""
+    corners = np.eye(children.shape[1])[None]
+    for _ in range(int(np.log2(PARTS))):
+        middles = np.stack([(corners[:, i] + corners[:, j]) / 2 for i, j in edges], axis=1)
+        corners = np.concatenate([corners, middles], axis=1)[:, children].reshape(-1, *corners.shape[1:])
+    return corners
+
+
+def interfaces(frame: FieldFrame) -> tuple[Array, Array]:
+    """Faces (F, 6) on the boundary or between regions, and the regions (F, 2) on both sides, the lower first.
+
+    They are seen from outside the region with the higher number.
+    """
+    faces = frame.cells["tetra10"][:, FACES].reshape(-1, 6)
+    owners = np.repeat(regions_of(frame), len(FACES))
+    order = np.lexsort(np.sort(faces[:, :3], axis=1).T)
+    ranked = np.sort(faces[order, :3], axis=1)
+    same = np.append((ranked[1:] == ranked[:-1]).all(axis=1), False)
+    second = np.append(False, same[:-1])
+    others = np.full(len(order), OUTER)
+    others[:-1][same[:-1]] = owners[order[1:]][same[:-1]]
+    mine = owners[order]
+    kept = ~second & (mine != others)
+    both = np.sort(np.column_stack([mine, others])[kept], axis=1)
+    found, inward = faces[order[kept]], mine[kept] < others[kept]
+    found[inward] = found[inward][:, _TURNED]
+    return found, both
+
+
+def _cut_tetrahedra(simplices: Array) -> Array:
+    """Triangles (T, 3, c) in which tetrahedra (n, 4, c) are cut where their first coordinate is 0: one or two of each."""
+    above, ordered = _by_side(simplices)
+    found = []
+    for count, first, rest in ((3, 0, (1, 2, 3)), (1, 3, (0, 1, 2))):
+        chosen = ordered[above == count]
+        found.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
+    a, b, c, d = np.moveaxis(ordered[above == 2], 1, 0)
+    corners = [_crossing(*ends) for ends in ((a, c), (a, d), (b, d), (b, c))]
+    found += [np.stack([corners[k] for k in chosen], axis=1) for chosen in ((0, 1, 2), (0, 2, 3))]
+    return np.concatenate(found)
+
+
+def _cut_triangles(simplices: Array) -> tuple[Array, Array]:
+    """Segments (S, 2, c) in which triangles (n, 3, c) are cut where their first coordinate is 0, and the triangle of each."""
+    above, ordered = _by_side(simplices)
+    found = []
+    for count, first, rest in ((2, 0, (1, 2)), (1, 2, (0, 1))):
+        chosen = ordered[above == count]
+        found.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
+    return np.concatenate(found), np.concatenate([np.flatnonzero(above == count) for count in (2, 1)])
+
+
+def _by_side(simplices: Array) -> tuple[Array, Array]:
+    """Number (n,) of corners on the upper side, on which 0 lies, and the corners with these last."""
+    above = simplices[:, :, 0] >= 0
+    order = np.argsort(above, axis=1, kind="stable")
+    return above.sum(axis=1), np.take_along_axis(simplices, order[:, :, None], axis=1)
+
+
+def _crossing(first: Array, second: Array) -> Array:
+    """What is carried (n, c) where edges cross the plane."""
+    share = first[:, :1] / (first[:, :1] - second[:, :1])
+    return (1 - share) * first + share * second
+
+
+_TRIANGLES, _TETRAHEDRA = _parts(FACE_EDGES, QUARTERS), _parts(EDGES, _EIGHTHS)

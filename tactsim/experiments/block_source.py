@@ -1,0 +1,135 @@
+"""Where the mesh of a block comes from: made of tetrahedra, built of cells, or read from a file."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import InputError
+from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.curving import assembled
+from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
+from tactsim.mesh.reading import read_mesh
+from tactsim.mesh.solid import Inclusion
+from tactsim.mesh.structured_block import morphed_block, structured_block
+from tactsim.units import FrozenModel, format_quantity
+
+Array = np.ndarray
+Size = tuple[float, float, float]
+FITS = 1e-6
+"""Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
+
+
+@dataclass(frozen=True)
+class SourcedBlock:
+    """A mesh of a block, the hash of its content, and where it comes from in words."""
+
+    block: BlockMesh
+    content: str
+    origin: str
+
+
+class TetrahedraSource(BlockMeshSettings):
+    """Tetrahedra that follow the inclusions, made once and kept."""
+
+    kind: Literal["tetrahedra"] = "tetrahedra"
+
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+        """The mesh of a block of this size in m, shipped, from the cache, or made now."""
+        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
+        stored = stored_block_mesh(size, inclusions, settings)
+        return SourcedBlock(stored.block, stored.content, stored.origin)
+
+
+class LayersSource(BlockMeshSettings):
+    """Layers of cells around one sphere or ellipsoid: lumps moved or turned have meshes of one topology."""
+
+    kind: Literal["layers"]
+
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+        """The mesh of a block of this size in m around its only inclusion."""
+        if len(inclusions) != 1:
+            raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
+        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
+        block = morphed_block(size, inclusions[0], settings)
+        return SourcedBlock(block, content_hash(block.mesh), "built in layers")
+
+
+class StructuredSource(FrozenModel):
+    """A grid of equal cells, six tetrahedra each; an inclusion takes those whose centre lies in it, so that it is ragged."""
+
+    kind: Literal["structured"]
+    cells: tuple[Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)]]
+    """Number of cells along x, y and z."""
+
+    @property
+    def least_gap(self) -> float:
+        """Least distance in m between inclusions, and from faces."""
+        return 0.0
+
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+        """The mesh of a block of this size in m."""
+        block = structured_block(size, self.cells, inclusions)
+        for number, volume in enumerate(block.volumes[:, 0]):
+            if volume == 0:
+                raise InputError(
+                    f"mesh.cells {list(self.cells)} are too coarse: no element lies in {block.region_names[number]}; "
+                    "take more cells or mesh.kind: tetrahedra"
+                )
+        return SourcedBlock(block, content_hash(block.mesh), "structured")
+
+
+class FileSource(FrozenModel):
+    """A mesh made by another program, for the block and the inclusions that the case describes."""
+
+    kind: Literal["file"]
+    path: str
+    """Any file of tetrahedra that meshio reads."""
+    unit: Literal["m", "cm", "mm", "um"]
+    """Unit of its coordinates."""
+    regions: dict[str, Annotated[int, Field(ge=0)]] | None = None
+    """Region of each tag: 0 is the tissue, k the inclusion k counted from 1. Tags are whole numbers or names of groups."""
+    tag: str | None = None
+    """Name of the cell data with the tags; by default the first usual one in the file."""
+
+    @property
+    def least_gap(self) -> float:
+        """Least distance in m between inclusions, and from faces."""
+        return 0.0
+
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+        """The mesh in the file, checked against the block and the number of inclusions."""
+        started = time.perf_counter()
+        numbered = None if self.regions is None else {_tag(name): region for name, region in self.regions.items()}
+        mesh = read_mesh(self.path, numbered, unit=self.unit, tag=self.tag)
+        count, expected = int(mesh.regions.max()) + 1, len(inclusions) + 1
+        if count != expected:
+            raise InputError(
+                f"{self.path} has {count} regions, the case has {expected}: the tissue and {len(inclusions)} inclusions; "
+                "map every tag in mesh.regions"
+            )
+        extent, wanted = np.stack([mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)]), np.stack([np.zeros(3), size])
+        if np.abs(extent - wanted).max() > FITS * max(size):
+            low, high = ([format_quantity(float(v), "m") for v in row] for row in extent)
+            raise InputError(
+                f"{self.path} spans {', '.join(low)} to {', '.join(high)}; the block spans 0 to "
+                f"{', '.join(format_quantity(v, 'm') for v in size)}; is mesh.unit right?"
+            )
+        surfaces = Surfaces(np.asarray(size, float), [inclusion.solids(np.asarray(size, float)) for inclusion in inclusions])
+        content, seconds = content_hash(mesh), time.perf_counter() - started
+        made = assembled(mesh, surfaces, inclusions, key=f"file-{content}", seconds=seconds, straightened=0, fitting=False)
+        return SourcedBlock(made, content, f"file {self.path}")
+
+
+def _tag(name: str) -> int | str:
+    """A whole number if the name is one."""
+    return int(name) if name.lstrip("-").isdigit() else name
+
+
+AnyBlockSource = Annotated[TetrahedraSource | LayersSource | StructuredSource | FileSource, Field(discriminator="kind")]
