@@ -1,6 +1,6 @@
 """Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
 
-python benchmarks/report.py [--readme]
+python benchmarks/report.py [--readme] [--peers]
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from pathlib import Path
 
 import assembly
 import commands
+import grasp
+import peers
 import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
@@ -47,17 +49,38 @@ def table(figures: dict[str, dict[str, float]]) -> str:
             (f"`{name}.yaml`", "under 120 s", f"{job[f'{name}_seconds']:.1f} s (exit {job[f'{name}_exit_code']:.0f})")
             for name in commands.CASES[1:]
         ),
+        (
+            f"`grasp_lump_icf.yaml`, {figures['grasp']['unknowns']:.0f} unknowns",
+            "under 30 s, 2 GB",
+            f"{figures['grasp']['seconds']:.1f} s, {figures['grasp']['peak_megabytes'] / 1000:.2f} GB",
+        ),
+        *_against_peers(figures.get("peers")),
     ]
     lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
     return "\n".join([*lines, "", f"On {os.cpu_count()} cores, Python {platform.python_version()}, {platform.machine()}."])
+
+
+def _against_peers(peers: dict[str, float] | None) -> list[tuple[str, str, str]]:
+    """Rows of the comparison with FElupe, if it was asked for."""
+    if peers is None:
+        return []
+    asked = {43245: "3.3 times", 116487: "4 times"}
+    rows = [
+        (f"block of {size} displacement unknowns, faster than FElupe by", times, f"{peers[f'{size}_ratio']:.1f} times")
+        for size, times in asked.items()
+    ]
+    agreement = peers["agreement_largest_difference"]
+    return [*rows, ("reaction and nine pressures, difference from FElupe, both mixed", "0.1 %", f"{100 * agreement:.4f} %")]
 
 
 def main() -> None:
     """Measure, print, and on request rewrite the table of the README."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--readme", action="store_true", help="write the table into README.md")
+    parser.add_argument("--peers", action="store_true", help="also solve one block with other programs (minutes)")
     arguments = parser.parse_args()
-    figures = {"assembly": assembly.measure(), "viscoelasticity": viscoelasticity.measure(), "commands": commands.measure()}
+    parts = (assembly, viscoelasticity, commands, grasp, *((peers,) if arguments.peers else ()))
+    figures = {part.__name__: part.measure() for part in parts}
     text = table(figures)
     sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
     if arguments.readme:

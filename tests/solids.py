@@ -72,12 +72,17 @@ def solve_near(
 
 
 def first_piola_kirchhoff(body: Body, solved: Equilibrium) -> Array:
-    """P at the volume points of a body of one material in Pa, shape (3, 3, E, Q)."""
-    return body.materials[0].first_piola_kirchhoff(solved.kinematics.F, body.pressure(solved.unknowns))
+    """Nominal stress at the volume points in Pa, shape (3, 3, E, Q)."""
+    F, pressure = solved.kinematics.F, body.pressure(solved.unknowns)
+    stress = np.empty_like(F)
+    for region, material in enumerate(body.materials):
+        mine = body.regions == region
+        stress[:, :, mine] = material.first_piola_kirchhoff(F[:, :, mine], pressure[mine])
+    return stress
 
 
 def cauchy_stress(body: Body, solved: Equilibrium) -> Array:
-    """P F^T / J at the volume points of a body of one material in Pa, shape (3, 3, E, Q)."""
+    """P F^T / J at the volume points in Pa, shape (3, 3, E, Q)."""
     return np.einsum("iJeq,kJeq->ikeq", first_piola_kirchhoff(body, solved), solved.kinematics.F) / solved.kinematics.J
 
 

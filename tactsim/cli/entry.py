@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import traceback
 from collections.abc import Sequence
 from typing import NoReturn
@@ -32,6 +33,7 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns its exit code; ``arguments`` default to those of the process."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads and MKL's spin on the same cores
     debug = False
     try:
         parsed = _parser().parse_args(arguments)

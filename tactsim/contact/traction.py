@@ -150,7 +150,7 @@ class ContactPair:
         coupling = limit_slope * direction[:, None] * slope[None, :]
         at_limit = np.where(slips, limit, 0.0) + limit_slope * (pressure - weight)
         tangential = np.where(slips, at_limit * direction, np.where(sticks, trial, 0.0))
-        derivative = normal[:, None] * slope[None, :] + weight * hessian + tangential_slope + coupling
+        derivative = normal[:, None] * slope[None, :] + weight * hessian + (tangential_slope + coupling)
         return ContactTraction(gap, pressure, tangential, normal, points, derivative, coupling)
 
     def advanced(self, now: ContactTraction, step: Array) -> ContactIterate:

@@ -56,7 +56,7 @@ class GraspModel:
         offsets: Array,
     ):
         self.mesh, self.jaws, self.facets = mesh, dict(zip(SIDES, jaws, strict=True)), facets
-        self.space = TaylorHood(mesh.nodes, mesh.elements, "solid")
+        self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
         self.body = Body(self.space, materials, mesh.regions)
         points = {side: self.space.surface_points(facets[side]) for side in SIDES}
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}

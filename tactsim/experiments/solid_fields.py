@@ -21,14 +21,15 @@ def solid_frame(
 ) -> FieldFrame:
     """Fields of a state; ``time`` stands in the index.
 
-    The pressure is the mean stress, compression positive. ``isochoric`` (6, E, Q) is the relaxed isochoric stress in Pa, whose
-    trace in the deformed state counts to it.
+    The pressure is the mean stress, compression positive; where regions meet, the mean of theirs. ``isochoric`` (6, E, Q) is the
+    relaxed isochoric stress in Pa, whose trace in the deformed state counts to it.
     """
     u, p = body.space.split(state.unknowns)
-    pressure = np.zeros(len(u))
-    pressure[: len(p)] = -p
+    pressure, corners = np.zeros(len(u)), body.space.pressure_corners
+    count = body.space.corner_count
+    pressure[:count] = -np.bincount(corners, p) / np.bincount(corners)
     if isochoric is not None:
-        pressure[: len(p)] -= corner_means(body, mesh, mean_stress(body, state.kinematics, isochoric))
+        pressure[:count] -= corner_means(body, mesh, mean_stress(body, state.kinematics, isochoric))
     pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES]].mean(axis=2)
     return FieldFrame(
         time=time,

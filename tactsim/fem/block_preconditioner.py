@@ -135,9 +135,9 @@ def pressure_mass(body: Body) -> csr_matrix:
     """Mass matrix of the pressures over the shear modulus, in m^3/Pa, shape (n_corner, n_corner)."""
     values, space = body.points.pressure_values, body.space
     blocks = np.einsum("e,eq,qv,qw->evw", 1 / _moduli(body), body.points.weights, values, values)
-    corners = space.elements[:, : space.dim + 1]
-    rows, columns = np.broadcast_arrays(corners[:, :, None], corners[:, None, :])
-    return csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(space.corner_count,) * 2)
+    own = space.pressures
+    rows, columns = np.broadcast_arrays(own[:, :, None], own[:, None, :])
+    return csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(len(space.pressure_corners),) * 2)
 
 
 def dilatation(body: Body) -> bsr_matrix:

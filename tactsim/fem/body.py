@@ -83,7 +83,7 @@ class Body:
     @cached_property
     def pattern(self) -> Pattern:
         """Sparse pattern of the tangent."""
-        return build_pattern(self.space.elements, self.space.dim, self.space.corner_count)
+        return build_pattern(self.space.elements, self.space.dim, self.space.pressures)
 
     def kinematics(self, unknowns: Array) -> Kinematics:
         """Deformation at the quadrature points."""
@@ -97,7 +97,7 @@ class Body:
     def pressure(self, unknowns: Array) -> Array:
         """Pressure unknown (tension positive) at the quadrature points in Pa, shape (E, Q)."""
         _, p = self.space.split(unknowns)
-        return np.einsum("qv,ev->eq", self.points.pressure_values, p[self.space.elements[:, : self.space.dim + 1]])
+        return np.einsum("qv,ev->eq", self.points.pressure_values, p[self.space.pressures])
 
     def energy_slopes(self, state: Kinematics, *, second: bool) -> Array:
         """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear.
@@ -155,6 +155,7 @@ class Body:
         points = self.points
         return (
             self.space.elements,
+            self.space.pressures,
             points.gradients,
             points.hoop,
             points.weights,

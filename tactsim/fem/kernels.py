@@ -92,7 +92,7 @@ def _scatter(blocks, nodes, pressure_rows, indptr, place, data):  # type: ignore
             for v in range(corners):
                 data[start + place[a, width + v]] += B[i, a, v]
     for v in range(corners):
-        start = indptr[pressure_rows + nodes[v]]
+        start = indptr[pressure_rows[v]]
         for b in range(width):
             at = start + place[width + v, b]
             for k in range(dim):
@@ -139,7 +139,7 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
     @numba.njit(cache=True, parallel=True)
     def residual(u, p, tables, W, past, order, starts, out):  # type: ignore[no-untyped-def]
         """Internal forces, then volume constraints, added to ``out``; ``past`` (6, E, Q), or (6, 0, 0) if there is none."""
-        elements, gradients, hoop, weights, shape_p, linear, compliance = tables
+        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
         for color in range(starts.size - 1):
             first, last = starts[color], starts[color + 1]
             for task in numba.prange((last - first + BLOCK - 1) // BLOCK):
@@ -149,7 +149,7 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
                     nodes = elements[e]
                     for q in range(weights.shape[1]):
                         _deform(entries, u, nodes, gradients[e, q], hoop[e, q], g, F)
-                        pressure, weight = _pressure(p, nodes, shape_p[q]), weights[e, q]
+                        pressure, weight = _pressure(p, pressures[e], shape_p[q]), weights[e, q]
                         change = point_stress(F, W[:, e, q], linear[e], work, cof)
                         if past.shape[1]:
                             add_past_stress(F, past[:, e, q], linear[e], work)
@@ -161,7 +161,7 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
                                     out[nodes[a] * dim + i] += stress * g[i, j, a]
                         change = weight * (change - compliance[e] * pressure)
                         for v in range(corners):
-                            out[u.size + nodes[v]] += change * shape_p[q, v]
+                            out[u.size + pressures[e, v]] += change * shape_p[q, v]
 
     return residual
 
@@ -172,7 +172,7 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
     @numba.njit(cache=True, parallel=True, fastmath={"contract", "reassoc", "nsz"})
     def tangent(u, p, tables, W, past, order, starts, indptr, offsets, data):  # type: ignore[no-untyped-def]
         """Entries of the tangent, added to ``data``."""
-        elements, gradients, hoop, weights, shape_p, linear, compliance = tables
+        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
         for color in range(starts.size - 1):
             first, last = starts[color], starts[color + 1]
             for task in numba.prange((last - first + BLOCK - 1) // BLOCK):
@@ -185,7 +185,7 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
                     K[:], B[:], D[:] = 0.0, 0.0, 0.0
                     for q in range(weights.shape[1]):
                         _deform(entries, u, nodes, gradients[e, q], hoop[e, q], g, F)
-                        pressure, weight = _pressure(p, nodes, shape_p[q]), weights[e, q]
+                        pressure, weight = _pressure(p, pressures[e], shape_p[q]), weights[e, q]
                         slopes = (W[0, e, q], W[1, e, q], W[2, e, q], W[3, e, q], W[4, e, q])
                         point_tangent(F, slopes, linear[e], pressure, work, cof, A)
                         if past.shape[1]:
@@ -195,6 +195,6 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
                         for v in range(corners):
                             for x in range(corners):
                                 D[v, x] -= weight * compliance[e] * shape_p[q, v] * shape_p[q, x]
-                    _scatter((K, B, D), nodes, u.size, indptr, offsets[e], data)
+                    _scatter((K, B, D), nodes, u.size + pressures[e], indptr, offsets[e], data)
 
     return tangent

@@ -109,7 +109,7 @@ class Problem:
         self.constraints = Constraints(fixed, body.pattern)
         self.solver = solver or direct_solver()
         self.options = options or NewtonOptions()
-        self._volume_scale = body.points.weights.sum() / body.space.corner_count
+        self._volume_scale = body.points.weights.sum() / len(body.space.pressure_corners)
         self._noise = ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim)
 
     def solve(

@@ -42,14 +42,13 @@ class Pattern:
         return np.searchsorted(keys, rows.astype(np.int64) * self.size + columns)
 
 
-def build_pattern(elements: Array, dim: int, corner_count: int) -> Pattern:
-    """Pattern of Taylor-Hood elements (E, A) of quadratic nodes, corners first, with ``dim`` displacement components."""
+def build_pattern(elements: Array, dim: int, pressures: Array) -> Pattern:
+    """Pattern of Taylor-Hood elements (E, A) of quadratic nodes with ``dim`` displacement components, and pressures (E, V)."""
     node_count = int(elements.max()) + 1
-    size = node_count * dim + corner_count
-    corners = elements[:, : dim + 1]
+    size = node_count * dim + int(pressures.max()) + 1
     unknowns = (elements[:, :, None] * dim + np.arange(dim)).reshape(len(elements), -1)
-    indptr, indices = _csr_structure(np.hstack([unknowns, node_count * dim + corners]), size)
-    leading = np.hstack([elements * dim, node_count * dim + corners])
+    indptr, indices = _csr_structure(np.hstack([unknowns, node_count * dim + pressures]), size)
+    leading = np.hstack([elements * dim, node_count * dim + pressures])
     offsets = np.empty((len(elements), leading.shape[1], leading.shape[1]), np.int32)
     _locate(leading, indptr, indices, offsets)
     order, starts = _color(elements, node_count)

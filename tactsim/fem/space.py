@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -60,18 +61,21 @@ class SurfacePoints:
 class TaylorHood:
     """Displacement P2 (nodes), pressure P1 (corner nodes, numbered first).
 
-    Unknowns: ``u[node, component]`` flattened first, then one pressure per corner node.
+    Unknowns: ``u[node, component]`` flattened first, then the pressures: one per corner node or, with ``regions``, one per corner
+    node and region that it belongs to, because the mean stress jumps where stiff and soft tissue meet.
 
     Attributes
     ----------
     nodes : (n, d) reference coordinates in m; axisymmetric ones are (r, z)
     elements : (E, A) node numbers, corners first
     measure : what a volume means: "axisymmetric", "plane_strain" or "solid"
+    regions : (E,) numbers; None means that the pressure is continuous everywhere
     """
 
     nodes: Array
     elements: Array
     measure: Measure
+    regions: Array | None = None
 
     def __post_init__(self) -> None:
         """Check shapes that everything else relies on."""
@@ -92,8 +96,26 @@ class TaylorHood:
 
     @property
     def corner_count(self) -> int:
-        """Number of corner nodes, which carry the pressure."""
+        """Number of corner nodes."""
         return int(self.elements[:, : self.dim + 1].max()) + 1
+
+    @property
+    def pressures(self) -> Array:
+        """Numbers (E, V) of the pressures at the corners of each element."""
+        return self._numbering[0]
+
+    @property
+    def pressure_corners(self) -> Array:
+        """Corner node (n_pressure,) of each pressure."""
+        return self._numbering[1]
+
+    @cached_property
+    def _numbering(self) -> tuple[Array, Array]:
+        corners, count = np.ascontiguousarray(self.elements[:, : self.dim + 1]), self.corner_count
+        if self.regions is None:
+            return corners, np.arange(count)
+        keys, numbers = np.unique(corners + count * self.regions.astype(np.int64)[:, None], return_inverse=True)
+        return np.ascontiguousarray(numbers.reshape(corners.shape).astype(self.elements.dtype)), keys % count
 
     @property
     def displacement_size(self) -> int:
@@ -103,16 +125,16 @@ class TaylorHood:
     @property
     def size(self) -> int:
         """Number of all unknowns."""
-        return self.displacement_size + self.corner_count
+        return self.displacement_size + len(self.pressure_corners)
 
     def split(self, unknowns: Array) -> tuple[Array, Array]:
-        """Displacement (n, d) in m and pressure (n_corner,) in Pa as views of the unknowns."""
+        """Displacement (n, d) in m and pressure (n_pressure,) in Pa as views of the unknowns."""
         return unknowns[: self.displacement_size].reshape(-1, self.dim), unknowns[self.displacement_size :]
 
     def element_unknowns(self) -> Array:
         """Unknown numbers (E, A d + V) of each element: displacements node by node, then pressures."""
         u = (self.elements[:, :, None] * self.dim + np.arange(self.dim)).reshape(len(self.elements), -1)
-        return np.hstack([u, self.displacement_size + self.elements[:, : self.dim + 1]])
+        return np.hstack([u, self.displacement_size + self.pressures])
 
     def volume_points(self, order: int | None = None) -> VolumePoints:
         """Tabulate the shape functions at the points of a rule of the given degree."""

@@ -1,0 +1,41 @@
+"""The default grasp as a user runs it: seconds from the case file to the taxels, peak memory, Newton iterations.
+
+python benchmarks/grasp.py [CASE ...]
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+MEBIBYTE = 1024
+"""Kibibytes, the unit of the peak memory of a child."""
+
+
+def measure(case: str = "grasp_lump_icf") -> dict[str, float]:
+    """Seconds of the whole command and of its parts, peak memory in MB of the process, unknowns and iterations."""
+    with tempfile.TemporaryDirectory() as place:
+        command = ["run", str(ROOT / "cases" / f"{case}.yaml"), "--quiet", "--out", f"{place}/out"]
+        begin = time.perf_counter()
+        done = subprocess.run([sys.executable, "-m", "tactsim.cli", *command], cwd=ROOT, check=False, capture_output=True)
+        seconds = time.perf_counter() - begin
+        result = json.loads((Path(place) / "out" / "result.json").read_text())
+    return {
+        "seconds": seconds,
+        "exit_code": done.returncode,
+        "peak_megabytes": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / MEBIBYTE,
+        "unknowns": result["quantities"]["unknowns"]["value"],
+        "steps": len(result["steps"]),
+        "iterations": sum(step["iterations"] for step in result["steps"]),
+        **{f"{name}_seconds": value for name, value in result["timing"].items()},
+    }
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps({case: measure(case) for case in sys.argv[1:] or ["grasp_lump_icf"]}, indent=2) + "\n")

@@ -1,0 +1,115 @@
+"""A ball in a large block (Eshelby 1957) and a pressurised artery (thick tube), on meshes that follow their surfaces.
+
+Ball and tissue incompressible, remote compression S: with Gam the ratio of shear moduli, f = Gam / (1 + 0.4 (Gam - 1)), and the
+axial stress inside is S (1/3 + 2/3 f), the same everywhere (verification.md, 5.1). Tube: 2.1 there, VM56's closed form.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from solids import cauchy_stress, held, on_plane
+
+from tactsim.fem.body import Body
+from tactsim.fem.newton import Problem
+from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.solver_choice import solver_for
+from tactsim.fem.space import TaylorHood
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.structured_block import morphed_block
+from tactsim.mesh.tetrahedra import block_mesh
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+RADIUS, SIDE, STRAIN = 1e-3, 24e-3, 1e-3
+AMPLIFICATION, SPREAD = 0.01, 0.02
+"""Demanded of the mean axial stress in the ball, and of its standard deviation over the volume. Single points of the elements at
+the interface depart by up to 20 %, for the strain is of first order there."""
+
+
+def eshelby(ratio):
+    """Axial stress in the ball over the remote one."""
+    return 1 / 3 + 2 / 3 * ratio / (1 + 0.4 * (ratio - 1))
+
+
+def pressed_ball(ratio, size, growth=0.6):
+    """Mean axial stress in the ball over the remote one; its standard and its largest departure from the mean, over the mean."""
+    ball = Sphere(center=(SIDE / 2,) * 3, radius=RADIUS)
+    block = morphed_block(
+        (SIDE,) * 3, ball, BlockMeshSettings(size=SIDE / 5, inclusion_size=size, edge_size=SIDE / 5, growth=growth)
+    )
+    mesh = block.mesh
+    tissue, hard = NeoHookean(c10=500.0), NeoHookean(c10=500.0 * ratio)
+    body = Body(TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions), [tissue, hard], mesh.regions)
+    bottom, top = held(mesh, 2, on_plane(2, 0.0)), held(mesh, 2, on_plane(2, SIDE))
+    middle = np.argmin(np.linalg.norm(mesh.nodes - [SIDE / 2, SIDE / 2, 0.0], axis=1))
+    side = np.argmin(np.linalg.norm(mesh.nodes - [SIDE, SIDE / 2, 0.0], axis=1))
+    problem = Problem(body, np.concatenate([bottom, top, [3 * middle, 3 * middle + 1, 3 * side + 1]]), solver=solver_for(body))
+    guess = np.zeros(body.space.size)
+    guess[top] = -STRAIN * SIDE
+    solved = problem.solve(guess)
+    remote = body.residual(solved.unknowns)[top].sum() / SIDE**2
+    stress = cauchy_stress(body, solved)[2, 2]
+    inside = mesh.regions == 1
+    weights = body.points.weights[inside]
+    mean = (stress[inside] * weights).sum() / weights.sum()
+    spread = np.sqrt(((stress[inside] / mean - 1) ** 2 * weights).sum() / weights.sum())
+    return mean / remote, spread, np.abs(stress[inside] / mean - 1).max()
+
+
+@pytest.mark.parametrize(
+    ("ratio", "size", "growth"),
+    [(2.0, 0.4e-3, 0.3), pytest.param(10.0, 0.25e-3, 0.45, marks=pytest.mark.slow)],
+)
+def test_a_ball_concentrates_the_stress_as_eshelby_says(ratio, size, growth):
+    found, spread, _ = pressed_ball(ratio, size, growth)
+    assert abs(found / eshelby(ratio) - 1) < AMPLIFICATION
+    assert spread < SPREAD
+    wrong = eshelby(1.1 * ratio) if ratio < 5 else eshelby(1.3 * ratio)
+    assert abs(found / wrong - 1) > AMPLIFICATION
+
+
+INNER, OUTER, WALL, TUBE_TOLERANCE = 4e-3, 8e-3, NeoHookean(c10=10e3), 5e-3
+"""Radii in m and material of a vessel; the tolerance is the demanded one."""
+
+
+def closed_form_stretch(pressure):
+    """r / R at the bore under a pressure in Pa (2.1)."""
+
+    def excess(la):
+        lb = np.sqrt(1 + (la**2 - 1) * INNER**2 / OUTER**2)
+        return WALL.shear_modulus * (np.log(la / lb) + (lb**-2 - la**-2) / 2) - pressure
+
+    return brentq(excess, 1.0, 4.0)
+
+
+def pumped_stretch(pressure, steps=2):
+    """Mean r / R of the nodes of the bore of a vessel in tissue a million times softer, its ends held in their planes."""
+    size = (6e-3, 22e-3, 22e-3)
+    vessel = Tube(centre_line=((0.0, 11e-3, 11e-3), (6e-3, 11e-3, 11e-3)), inner_radius=INNER, wall=OUTER - INNER)
+    block = block_mesh(size, [vessel], BlockMeshSettings(size=4e-3, inclusion_size=2.4e-3, edge_size=4e-3))
+    mesh, tissue = block.mesh, NeoHookean(c10=1e-6 * WALL.c10)
+    body = Body(TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions), [tissue, WALL], mesh.regions)
+    ends = np.concatenate([held(mesh, 0, on_plane(0, 0.0)), held(mesh, 0, on_plane(0, size[0]))])
+    corners = np.flatnonzero((mesh.nodes[:, 1] == 0) & (mesh.nodes[:, 2] == 0))
+    problem = Problem(body, np.concatenate([ends, 3 * corners + 1, 3 * corners + 2]))
+    unknowns, bore = np.zeros(body.space.size), block.facets["lumen:1"]
+    for step in range(1, steps + 1):
+        load = FollowerPressure(body.space, bore, body.pattern, pressure * step / steps)
+        unknowns = problem.solve(unknowns, loads=[load]).unknowns
+    nodes = np.unique(bore)
+    before, after = mesh.nodes[nodes, 1:], (mesh.nodes + body.space.split(unknowns)[0])[nodes, 1:]
+    middle = after.mean(axis=0)
+    area = np.linalg.norm(after - middle, axis=1).mean()
+    return area / np.linalg.norm(before - 11e-3, axis=1).mean()
+
+
+def test_a_vessel_widens_as_the_thick_tube_does():
+    pressure = 0.4 * WALL.shear_modulus
+    found, exact = pumped_stretch(pressure), closed_form_stretch(pressure)
+    assert exact > 1.3
+    assert abs(found - exact) < TUBE_TOLERANCE * (exact - 1)
+    assert abs(found - closed_form_stretch(1.02 * pressure)) > TUBE_TOLERANCE * (exact - 1)

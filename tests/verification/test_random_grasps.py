@@ -1,0 +1,62 @@
+"""Fifty random grasps end well or are refused: lumps of 2 to 7 mm anywhere in a block 20 mm high, closed by 0 to 2 mm."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.errors import InputError
+from tactsim.experiments.grasp import Grasp
+
+COUNT, SIZE = 50, (40e-3, 40e-3, 20e-3)
+QUICK = 3
+"""Of these, how many run in CI."""
+COARSE = {"kind": "tetrahedra", "size": 8e-3, "edge_size": 6e-3, "growth": 1.0, "stop_energy": 20.0}
+FINE_ENOUGH = 0.45
+"""Element size at a lump over its radius, at most 3 mm."""
+
+
+def random_grasp(number):
+    """The case of a number and what it is called; a lump may stick out of the block."""
+    draw = np.random.default_rng([2026, number])
+    radius = draw.uniform(2e-3, 7e-3)
+    centre = draw.uniform(0.0, 1.0, 3) * np.array(SIZE)
+    if draw.uniform() < 0.8:  # most of them inside, the others mostly refused
+        centre = radius + draw.uniform(0.0, 1.0, 3) * (np.array(SIZE) - 2 * radius)
+    tissue = ("icf_stable", "b1a_stable")[number % 2]
+    return {
+        "block": {"size": SIZE, "tissue": tissue},
+        "inclusions": [{"shape": {"kind": "sphere", "center": centre, "radius": radius}, "material": "lump"}],
+        "loading": {
+            "control": "displacement",
+            "pieces": [{"kind": "ramp", "to": max(draw.uniform(0.0, 2e-3), 1e-5), "duration": 1.0}],
+        },
+        "mesh": COARSE | {"inclusion_size": min(3e-3, FINE_ENOUGH * radius)},
+    }
+
+
+def outcome(number):
+    """ "refused" or "converged", the reason, and the result if there is one."""
+    try:
+        result = Grasp.model_validate(random_grasp(number)).run(lambda step: None)
+    except (InputError, ValidationError) as error:
+        return "refused", str(error), None
+    return str(result.status), result.reason, result
+
+
+@pytest.mark.parametrize("number", [n if n < QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(COUNT)])
+def test_a_random_grasp_converges_or_is_refused(number):
+    status, reason, result = outcome(number)
+    if status == "refused":
+        assert "allowed" in reason
+        return
+    assert status == "converged", reason
+    found = {name: quantity.value for name, quantity in result.quantities.items()}
+    closing = random_grasp(number)["loading"]["pieces"][0]["to"]
+    assert found["displacement"] == pytest.approx(closing, rel=1e-9)
+    assert found["max_penetration"] <= 5e-4 * SIZE[2]
+    assert found["min_volume_ratio"] > 0
+    for side in ("upper", "lower"):
+        total = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
+        assert total == pytest.approx(found["reaction_force"], rel=1e-5)
