@@ -32,7 +32,7 @@ def measure(case: str = "grasp_lump_icf") -> dict[str, float]:
         "peak_megabytes": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / MEBIBYTE,
         "unknowns": result["quantities"]["unknowns"]["value"],
         "steps": len(result["steps"]),
-        "iterations": sum(step["iterations"] for step in result["steps"]),
+        "iterations": sum(step["newton_iterations"] for step in result["steps"]),
         **{f"{name}_seconds": value for name, value in result["timing"].items()},
     }
 

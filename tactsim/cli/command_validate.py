@@ -17,9 +17,9 @@ NAME = "validate"
 SUMMARY = "compare with the tables of the thesis"
 DESCRIPTION = """\
 Computes every number of the thesis that its tables (cases/thesis/*.yaml) record, and tells for
-each row whether it is reproduced, reproduced after an erratum, outside by a factor, or an
-assumption. A known deviation does not fail; a row that leaves its recorded state, or is absent,
-does. Simulations are taken from a cache unless --fresh is given.
+each row whether it is reproduced, reproduced after an erratum, outside by a factor, a finding
+above or below a limit, or an assumption. A known deviation does not fail; a row that leaves its
+recorded state, or is absent, does. Simulations are taken from a cache unless --fresh is given.
 """
 EXAMPLES = """\
 examples:

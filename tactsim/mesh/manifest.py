@@ -41,12 +41,23 @@ def shipped_entry(folder: Path, key: str) -> ManifestEntry | None:
     StorageError
         If the manifest is damaged.
     """
+    return next((entry for entry in entries(folder) if entry.key == key), None)
+
+
+def entries(folder: Path) -> tuple[ManifestEntry, ...]:
+    """All entries of a folder's manifest, none if there is no manifest.
+
+    Raises
+    ------
+    StorageError
+        If the manifest is damaged.
+    """
     place = folder / MANIFEST
     try:
         state = place.stat()
     except OSError:
-        return None
-    return next((entry for entry in _entries(place, state.st_mtime_ns) if entry.key == key), None)
+        return ()
+    return _entries(place, state.st_mtime_ns)
 
 
 @lru_cache(maxsize=4)

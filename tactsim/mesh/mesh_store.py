@@ -26,11 +26,11 @@ from tactsim.mesh.curving import assembled
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.manifest import shipped_entry
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.shipped import shipped_folders
 from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
 
 Array = np.ndarray
-SHIPPED = Path("meshes")
 _DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, RuntimeError)
 
 
@@ -54,14 +54,14 @@ def stored_block_mesh(
     inclusions: Sequence[Inclusion] = (),
     settings: BlockMeshSettings | None = None,
     *,
-    shipped: Path = SHIPPED,
+    shipped: Path | None = None,
     cache: Path | None = None,
 ) -> StoredMesh:
     """The block mesh that ``tetrahedra.block_mesh`` makes, made at most once.
 
     Parameters
     ----------
-    shipped : folder of the meshes that come with the cases, with its manifest
+    shipped : folder of the meshes that come with the cases, with its manifest; by default ``shipped.shipped_folders``
     cache : folder of meshes made before; by default the user's cache folder
 
     Raises
@@ -74,12 +74,13 @@ def stored_block_mesh(
     settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
     check_inclusions(extent, inclusions, settings.least_gap)
     key = mesh_key(size, inclusions, settings)
-    entry = shipped_entry(shipped, key)
-    if entry is not None:
-        found = _read(shipped / entry.file, extent, inclusions, key)
-        if found is None or found[1] != entry.content:
-            raise StorageError(f"{shipped / entry.file} is not the mesh that the manifest describes; restore the file")
-        return StoredMesh(*found, "shipped")
+    for folder in shipped_folders() if shipped is None else (shipped,):
+        entry = shipped_entry(folder, key)
+        if entry is not None:
+            found = _read(folder / entry.file, extent, inclusions, key)
+            if found is None or found[1] != entry.content:
+                raise StorageError(f"{folder / entry.file} is not the mesh that the manifest describes; restore the file")
+            return StoredMesh(*found, "shipped")
     place = (cache or cache_folder()) / f"{key}-{mesher_version()}.npz"
     found = _read(place, extent, inclusions, key)
     if found is not None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from tactsim.errors import TactsimError
 from tactsim.validation.evaluator import Inputs
 from tactsim.validation.study import RunOutcome
-from tactsim.validation.table import Assumption, OutsideBy, ReproducedAfter, Row, Table
+from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter, Row, Table
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,8 @@ def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
         return RowOutcome(row, found, True, "assumption", row.state.assumption)
     if found is None:  # the validation of a row lets only an assumption lack its evaluator
         return RowOutcome(row, None, False, "LEFT: nothing to evaluate", "")
+    if isinstance(row.state, Bound):
+        return _finding(row, row.state, found)
     return _deviation(row, row.state, found) if isinstance(row.state, OutsideBy) else _reproduction(row, found)
 
 
@@ -86,3 +88,10 @@ def _deviation(row: Row, state: OutsideBy, found: float) -> RowOutcome:
     held = abs(factor - state.outside_by) <= state.tolerance * state.outside_by
     text = f"outside by {factor:.4g}"
     return RowOutcome(row, found, held, text if held else f"LEFT: {text}, was {state.outside_by:.4g}", state.reason)
+
+
+def _finding(row: Row, state: Bound, found: float) -> RowOutcome:
+    side, limit = ("above", state.above) if state.above is not None else ("below", state.below)
+    held = state.margin(found, row.unit) > 0
+    text = f"{side} {limit}"
+    return RowOutcome(row, found, held, text if held else f"LEFT: was {text}", state.finding)

@@ -10,10 +10,10 @@ from tactsim import __version__
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import RowOutcome, TableOutcome
 from tactsim.validation.loading import LoadedTables
-from tactsim.validation.table import Assumption, OutsideBy, ReproducedAfter
+from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter
 
 HEADER = ("row", "printed", "found", "ratio", "tolerance", "state")
-STATES = ("reproduced", "after an erratum", "outside", "assumption", "left")
+STATES = ("reproduced", "after an erratum", "outside", "finding", "assumption", "left")
 
 
 def terminal_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> str:
@@ -27,7 +27,7 @@ def terminal_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> s
             "  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in cells
         ]
         lines += [f"    {row.row.id}: {row.reason}" for row in outcome.rows if not row.held]
-        lines += [f"  no threshold: {line}" for line in _failures(outcome)] + [""]
+        lines += [f"  did not converge: {line}" for line in _failures(outcome)] + [""]
     counts = [("chapter", "table", "rows", *STATES), *(tuple(map(str, row)) for row in count_rows(loaded, outcomes))]
     widths = [max(len(line[k]) for line in counts) for k in range(len(counts[0]))]
     lines += ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in counts]
@@ -118,6 +118,8 @@ def _cells(outcome: RowOutcome) -> tuple[str, ...]:
 def _tolerance(row: Any) -> str:
     if isinstance(row.state, OutsideBy):
         return f"{row.state.outside_by:.4g} ± {100 * row.state.tolerance:.2g} %"
+    if isinstance(row.state, Bound):
+        return f"> {row.state.above}" if row.state.above is not None else f"< {row.state.below}"
     if row.tolerance is None:
         return "-"
     relative = row.tolerance.relative
@@ -132,10 +134,8 @@ def quantity_text(value: float, unit: str) -> str:
 def _class_of(outcome: RowOutcome) -> str:
     if not outcome.held:
         return "left"
-    for kind, name in ((ReproducedAfter, "after an erratum"), (OutsideBy, "outside"), (Assumption, "assumption")):
-        if isinstance(outcome.row.state, kind):
-            return name
-    return "reproduced"
+    kinds = ((ReproducedAfter, "after an erratum"), (OutsideBy, "outside"), (Bound, "finding"), (Assumption, "assumption"))
+    return next((name for kind, name in kinds if isinstance(outcome.row.state, kind)), "reproduced")
 
 
 def _row_values(outcome: RowOutcome) -> dict[str, Any]:

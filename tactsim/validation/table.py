@@ -64,6 +64,29 @@ class OutsideBy(FrozenModel):
         return self
 
 
+class Bound(FrozenModel):
+    """A finding that is no number: which side of a limit the found number lies on."""
+
+    above: str | float | None = None
+    """What it exceeds, in its unit."""
+    below: str | float | None = None
+    """What it stays under, in its unit."""
+    finding: str = Field(min_length=1)
+    """What that means, and why the limit is where it is."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if (self.above is None) == (self.below is None):
+            raise ValueError("a finding lies either above or below a limit")
+        return self
+
+    def margin(self, found: float, unit: str) -> float:
+        """How far the found number, in SI, lies on the right side; negative on the wrong one."""
+        if self.above is not None:
+            return found - in_si(self.above, unit)
+        return in_si(self.below or 0.0, unit) - found
+
+
 class Assumption(FrozenModel):
     """Nothing to compare: the thesis leaves the number out or contradicts itself."""
 
@@ -71,7 +94,7 @@ class Assumption(FrozenModel):
     """What is assumed and why."""
 
 
-State = Reproduced | ReproducedAfter | OutsideBy | Assumption
+State = Reproduced | ReproducedAfter | OutsideBy | Bound | Assumption
 
 
 class Row(FrozenModel):
@@ -84,7 +107,7 @@ class Row(FrozenModel):
     place: str = Field(min_length=1)
     """Where it stands, or from which printed numbers the errata derive it."""
     printed: str | float | None = None
-    """The number with its unit; a plain number is dimensionless. Only an assumption may do without."""
+    """The number with its unit; a plain number is dimensionless. Only an assumption or a finding may do without."""
     evaluate: SerializeAsAny[Evaluator] | None = None
     """How it is computed here. Only an assumption may do without."""
     tolerance: Tolerance | None = None
@@ -94,7 +117,11 @@ class Row(FrozenModel):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if not isinstance(self.state, Assumption) and (self.printed is None or self.evaluate is None):
+        if isinstance(self.state, Bound):
+            if self.evaluate is None:
+                raise ValueError("a finding needs to be evaluated")
+            self.state.margin(0.0, self.unit)
+        elif not isinstance(self.state, Assumption) and (self.printed is None or self.evaluate is None):
             raise ValueError("only an assumption may lack what is printed or how it is evaluated")
         if isinstance(self.state, Reproduced | ReproducedAfter) != (self.tolerance is not None):
             raise ValueError("a row that is reproduced has a tolerance, any other has none")

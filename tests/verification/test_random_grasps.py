@@ -12,7 +12,7 @@ from tactsim.experiments.grasp import Grasp
 COUNT, SIZE = 50, (40e-3, 40e-3, 20e-3)
 QUICK = 3
 """Of these, how many run in CI."""
-COARSE = {"kind": "tetrahedra", "size": 8e-3, "edge_size": 6e-3, "growth": 1.0, "stop_energy": 20.0}
+COARSE = {"kind": "tetrahedra", "size": 8e-3, "edge_size": 6e-3, "growth": 1.0}
 FINE_ENOUGH = 0.45
 """Element size at a lump over its radius, at most 3 mm."""
 

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from tactsim.errors import InputError, StorageError
 from tactsim.mesh.foreign import read_foreign
 from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
+from tactsim.mesh.shipped import shipped_path
 from tactsim.mesh.solid import Array, Inclusion, Point, Solid, Triangles
 from tactsim.units import Angle
 
@@ -26,7 +27,7 @@ class Surface(Inclusion):
 
     kind: Literal["surface"] = "surface"
     path: str
-    """STL, PLY or OBJ file of triangles."""
+    """STL, PLY or OBJ file of triangles; one of ``meshes/`` is also found where this program is kept."""
     unit: Literal["m", "cm", "mm", "um"]
     """Unit of the coordinates in the file."""
     translation: Point = (0.0, 0.0, 0.0)
@@ -53,7 +54,7 @@ class Surface(Inclusion):
 def _state(path: str) -> tuple[int, int]:
     """What changes when a file is written anew."""
     try:
-        state = Path(path).stat()
+        state = shipped_path(path).stat()
     except OSError as error:
         raise StorageError(f"cannot read {path}: {error.strerror or error}") from None
     return state.st_mtime_ns, state.st_size
@@ -84,7 +85,7 @@ def read_surface(path: str) -> Triangles:
 def _read_surface(path: str, state: tuple[int, int]) -> Triangles:
     if Path(path).suffix.lower() not in FORMATS:
         raise InputError(f"{path}: surfaces are read from {', '.join(FORMATS)} files")
-    mesh = read_foreign(path)
+    mesh = read_foreign(shipped_path(path))
     others = {kind for kind, cells in mesh.cells if kind != "triangle" and len(cells)}
     triangles = [cells for kind, cells in mesh.cells if kind == "triangle"]
     if others or not sum(map(len, triangles)):

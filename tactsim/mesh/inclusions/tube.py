@@ -18,8 +18,8 @@ LARGEST_EXTENSION = 6.0
 """How far a tube may go on beyond its last point to leave the block, in outer radii: a slope of 80 degrees to the face."""
 STEEPEST = 0.4
 """Least sine of the angle between a tube and the face that it leaves through."""
-WALL_SIZE = 2.5
-"""Element size in wall thicknesses: one layer of quadratic elements of a usable shape spans the wall."""
+WALL_SIZE = 3.5
+"""Element size asked for in wall thicknesses: one layer of quadratic elements spans the wall, with edges of about two of them."""
 THINNEST = 0.02
 """Least wall in inner radii: a thinner one is a membrane, which solid elements do not represent."""
 
@@ -52,6 +52,10 @@ class Tube(Inclusion):
     def refine(self, wanted: float) -> float:
         """Element size in m that suits the wall."""
         return min(wanted, WALL_SIZE * self.wall)
+
+    def identity(self) -> str:
+        """Text that changes with the geometry and the elements of the wall."""
+        return f"{super().identity()}-{WALL_SIZE}"
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The filled tube and the empty space in it, both long enough to leave the block where the tube leaves it."""

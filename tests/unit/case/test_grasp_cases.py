@@ -1,0 +1,75 @@
+"""The shipped grasps: each loads anywhere, has its mesh in ``meshes/``, and converges."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactsim.case import load_case
+from tactsim.experiments.block_source import TetrahedraSource
+from tactsim.experiments.grasp_model import SIDES
+from tactsim.mesh.inclusions.surface import read_surface
+from tactsim.mesh.inclusions.triangulated import check_closed
+from tactsim.mesh.manifest import entries
+
+ROOT = Path(__file__).parents[3]
+CASES = sorted((ROOT / "cases").glob("grasp_*.yaml"))
+by_name = pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+MOST_UNKNOWNS = 80_000
+"""A solve of more takes over a quarter of an hour on two cores."""
+
+
+def test_the_figures_of_section_6_have_their_cases():
+    assert {path.stem.removeprefix("grasp_") for path in CASES} >= {
+        *("lump_icf", "artery_b1a", "artery_icf", "artery_pulse", "artery_pressure", "artery_partial"),
+        *("two_lumps", "two_arteries", "stl", "narrow_jaws", "hold", "force"),
+    }
+
+
+@by_name
+def test_the_mesh_is_shipped(path, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)  # from any folder
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    experiment = load_case(path).experiment
+    assert isinstance(experiment.mesh, TetrahedraSource)
+    sourced = experiment.sourced()
+    assert sourced.origin == "shipped"
+    (entry,) = (entry for entry in entries(ROOT / "meshes") if entry.key == sourced.block.key)
+    assert entry.content == sourced.content
+    assert entry.source
+    assert entry.licence == "MIT"
+    assert sourced.block.unknowns < MOST_UNKNOWNS
+
+
+def test_every_shipped_mesh_is_in_the_manifest():
+    listed = [entry.file for entry in entries(ROOT / "meshes")]
+    assert sorted(listed) == sorted(path.name for path in (ROOT / "meshes").glob("*.npz"))
+
+
+def test_the_irregular_lump_is_closed_and_listed(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    vertices, triangles = read_surface("meshes/lump.stl")
+    check_closed(triangles, len(vertices), "lump.stl")
+    assert 500 <= len(triangles) <= 1500
+    assert np.ptp(np.linalg.norm(vertices, axis=1)) > 0.5  # mm: it is no ball
+    digest = hashlib.sha256((ROOT / "meshes" / "lump.stl").read_bytes()).hexdigest()
+    assert digest in (ROOT / "meshes" / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+@by_name
+def test_the_case_converges(path):
+    case = load_case(path)
+    result = case.experiment.run(lambda step: None)
+    assert result.status == "converged", result.reason
+    found = {name: quantity.value for name, quantity in result.quantities.items()}
+    assert found["max_penetration"] <= case.experiment.tolerance
+    assert found["unstable_volume_fraction"] == 0
+    net = np.add(found["jaw_force_upper"], found["jaw_force_lower"])
+    largest = max(abs(found[f"jaw_force_{side}"][2]) for side in SIDES)
+    assert abs(net[2]) <= 2e-3 * largest  # the weak hold, and the lean of an open end under pressure, take the rest
+    if "lumen_pressure" not in found:  # the pressure on one closed end of an artery pushes the block sideways
+        assert np.abs(net).max() <= 1e-4 * largest

@@ -1,0 +1,238 @@
+"""The table of section 6.6: its evaluators on invented grasps, findings that can fail, and one simulated pair."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+from thesis_tables import MANIFEST, TABLE, write_tables
+
+from tactsim.errors import CaseError, InputError, UnknownName
+from tactsim.validation import compare, load_tables
+from tactsim.validation.comparison import compare_row
+from tactsim.validation.evaluator import Inputs
+from tactsim.validation.evaluators.taxel_asymmetry import TaxelAsymmetry
+from tactsim.validation.evaluators.taxel_change import TaxelChange
+from tactsim.validation.evaluators.taxel_contrast import TaxelContrast
+from tactsim.validation.evaluators.taxel_pulse import TaxelPulse
+from tactsim.validation.execution import StudyRunner
+from tactsim.validation.report import count_rows, terminal_report
+from tactsim.validation.study import RunOutcome
+from tactsim.validation.table import Assumption, Bound, Row
+from tactsim.validation.taxel_readings import taxel_history
+
+SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+LOADED = load_tables(SHIPPED, ["section_6_6"])
+TABLE_6_6 = LOADED.tables["section_6_6"]
+FINDING = "state: {above: 100 N/m, finding: a force that is felt}"
+
+
+def grasp(name: str, upper: np.ndarray, lower: np.ndarray | None = None, *, status: str = "converged") -> RunOutcome:
+    """A pretended grasp with forces (steps, rows, columns) in N on its taxels, one step a second, closed to 1 mm."""
+    sides = {"upper": upper, "lower": upper if lower is None else lower}
+    history = {
+        f"taxel_force_{side}_{row + 1}_{column + 1}": tuple(map(float, forces[:, row, column]))
+        for side, forces in sides.items()
+        for row, column in np.ndindex(forces.shape[1:])
+    }
+    history["time"] = tuple(float(step) for step in range(len(upper)))
+    history["displacement"] = tuple(1e-3 * (step + 1) / len(upper) for step in range(len(upper)))
+    return RunOutcome(id=name, case_id=name, status=status, reason="end", quantities={}, history=history, seconds=1)
+
+
+def middle(force: float) -> np.ndarray:
+    """Two steps of a 3 x 3 matrix in N: nothing, then even forces of 1 N and this one in the middle."""
+    forces = np.ones((2, 3, 3))
+    forces[0], forces[1, 1, 1] = 0.0, force
+    return forces
+
+
+def inputs(**runs: np.ndarray) -> Inputs:
+    """A study ``s`` of pretended grasps by name."""
+    return Inputs(studies={"s": tuple(grasp(name, forces) for name, forces in runs.items())})
+
+
+def test_the_table_is_counted() -> None:
+    assert LOADED.faults == ()
+    used = {name for row in TABLE_6_6.rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
+    simulated = {run.id for study in TABLE_6_6.studies for run in study.runs}
+    assert simulated == used, "every run serves a row, every row has its runs"
+
+
+def _runs_of(arguments: dict) -> set[str]:
+    return {name for name in (*arguments.get("runs", ()), *arguments.get("bases", ()), arguments.get("run")) if name}
+
+
+def test_a_history_has_rows_and_columns_in_their_places() -> None:
+    forces = np.arange(12.0).reshape(2, 2, 3)
+    np.testing.assert_array_equal(taxel_history(grasp("a", forces), "lower"), forces)
+    np.testing.assert_array_equal(taxel_history(grasp("a", forces, -forces), "lower"), -forces)
+    with pytest.raises(InputError, match="no taxels"):
+        taxel_history(grasp("a", forces).model_copy(update={"history": {}}), "lower")
+
+
+def change(runs: Sequence[str], which: str, **others: Any) -> TaxelChange:
+    """A change in the study ``s``."""
+    return TaxelChange.model_validate({"study": "s", "runs": tuple(runs), "change": which, **others})
+
+
+def test_the_least_and_the_greatest_change_tell_a_sign() -> None:
+    rising = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.7), d=middle(2.7))
+    turning = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.4), d=middle(2.7))
+    assert change("abcd", "least along").found(rising) == pytest.approx(0.2, rel=1e-12)  # round-off
+    assert change("abcd", "greatest along").found(rising) == pytest.approx(1.0, rel=1e-12)
+    assert change("abcd", "least along").found(turning) < 0
+    assert change("bcd", "least from base", bases=("a",)).found(rising) == pytest.approx(0.5, rel=1e-12)
+    assert change("bc", "greatest from base", bases=("d",)).found(turning) == pytest.approx(-1.2, rel=1e-12)
+    assert change("abcd", "greatest along", taxel=(1, 1)).found(rising) == 0
+
+
+def test_what_the_meshes_differ_by_is_taken_off() -> None:
+    """Plain blocks on the two meshes read 1 and 2 N: the body adds 0.5 N on the first and 0.2 N on the second."""
+    studies = inputs(a=middle(1.5), b=middle(2.2), plain_a=middle(1.0), plain_b=middle(2.0))
+    plain = ("plain_a", "plain_b")
+    assert change("ab", "least along").found(studies) > 0
+    assert change("ab", "least along", bases=plain).found(studies) == pytest.approx(-0.3, rel=1e-12)
+    assert change("ab", "least from base", bases=plain).found(studies) == pytest.approx(0.2, rel=1e-12)
+
+
+def test_the_jaws_are_told_apart() -> None:
+    studies = Inputs(studies={"s": (grasp("a", middle(2.0), middle(2.5)), grasp("b", middle(4.0), middle(3.0)))})
+    found = [change("ab", "least along", side=side).found(studies) for side in ("upper", "lower", "upper less lower")]
+    assert found == [2.0, 0.5, 1.5]
+
+
+def test_a_change_is_read_at_the_closing_asked_for() -> None:
+    forces = middle(3.0)
+    forces[0] = 2.0
+    studies = inputs(a=forces, plain=middle(2.5))
+    at = [change("a", "least from base", bases=("plain",), closing=closing).found(studies) for closing in (None, 1e-3, 5e-4)]
+    assert at == [0.5, 0.5, 2.0]
+    with pytest.raises(InputError, match="no step of s, a ended at a closing of 700 µm"):
+        change("a", "least from base", bases=("plain",), closing=7e-4).found(studies)
+
+
+@pytest.mark.parametrize(
+    ("runs", "which", "bases", "said"),
+    [
+        ("ab", "least along", "abc", "3 bases for 2 runs"),
+        ("a", "least from base", "", "no base"),
+        ("a", "least along", "", "one run"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, said: str) -> None:
+    with pytest.raises(ValidationError, match=said):
+        change(runs, which, bases=tuple(bases))
+
+
+def test_what_did_not_converge_or_is_not_there_is_told() -> None:
+    failed = Inputs(studies={"s": (grasp("a", middle(1.0)), grasp("b", middle(2.0), status="failed"))})
+    with pytest.raises(InputError, match="s, b did not converge: end"):
+        change("ab", "least along").found(failed)
+    with pytest.raises(UnknownName):
+        change("ac", "least along").found(failed)
+    for place in ((0, 1), (4, 1), (1, 4)):
+        with pytest.raises(InputError, match=r"of a matrix of 3 rows"):
+            TaxelContrast(study="s", run="a", taxel=place, others=((1, 1),)).found(failed)
+
+
+@pytest.mark.parametrize(("mirror", "place"), [("left_right", (1, 2)), ("front_back", (2, 1)), ("upper_lower", (1, 1))])
+def test_only_the_broken_symmetry_is_told(mirror: str, place: tuple[int, int]) -> None:
+    even, bent = middle(2.0), middle(2.0)
+    bent[-1][place] += 0.1
+    studies = Inputs(studies={"s": (grasp("even", even), grasp("bent", even, bent))})
+    for name in ("left_right", "front_back", "upper_lower"):
+        assert TaxelAsymmetry(study="s", run="even", mirror=name).found(studies) == 0  # type: ignore[arg-type]
+        found = TaxelAsymmetry(study="s", run="bent", mirror=name).found(studies)  # type: ignore[arg-type]
+        assert (found > 0) == (name in (mirror, "upper_lower"))
+    largest = bent[-1].max()
+    assert TaxelAsymmetry(study="s", run="bent", mirror=mirror).found(studies) == pytest.approx(0.1 / largest, rel=1e-12)  # type: ignore[arg-type]
+
+
+def test_a_taxel_reads_less_than_each_of_the_others() -> None:
+    row = np.array([[[0.5, 0.9, 0.7]]])
+    found = inputs(a=row, b=row[..., ::-1])
+    assert TaxelContrast(study="s", run="a", taxel=(1, 1), others=((1, 2), (1, 3))).found(found) == pytest.approx(-0.2, rel=1e-12)
+    assert TaxelContrast(study="s", run="b", taxel=(1, 1), others=((1, 2), (1, 3))).found(found) > 0
+
+
+def test_the_change_of_a_pulse_leaves_out_what_came_before() -> None:
+    steps = np.zeros((4, 1, 2))
+    steps[:, 0, 0], steps[:, 0, 1] = (9.0, 0.1, 0.4, 0.2), (0.0, 0.3, 0.35, 0.3)
+    assert TaxelPulse(study="s", run="a", start=1.0).found(inputs(a=steps)) == pytest.approx(0.3, rel=1e-12)
+    assert TaxelPulse(study="s", run="a", start=0.0).found(inputs(a=steps)) > 1
+    with pytest.raises(InputError, match="a change needs two"):
+        TaxelPulse(study="s", run="a", start=3.0).found(inputs(a=steps))
+
+
+def finding(folder: Path, state: str) -> list:
+    text = TABLE.split("  - id: known", maxsplit=1)[0].replace("    printed: 125 N/m\n", "")
+    tolerance = "    tolerance: {relative: 0.001, reason: a quotient}\n    state: {reproduced: true}"
+    folder = write_tables(folder, text.replace(tolerance, f"    {state}"), MANIFEST.replace("small: 3", "small: 1"))
+    loaded = load_tables(folder)
+    outcome = compare("small", loaded.tables["small"], folder, {})
+    assert [line[-4:] for line in count_rows(loaded, [outcome])[:1]] in ([(0, 1, 0, 0)], [(0, 0, 0, 1)])
+    assert "100 N/m" in terminal_report(loaded, [outcome])
+    return list(outcome.rows)
+
+
+def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
+    (row,) = finding(tmp_path, FINDING)  # the evaluator finds 125 N/m
+    assert (row.held, row.state, row.reason) == (True, "above 100 N/m", "a force that is felt")
+    (row,) = finding(tmp_path, FINDING.replace("above", "below"))
+    assert (row.held, row.state) == (False, "LEFT: was below 100 N/m")
+
+
+@pytest.mark.parametrize(
+    ("state", "said"),
+    [
+        ("state: {above: 1 N/m, below: 2 N/m, finding: both}", "either above or below"),
+        ("state: {finding: neither}", "either above or below"),
+        ("state: {above: 100, finding: bare}", "has no unit"),
+        ("state: {above: 100 N, finding: wrong}", "wrong dimension"),
+    ],
+)
+def test_a_bad_limit_is_told(tmp_path: Path, state: str, said: str) -> None:
+    with pytest.raises(CaseError, match=said):
+        finding(tmp_path, state)
+
+
+def test_a_finding_without_an_evaluator_is_refused() -> None:
+    row = next(row for row in TABLE_6_6.rows if isinstance(row.state, Bound))
+    with pytest.raises(ValidationError, match="needs to be evaluated"):
+        type(row).model_validate({**row.model_dump(), "evaluate": None})
+
+
+def wrong(row: Row) -> Row:
+    """The row with its limit on the other side, or with a number that is wrong by three tolerances."""
+    if isinstance(row.state, Bound):
+        above, below = row.state.above, row.state.below
+        return row.model_copy(update={"state": row.state.model_copy(update={"above": below, "below": above})})
+    return row.model_copy(update={"printed": (row.expected or 0.0) + 3 * (row.allowed or 0.0)})
+
+
+def check(rows: Sequence[Row], runner: StudyRunner) -> None:
+    """Runs what the rows need; each must hold, and must not hold if it is made wrong."""
+    needed = {name for row in rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
+    studies = [
+        study.model_copy(update={"runs": kept})
+        for study in TABLE_6_6.studies
+        if (kept := tuple(run for run in study.runs if run.id in needed))
+    ]
+    found = Inputs(folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"])
+    assert [row.id for row in rows if not compare_row(row, found).held] == []
+    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), found).held] == []
+
+
+def test_the_row_of_one_short_simulation_holds(tmp_path: Path) -> None:
+    check([row for row in TABLE_6_6.rows if row.id.startswith("symmetry.ball")], StudyRunner(workers=1, cache=tmp_path))
+
+
+@pytest.mark.slow
+def test_every_row_holds_and_none_that_is_wrong() -> None:
+    """Simulations come from the user's cache if the code that makes them is the same."""
+    check(TABLE_6_6.rows, StudyRunner())
