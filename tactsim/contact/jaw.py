@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.profile import check_fillet, rounded_box
+from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.units import Angle, Length
 
@@ -50,11 +51,8 @@ class Jaw(RigidBody):
     @property
     def rotation(self) -> Array:
         """Matrix (3, 3) that turns the jaw's own axes (x, y, and z away from the tissue) into those of the tissue."""
-        (sx, cx), (sy, cy) = ((np.sin(angle), np.cos(angle)) for angle in (self.tilt_x, self.tilt_y))
-        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
-        about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
         facing = np.diag([1.0, 1.0, 1.0 if self.side == "upper" else -1.0])
-        return about_y @ about_x @ facing
+        return tilt_matrix(self.tilt_x, self.tilt_y) @ facing
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""

@@ -11,6 +11,7 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.plane import Plane
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
+from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.units import Angle
 
@@ -40,10 +41,7 @@ class Tilted(RigidBody):
     @property
     def rotation(self) -> Array:
         """Matrix (3, 3) that turns the body's own axes into those of the tissue."""
-        (sx, cx), (sy, cy) = ((np.sin(angle), np.cos(angle)) for angle in (self.tilt_x, self.tilt_y))
-        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
-        about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
-        return about_y @ about_x
+        return tilt_matrix(self.tilt_x, self.tilt_y)
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""

@@ -9,10 +9,11 @@ import numpy as np
 
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_report import contact_assumptions
+from tactsim.experiments.ellipticity import elliptic_in
+from tactsim.experiments.solid_fields import solid_frame
 from tactsim.experiments.space_indentation_model import SpaceIndentationModel
 from tactsim.experiments.space_indentation_setup import SpaceIndentationSetup
-from tactsim.materials.stability import principal_stretches, strongly_elliptic
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -83,7 +84,7 @@ class SpaceIndentationRecord:
 
     def _values(self, state: ContactEquilibrium) -> dict[str, float]:
         model, weights = self.model, self.model.body.points.weights
-        self._unstable |= ~self._elliptic(state)
+        self._unstable |= ~elliptic_in(self.model.body, state.kinematics)
         touches = [contact.at(model.displacement(state.unknowns)) for contact in state.contacts]
         force, moment = model.load_on(state.contacts[0], state.unknowns)
         values = {
@@ -104,14 +105,6 @@ class SpaceIndentationRecord:
             values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": further}
         return values
 
-    def _elliptic(self, state: ContactEquilibrium) -> Array:
-        """Whether the material is strongly elliptic at each point (E, Q)."""
-        elliptic = np.ones(state.kinematics.J.shape, bool)
-        for index, material in enumerate(self.model.body.materials):
-            mine = self.model.body.regions == index
-            elliptic[mine] = strongly_elliptic(material, state.kinematics.F[:, :, mine])
-        return elliptic
-
     def result(self, status: Status, reason: str) -> Result:
         """The result with everything that was accepted."""
         kept = sorted(self._kept.values(), key=lambda state: state.load)
@@ -125,7 +118,7 @@ class SpaceIndentationRecord:
             timing={"setup": self._setup_time, "total": time.perf_counter() - self.begin},
             steps=tuple(self.steps),
             units=self.UNITS,
-            frames=tuple(self._frame(state) for state in kept),
+            frames=tuple(solid_frame(self.model.mesh, self.model.body, state, time=state.load) for state in kept),
             details=self._details(),
         )
 
@@ -177,24 +170,3 @@ class SpaceIndentationRecord:
             "offset": experiment.offset,
             "recess": experiment.recess,
         }
-
-    def _frame(self, state: ContactEquilibrium) -> FieldFrame:
-        """Fields of a state for ParaView, on the part of the body that is computed."""
-        mesh, stretch = self.model.mesh, principal_stretches(state.kinematics.F)[0]
-        u, p = self.model.space.split(state.unknowns)
-        pressure = np.zeros(len(u))
-        pressure[: len(p)] = -p
-        ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]]
-        pressure[mesh.elements[:, 4:]] = pressure[ends].mean(axis=2)
-        return FieldFrame(
-            time=state.load,
-            points=mesh.nodes,
-            cells={"tetra10": mesh.elements},
-            point_data={"displacement [m]": u.copy(), "pressure [Pa]": pressure},
-            cell_data={
-                "largest_stretch [1]": stretch.max(axis=1),
-                "volume_ratio [1]": state.kinematics.J.mean(axis=1),
-                "region [1]": mesh.regions.astype(float),
-                "elliptic [1]": self._elliptic(state).all(axis=1).astype(float),
-            },
-        )
