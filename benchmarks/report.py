@@ -1,6 +1,6 @@
 """Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
 
-python benchmarks/report.py [--readme] [--peers]
+python benchmarks/report.py [--readme] [--peers [FILE]]
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from pathlib import Path
 import assembly
 import commands
 import grasp
+import localization
 import peers
+import sensor_chain
 import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
@@ -54,6 +56,17 @@ def table(figures: dict[str, dict[str, float]]) -> str:
             "under 30 s, 2 GB",
             f"{figures['grasp']['seconds']:.1f} s, {figures['grasp']['peak_megabytes'] / 1000:.2f} GB",
         ),
+        (
+            "18 sensors at 1 kHz, conductance to force, in chunks of 10 ms / at once",
+            "100 times real time",
+            f"{figures['sensor_chain']['stream_real_time_factor']:.0f} / "
+            f"{figures['sensor_chain']['record_real_time_factor']:.0f} times",
+        ),
+        (
+            "three views of two 32 x 32 matrices at 60 x 100 pixels",
+            "under 1 ms",
+            f"{1e3 * figures['localization']['views_32_seconds']:.2f} ms",
+        ),
         *_against_peers(figures.get("peers")),
     ]
     lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
@@ -73,14 +86,23 @@ def _against_peers(peers: dict[str, float] | None) -> list[tuple[str, str, str]]
     return [*rows, ("reaction and nine pressures, difference from FElupe, both mixed", "0.1 %", f"{100 * agreement:.4f} %")]
 
 
+def _printed(path: Path) -> dict[str, float]:
+    """The figures at the beginning of what ``peers.py`` printed in an earlier run."""
+    return json.JSONDecoder().raw_decode(path.read_text())[0]
+
+
 def main() -> None:
     """Measure, print, and on request rewrite the table of the README."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--readme", action="store_true", help="write the table into README.md")
-    parser.add_argument("--peers", action="store_true", help="also solve one block with other programs (minutes)")
+    parser.add_argument(
+        "--peers", nargs="?", const="", help="also solve one block with other programs (minutes), or take what peers.py printed"
+    )
     arguments = parser.parse_args()
-    parts = (assembly, viscoelasticity, commands, grasp, *((peers,) if arguments.peers else ()))
-    figures = {part.__name__: part.measure() for part in parts}
+    parts = (assembly, viscoelasticity, commands, grasp, sensor_chain, localization)
+    figures: dict[str, dict] = {part.__name__: part.measure() for part in parts}
+    if arguments.peers is not None:
+        figures["peers"] = peers.measure() if arguments.peers == "" else _printed(Path(arguments.peers))
     text = table(figures)
     sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
     if arguments.readme:

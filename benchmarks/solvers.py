@@ -40,9 +40,9 @@ LONGEST = 500.0
 class Recorded(Exception):
     """Carries the first linear system of Newton's method out of the model."""
 
-    def __init__(self, matrix, right):  # type: ignore[no-untyped-def]
+    def __init__(self, matrix, nearby, right):  # type: ignore[no-untyped-def]
         super().__init__("first system")
-        self.matrix, self.right = matrix, right
+        self.matrix, self.nearby, self.right = matrix, nearby, right
 
 
 class Recorder:
@@ -50,21 +50,21 @@ class Recorder:
 
     name = "recorder"
 
-    def factor(self, matrix) -> None:  # type: ignore[no-untyped-def]
-        """Keep the matrix."""
-        self._matrix = matrix
+    def factor(self, matrix, nearby=None) -> None:  # type: ignore[no-untyped-def]
+        """Keep the matrix and its neighbour without slip."""
+        self._matrix, self._nearby = matrix, nearby
 
     def solve(self, right: np.ndarray, accuracy: float = 0.0) -> np.ndarray:
         """Hand the system out."""
-        raise Recorded(self._matrix, right)
+        raise Recorded(self._matrix, self._nearby, right)
 
     def close(self) -> None:
-        """Drop the matrix."""
-        del self._matrix
+        """Drop the matrices."""
+        del self._matrix, self._nearby
 
 
 def first_system(cells: int):  # type: ignore[no-untyped-def]
-    """Body, tangent and right-hand side of a block with a hard ball between jaws with friction, closed by 0.25 mm."""
+    """Body, tangent, the same without slip, and right-hand side: a hard ball in a block, friction, closed by 0.25 mm."""
     lines = [np.linspace(0, length, count + 1) for length, count in zip(SIZE, (cells, cells, cells // 2), strict=True)]
     mesh = from_skfem(MeshTet.init_tensor(*lines))
     middles = mesh.nodes[mesh.elements[:, :4]].mean(axis=1)
@@ -80,7 +80,7 @@ def first_system(cells: int):  # type: ignore[no-untyped-def]
     try:
         model.equilibrium(state, CLOSING, state.unknowns)
     except Recorded as recorded:
-        return model.body, recorded.matrix, recorded.right
+        return model.body, recorded.matrix, recorded.nearby, recorded.right
     raise AssertionError("Newton solved nothing")
 
 
@@ -89,10 +89,10 @@ def child(kind: str, cells: int) -> dict[str, float]:
 
     The direct one factors in the solve, and iterates for the skew part that friction makes.
     """
-    body, matrix, right = first_system(cells)
+    body, matrix, nearby, right = first_system(cells)
     solver = ReusedFactor(SymmetricPardiso()) if kind == "direct" else BlockPreconditioned(body)
     begin = time.perf_counter()
-    solver.factor(matrix)
+    solver.factor(matrix, nearby)
     ready = time.perf_counter()
     figures = {"unknowns": float(len(right)), "setup_seconds": ready - begin}
     try:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Annotated, Any, Union
 
-from pydantic import Field
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from tactsim.errors import UnknownName
 
@@ -44,6 +46,35 @@ def kind_class(package: str, base: type, kind: str) -> Any:
 def tagged_union(package: str, base: type) -> Any:
     """Pydantic type of all kinds in a package, told apart by ``kind``."""
     return union_of(kinds(package, base))
+
+
+class Named:
+    """Annotation that lets a field take the name of a shipped set beside the set itself, in files and in the JSON Schema.
+
+    Parameters
+    ----------
+    what : what a set is called in messages
+    library : gives the shipped sets by name; called when a name is read, so that it may be defined after the field's class
+    """
+
+    def __init__(self, what: str, library: Callable[[], Mapping[str, Any]]):
+        self.what, self.library = what, library
+
+    def read(self, value: Any) -> Any:
+        """The shipped set of this name; anything but text passes."""
+        if not isinstance(value, str):
+            return value
+        shipped = self.library()
+        if value not in shipped:
+            raise PydanticCustomError("unknown_name", "{message}", {"message": str(UnknownName(self.what, value, shipped))})
+        return shipped[value]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.read, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        name = {"type": "string", "enum": sorted(self.library()), "description": f"Name of a shipped {self.what}."}
+        return {"oneOf": [name, handler(schema)]}
 
 
 def union_of(known: dict[str, Any]) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,6 +12,7 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.specimen import Specimen
+from tactsim.fem.space import Measure
 from tactsim.interfaces import ContactLaw, RigidBody
 from tactsim.mesh.axisymmetric import Size, edge_graded
 from tactsim.mesh.quadratic import QuadraticMesh
@@ -47,6 +48,8 @@ class MeshSettings(FrozenModel):
 class ContactSetup(FrozenModel):
     """A rigid body, the specimen it is pressed into along its axis, and how finely that is computed."""
 
+    measure: ClassVar[Measure] = "axisymmetric"
+    """What the section stands for."""
     specimen: Specimen
     """The tissue."""
     body: AnyBody = Annulus()
@@ -130,15 +133,18 @@ class ContactSetup(FrozenModel):
         return facets[self._on_top(section.nodes[facets])]
 
     def model(self) -> IndentationModel:
-        """The axisymmetric finite element model."""
-        mesh = self.section()
-        return IndentationModel(mesh, self.specimen.materials, base=self.specimen.base, top=self.top_edges(mesh))
+        """The finite element model of the section."""
+        mesh, specimen = self.section(), self.specimen
+        top = self.top_edges(mesh)
+        return IndentationModel(mesh, specimen.materials, base=specimen.base, top=top, measure=self.measure)
 
     def _focus(self) -> tuple[tuple[float, ...], float, float]:
         """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
-        if self.body.kind == "sphere":
+        if self.body.kind in ("sphere", "rod"):
             reach = 1.5 * float(np.sqrt(self.contact_radius * self.depth))
-            return (), min(reach, self.specimen.radius), reach / 20
+            if self.body.kind == "rod":
+                reach = min(reach, 1.5 * self.contact_radius)
+            return (), min(reach, self.specimen.radius), reach / (20 if self.body.kind == "sphere" else 9)
         rims = (getattr(self.body, "inner_radius", 0.0), self.contact_radius)
         fillet = float(getattr(self.body, "fillet", 0.0))
         finest = fillet / 3 if fillet > 0 else self.contact_radius / 50

@@ -15,8 +15,10 @@ from tactsim.experiments.grasp_readings import JawReading, deepest_penetration, 
 from tactsim.experiments.grasp_setup import GraspSetup
 from tactsim.experiments.lumen_pressure import PulsePressure
 from tactsim.experiments.solid_fields import solid_frame
+from tactsim.experiments.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.experiments.timed_path import TimedPath, TimedState
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
 MOST_COLUMNS = 8
@@ -53,6 +55,7 @@ class GraspRecord:
         self._kept: dict[str, TimedState] = {}
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._setup_time = time.perf_counter() - begin
+        self._read: MatrixReading | None = None
 
     def accept(self, state: TimedState) -> StepRecord:
         """Record an accepted state.
@@ -98,6 +101,11 @@ class GraspRecord:
 
     def result(self, status: Status, reason: str) -> Result:
         """The result with everything that was accepted."""
+        readout, layout = self.experiment.readout, self.experiment.matrix
+        if readout is not None and self.steps:
+            times = np.array([step.values["time"] for step in self.steps])
+            forces = np.array([[reading[side].taxels.taxels[2] for side in SIDES] for reading in self.readings])
+            self._read = readout.read(times, forces, layout.area)
         return Result(
             kind="grasp",
             status=status,
@@ -122,7 +130,8 @@ class GraspRecord:
             return unknowns
         values = [step.values for step in self.steps]
         found = final_quantities(values, self.readings[-1], self.experiment)
-        return found | history_quantities(values, self.readings, self.experiment) | unknowns
+        found |= history_quantities(values, self.readings, self.experiment) | unknowns
+        return found if self._read is None else found | readout_quantities(self._read)
 
     def _assumptions(self) -> list[str]:
         experiment, block = self.experiment, self._sourced.block
@@ -149,17 +158,23 @@ class GraspRecord:
         told.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
         if experiment.relaxes:
             told.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
+        if experiment.readout is not None:
+            told += readout_assumptions(experiment.readout, experiment.matrix.area)
         return told
 
     def _warnings(self) -> list[str]:
+        readout, told = self.experiment.readout, []
+        if readout is not None and self._read is not None:
+            told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
         if share == 0:
-            return []
+            return told
         first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
         at = format_quantity(first.values["displacement"], "m")
         return [
+            *told,
             f"{share:.1%} of the volume left strong ellipticity, first at a closing of {at} per jaw: "
-            "there the answer depends on the mesh; take a stable material set"
+            "there the answer depends on the mesh; take a stable material set",
         ]
 
     def _frames(self) -> tuple[FieldFrame, ...]:

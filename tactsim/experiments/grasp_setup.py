@@ -24,6 +24,7 @@ from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.mesh.solid import Inclusion, Positive
+from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import Angle, FrozenModel, Length, Time, format_quantity
 
@@ -123,6 +124,8 @@ class GraspSetup(FrozenModel):
     """Where the mesh comes from."""
     time: GraspTimeSettings = GraspTimeSettings()
     """Steps of time."""
+    readout: MatrixReadout | None = None
+    """Sensors and electronics of the taxels, from force to voltage and back; null ends at the force."""
 
     @property
     def tolerance(self) -> float:

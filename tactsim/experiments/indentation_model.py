@@ -13,7 +13,7 @@ from tactsim.experiments.contact_equilibrium import ContactEquilibrium, contact_
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.newton import Problem
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.space import Measure, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody
 from tactsim.mesh.adaptation import Refinement, refined
@@ -30,15 +30,18 @@ class IndentationModel:
 
     Parameters
     ----------
-    mesh : axisymmetric section, r >= 0
+    mesh : section of an axisymmetric or, in plane strain, of a symmetric body; r >= 0
     materials : one per region of the mesh
     base : "fixed" or "slipping"
     top : (F, 3) facets of the tissue that may touch
+    measure : what the section stands for; in plane strain forces are those of the half r >= 0 per m of depth
     """
 
-    def __init__(self, mesh: QuadraticMesh, materials: Sequence[Material], *, base: str, top: Array):
+    def __init__(
+        self, mesh: QuadraticMesh, materials: Sequence[Material], *, base: str, top: Array, measure: Measure = "axisymmetric"
+    ):
         self.mesh, self.top, self.base = mesh, top, base
-        self.space = TaylorHood(mesh.nodes, mesh.elements, "axisymmetric")
+        self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, materials, mesh.regions)
         self.points = self.space.surface_points(top)
         self.surface = SurfaceAssembly(self.points, self.body.pattern, self.space.dim)
@@ -114,7 +117,7 @@ class IndentationModel:
         u, p = self.space.split(state.unknowns)
         split = refined(self.mesh, marked, self.mesh.nodes + u)
         top = split.facets_on(self.mesh, self.top)
-        model = IndentationModel(split.mesh, self.body.materials, base=self.base, top=top)
+        model = IndentationModel(split.mesh, self.body.materials, base=self.base, top=top, measure=self.space.measure)
         unknowns = np.concatenate([(split.nodal @ u).ravel(), split.corner @ p])
         displacement = model.displacement(unknowns)
         contacts = tuple(contact.on(model.surface, model.reference, displacement) for contact in state.contacts)

@@ -41,16 +41,11 @@ def indentation_path(
     ConvergenceError
         If the path cannot be followed to its end, or the rise has passed its peak below the threshold.
     """
-    record.starting_height = height = model.touching_height(experiment.body)
-    softest = min(material.shear_modulus for material in experiment.specimen.materials)
-    scale = Regularisation(experiment.tolerance, softest, switch_length=SWITCH_LENGTH * experiment.contact_radius)
-    state = model.start([(experiment.body, height)], experiment.contact, scale)
-    course = _Course(experiment, model, record)
+    first, course = started(experiment, model, record)
     recess, touched = experiment.recess, False
     event = None
     if recess is not None:
         event = Event[ContactEquilibrium](lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
-    first = state
     peak, peak_load = 0.0, 0.0
     for state, touched in course.follow(first, event):
         yield state, touched
@@ -62,11 +57,22 @@ def indentation_path(
                 raise ConvergenceError(f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling")
     if recess is not None and touched and experiment.stop == "displacement":
         sensor = Punch(radius=experiment.body.inner_radius, height=experiment.body.height)
-        contact = course.model.contact(sensor, experiment.contact, height - state.load + recess)
+        contact = course.model.contact(sensor, experiment.contact, record.starting_height - state.load + recess)
         yield from course.follow(course.model.with_contact(state, contact), None)
 
 
-class _Course:
+def started(
+    experiment: IndentationSetup, model: IndentationModel, record: IndentationRecord
+) -> tuple[ContactEquilibrium, Course]:
+    """The body at first touch of the undeformed tissue, and the course from there."""
+    record.starting_height = height = model.touching_height(experiment.body)
+    softest = min(material.shear_modulus for material in experiment.specimen.materials)
+    scale = Regularisation(experiment.tolerance, softest, switch_length=SWITCH_LENGTH * experiment.contact_radius)
+    state = model.start([(experiment.body, height)], experiment.contact, scale)
+    return state, Course(experiment, model, record)
+
+
+class Course:
     """Follows the path, and from time to time goes on with a finer mesh of the same body."""
 
     def __init__(self, experiment: IndentationSetup, model: IndentationModel, record: IndentationRecord):

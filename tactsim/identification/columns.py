@@ -76,8 +76,10 @@ def _column(path: Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
         raise InvalidQuantity(
             f"{path}: column {cell.strip()!r} has no unit; write it in brackets after the name, like '{name} [{units[name]}]'"
         )
+    if match["unit"].strip() == units[name]:
+        return name, 1.0
     try:
-        return name, parse_quantity(f"1 {match['unit'].strip()}", units[name])
+        return name, parse_quantity(f"1 {match['unit'].strip()}", "dimensionless" if units[name] == "1" else units[name])
     except InvalidQuantity as error:
         raise InvalidQuantity(f"{path}: column {cell.strip()!r}: {error}") from None
 

@@ -22,7 +22,7 @@ Array = np.ndarray
 CORE, ROUNDNESS = 0.5, 0.7
 """Half width of the cube of cells in the lump, over its radius, and how far the cube is blown up towards a ball."""
 LEAST_AROUND = 4
-"""Cells along a quarter of a circle around the lump, at least."""
+"""Cells along a quarter of a circle around the lump, at least; always even, so that a middle plane cuts no cell."""
 _KUHN = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]])
 """Six tetrahedra of a cell whose corners are numbered by x + 2 y + 4 z; equal diagonals on opposite sides."""
 _SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
@@ -86,7 +86,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     if not isinstance(solid, EllipsoidSolid):
         raise InputError(f"a {inclusion.kind} cannot be meshed in layers; allowed: sphere, ellipsoid")
     radius, size_at = float(solid.semi_axes.max()), settings.inclusion_size
-    around = max(LEAST_AROUND, round(np.pi / 2 * radius / size_at))
+    around = max(LEAST_AROUND, 2 * round(np.pi / 4 * radius / size_at))
     cell = np.pi / 2 * radius / around
     within = max(1, round((1 - CORE) * radius / cell))
     beyond = outer_steps(max(cell, float(extent.mean()) / 2 - radius) / 2, cell, settings)
@@ -100,7 +100,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     layers = [inner[shell] + share * (skin - inner[shell]) for share in np.arange(1, within + 1) / within]
     layers += [skin + share * (outer - skin) for share in beyond]
     corners, hexahedra, depth = _stacked(inner, shell, quads, core, layers)
-    simplices, corners = _twelfths(hexahedra, corners)
+    simplices, corners = _twelfths(hexahedra, corners, _mirrored_order(logical, shell, len(layers)))
     labels = np.repeat((depth < within).astype(np.int64), 12)
     key = f"morphed-{mesh_key(size, [inclusion], settings)}"
     return fitted(corners, simplices, labels, size=extent, inclusions=[inclusion], key=key, started=started, slide=False)
@@ -153,10 +153,20 @@ def _stacked(inner: Array, shell: Array, quads: Array, core: Array, layers: Sequ
     return np.vstack([inner, *layers]), np.vstack(cells), depth
 
 
-def _twelfths(cells: Array, corners: Array) -> tuple[Array, Array]:
-    """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its lowest number."""
+def _mirrored_order(logical: Array, shell: Array, layers: int) -> Array:
+    """Places (n,) of the corners in an order that is the same for a side of a cell and for its mirror images."""
+    distances = np.vstack([np.abs(logical), *[np.abs(logical[shell])] * layers]).round(9)
+    depth = np.repeat(np.arange(layers + 1), [len(logical), *[len(shell)] * layers])
+    order = np.lexsort((*distances.T, depth))
+    places = np.empty(len(order), dtype=np.int64)
+    places[order] = np.arange(len(order))
+    return places
+
+
+def _twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
+    """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its first place (n,)."""
     sides = cells[:, _SIDES]
-    first = sides.argmin(axis=2)
+    first = places[sides].argmin(axis=2)
     turned = np.take_along_axis(sides, (first[:, :, None] + np.arange(4)) % 4, axis=2)
     triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2).reshape(len(cells), 12, 3)
     centres = len(corners) + np.arange(len(cells))

@@ -134,7 +134,7 @@ def cache_folder() -> Path:
 def code_identity() -> str:
     """Eight hexadecimal digits that change with the code of the simulations: a cached result never outlives its solver."""
     root = Path(__file__).parents[1]
-    rooms = ("case", "contact", "experiments", "fem", "materials", "mesh")
+    rooms = ("analytic", "case", "contact", "experiments", "fem", "identification", "materials", "mesh", "sensors")
     digest = hashlib.sha256()
     for path in sorted(path for room in rooms for path in (root / room).rglob("*.py")):
         digest.update(path.read_bytes())

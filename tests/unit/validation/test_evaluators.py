@@ -16,7 +16,7 @@ from tactsim.validation.evaluators.ranking_agreement import RankingAgreement
 from tactsim.validation.study import RunOutcome
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
-WITHOUT_SIMULATION = ("table_3_1", "table_3_3", "figure_3_8", "section_3_1_2")
+WITHOUT_SIMULATION = ("table_3_1", "table_3_3", "figure_3_8", "section_2_2", "section_2_3")
 
 
 @pytest.mark.parametrize("name", WITHOUT_SIMULATION)

@@ -1,0 +1,47 @@
+"""Speed of the three views of two 32 x 32 matrices at 60 x 100 pixels, and of the thesis's estimator; prints JSON."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.interface import Readings
+from tactsim.localization.views import SHAPE, views, volume
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIDES = (3, 8, 16, 32)
+CALLS = 100
+
+
+def measure() -> dict[str, float]:
+    """Median of 100 calls in seconds by the number of rows and columns of each matrix."""
+    generator = np.random.default_rng(1)
+    figures: dict[str, float] = {"rows": float(SHAPE[0]), "columns": float(SHAPE[1])}
+    for side in SIDES:
+        forces = generator.uniform(0.1, 1.0, (2, side, side))
+        layout = TaxelLayout(rows=side, columns=side, pitch=30e-3 / side, size=27e-3 / side)
+        readings = Readings(forces, layout, np.array([40e-3, 40e-3, 20e-3]))
+        figures[f"views_{side}_seconds"] = _median(lambda forces=forces: views(forces))  # type: ignore[misc]
+        figures[f"estimate_{side}_seconds"] = _median(lambda readings=readings: ThesisEstimator().estimate(readings))  # type: ignore[misc]
+        figures[f"volume_{side}_seconds"] = _median(lambda forces=forces: volume(forces, (20, 40, 40)))  # type: ignore[misc]
+    return figures
+
+
+def _median(call: Callable[[], object]) -> float:
+    call()
+    seconds = []
+    for _ in range(CALLS):
+        begin = time.perf_counter()
+        call()
+        seconds.append(time.perf_counter() - begin)
+    return statistics.median(seconds)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(measure(), indent=2) + "\n")

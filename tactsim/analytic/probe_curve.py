@@ -1,0 +1,50 @@
+"""Elastic curve of chapter 5's probe in its default geometry, found once by finite elements."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.analytic.probe_force import ProbeCurve
+
+COUNT = 5
+"""Switches of the probe; the tissue reaches the first one only."""
+
+_ROWS = (
+    # depth, force over shear modulus and width, contact height, force on the first switch over shear modulus and width; all in mm
+    (0.00, 0.0000, 0.000, 0.0000),
+    (0.25, 0.4957, 0.000, 0.0000),
+    (0.50, 1.0204, 0.000, 0.0000),
+    (0.75, 1.5677, 0.000, 0.0000),
+    (1.00, 2.1350, 0.000, 0.0000),
+    (1.25, 2.7209, 0.000, 0.0000),
+    (1.50, 3.3245, 0.000, 0.0000),
+    (1.75, 3.9453, 0.112, 0.0000),
+    (2.00, 4.5834, 0.359, 0.0000),
+    (2.25, 5.2396, 0.405, 0.0000),
+    (2.50, 5.9161, 0.470, 0.0000),
+    (2.75, 6.6143, 0.545, 0.0000),
+    (3.00, 7.3358, 0.638, 0.0000),
+    (3.25, 8.0820, 0.725, 0.0000),
+    (3.50, 8.8543, 0.811, 0.0000),
+    (3.75, 9.6542, 0.907, 0.0037),
+    (4.00, 10.4831, 1.008, 0.0383),
+    (4.25, 11.3427, 1.120, 0.1120),
+    (4.50, 12.2345, 1.235, 0.1784),
+    (4.75, 13.1596, 1.349, 0.2287),
+    (5.00, 14.1207, 1.468, 0.2735),
+)
+
+
+def _curve() -> ProbeCurve:
+    depth, force, height, first = 1e-3 * np.array(_ROWS).T
+    switches = np.zeros((len(depth), COUNT))
+    switches[:, 0] = first
+    return ProbeCurve(depth, force, height, switches)
+
+
+CHAPTER_5 = _curve()
+"""Face of 2 mm, sides of 20 degrees, fillet 0.5 mm, friction 0.4, on an incompressible neo-Hookean block 40 mm wide and 20 mm
+high on a fixed base, in plane strain; strips of 0.2 mm at every mm of height.
+
+Source: computed with the finite elements of this package on the default mesh; a test computes it again.
+"""

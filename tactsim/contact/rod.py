@@ -1,0 +1,40 @@
+"""A rod with a hemispherical end, as the indentor of a durometer for soft materials."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.contact.profile import Revolved
+from tactsim.units import Length
+
+Array = np.ndarray
+
+
+class Rod(Revolved):
+    """A rigid round rod without end above a hemisphere of its own radius, whose lowest point is the origin.
+
+    Source: indentor of type OO in ASTM D2240, 2.38 mm in diameter; recalled from the standard, a declared assumption.
+    """
+
+    kind: Literal["rod"] = "rod"
+    radius: Annotated[Length, Field(gt=0)] = 1.19e-3
+    """Radius of the rod and of its end."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The indentor of type OO."""
+        return cls()
+
+    def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
+        """Distance to the half-line of the centres above the end, minus the radius."""
+        height = np.minimum(p[1], self.radius)
+        offset = np.stack([p[0], height - self.radius])
+        reach = np.hypot(*offset)
+        safe = np.where(reach > 0, reach, self.radius)
+        normal = offset / safe
+        distance = (p[0] ** 2 + height * (height - 2 * self.radius)) / (reach + self.radius)
+        turning = np.eye(2)[:, :, None] - normal[:, None] * normal[None, :]
+        return distance, normal, np.where(p[1] < self.radius, turning / safe, 0.0)

@@ -1,0 +1,164 @@
+"""Coefficients of a film's creep from tests under constant forces, and their lines over the force."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import ConvergenceError
+from tactsim.identification.film_creep import (
+    COEFFICIENTS,
+    CoefficientLine,
+    CreepFit,
+    CreepTest,
+    coefficient_lines,
+    fit_creep,
+    read_creep,
+    synthetic_creep,
+)
+from tactsim.interfaces import Experiment, Progress
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.sensors.composite import AnyComposite
+from tactsim.sensors.composite_library import named_composite
+from tactsim.units import Area, Force, FrozenModel, Time
+
+PositiveForce = Annotated[Force, Field(gt=0)]
+UNITS = {"instantaneous": "Pa", "delayed": "Pa", "viscosity": "Pa*s"}
+
+
+class SyntheticCreep(FrozenModel):
+    """Creep made from a composite, as the data of Fig. 2.6a are not printed."""
+
+    kind: Literal["synthetic"] = "synthetic"
+    composite: AnyComposite = named_composite("lingstat_literal")
+    """Name of a shipped composite, or its numbers."""
+    forces: Annotated[tuple[PositiveForce, ...], Field(min_length=3)] = (2.0, 4.0, 6.0, 8.0)
+    """Forces of the tests; by default those of the thesis."""
+    duration: Annotated[Time, Field(gt=0)] = 30.0
+    """Length of each test."""
+    samples: Annotated[int, Field(ge=6, le=1_000_000)] = 300
+    """Number of samples of each test."""
+    noise: Annotated[float, Field(ge=0, le=0.2)] = 0.002
+    """Standard deviation of the strain over the last strain of the test."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Seed of the noise."""
+
+    @property
+    def area(self) -> float:
+        """Area in m^2 that carries the force."""
+        return self.composite.reference_area
+
+    def tests(self) -> list[CreepTest]:
+        """The tests."""
+        times = np.linspace(0, self.duration, self.samples)
+        generator = np.random.default_rng(self.seed)
+        return synthetic_creep(self.composite, self.forces, times, noise=self.noise, generator=generator)
+
+
+class MeasuredCreep(FrozenModel):
+    """Creep read from a file."""
+
+    kind: Literal["file"] = "file"
+    path: str
+    """CSV file, relative to the working folder, with the columns ``time [s], force [N], strain [1]``."""
+    area: Annotated[Area, Field(gt=0)]
+    """Area of the sample that carries the force."""
+
+    def tests(self) -> list[CreepTest]:
+        """The tests."""
+        return read_creep(self.path)
+
+
+class FilmCreep(Experiment):
+    """E0, E1 and mu1 of the standard linear solid for each force, and straight lines through them.
+
+    Source: thesis, section 2.3, eq. 2.1.15, Fig. 2.6.
+    """
+
+    kind: Literal["film_creep"] = "film_creep"
+    data: Annotated[SyntheticCreep | MeasuredCreep, Field(discriminator="kind")] = SyntheticCreep()
+    """Where the creep comes from."""
+    confidence: Annotated[float, Field(ge=0.5, le=0.999)] = 0.95
+    """Of the intervals."""
+
+    history_units: ClassVar[dict[str, str]] = (
+        {"force": "N"}
+        | {name + suffix: unit for name, unit in UNITS.items() for suffix in ("", "_half_width")}
+        | {"strain_rms_error": "1"}
+    )
+
+    @classmethod
+    def example(cls) -> Self:
+        """The forces of the thesis."""
+        return cls()
+
+    def run(self, progress: Progress) -> Result:
+        """Fit each test, one step each, then the lines."""
+        begin = time.perf_counter()
+        tests = self.data.tests()
+        fits: list[CreepFit] = []
+        steps: list[StepRecord] = []
+        status, reason, lines = Status.CONVERGED, f"fitted creep at {len(tests)} forces", {}
+        try:
+            for test in tests:
+                fits.append(fit_creep(test, self.data.area, confidence=self.confidence))
+                steps.append(StepRecord(len(fits), 0, 0.0, _told(fits[-1])))
+                progress(steps[-1])
+            lines = coefficient_lines(fits, confidence=self.confidence)
+        except ConvergenceError as error:
+            status, reason = Status.FAILED, f"stopped converging: {error}"
+        except KeyboardInterrupt:
+            status, reason = Status.INTERRUPTED, "interrupted; the fits made before are kept, the run is incomplete"
+        return Result(
+            kind=self.kind,
+            status=status,
+            reason=reason,
+            quantities=_quantities(lines),
+            assumptions=self._assumptions(),
+            warnings=self._warnings(fits),
+            timing={"total": time.perf_counter() - begin},
+            steps=tuple(steps),
+            units=self.history_units,
+            details={"tests": [_curve(test) for test in tests], "area": self.data.area},
+        )
+
+    def _assumptions(self) -> tuple[str, ...]:
+        told = ["independent errors of the strain of equal size in a test; intervals by linearisation and Student's distribution"]
+        if isinstance(self.data, SyntheticCreep):
+            told.append(f"synthetic creep with {self.data.noise:.3g} relative noise: the data of Fig. 2.6a are not printed")
+        return tuple(told)
+
+    def _warnings(self, fits: list[CreepFit]) -> tuple[str, ...]:
+        return tuple(
+            f"the creep at {fit.force:g} N determines {name} only to {width / value:.0%}; record longer or with less noise"
+            for fit in fits
+            for name, value, width in zip(COEFFICIENTS, fit.coefficients, fit.half_widths, strict=True)
+            if width > 0.2 * value
+        )
+
+
+def _told(fit: CreepFit) -> dict[str, float]:
+    values: dict[str, float] = {"force": fit.force}
+    for k, name in enumerate(COEFFICIENTS):
+        values |= {name: float(fit.coefficients[k]), f"{name}_half_width": float(fit.half_widths[k])}
+    return values | {"strain_rms_error": float(np.sqrt(np.mean(fit.residuals**2)))}
+
+
+def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
+    found = {}
+    for name, line in lines.items():
+        unit = UNITS[name]
+        found[f"{name}_slope"] = Quantity(line.slope, f"{unit}/N", f"slope of {name} over the force")
+        found[f"{name}_intercept"] = Quantity(line.intercept, unit, f"{name} without force")
+        found[f"{name}_slope_half_width"] = Quantity(line.slope_half_width, f"{unit}/N", "half-width of the slope's interval")
+        found[f"{name}_intercept_half_width"] = Quantity(line.intercept_half_width, unit, "half-width of its interval")
+    return found
+
+
+def _curve(test: CreepTest, most: int = 400) -> dict[str, Any]:
+    """A test thinned for the figure."""
+    kept = np.unique(np.linspace(0, len(test.time) - 1, most).astype(int))
+    return {"force": test.force, "time": test.time[kept].tolist(), "strain": test.strain[kept].tolist()}

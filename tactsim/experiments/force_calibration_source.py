@@ -1,0 +1,91 @@
+"""Where the readings of a force calibration come from: a declared line through a signal chain, or a file."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import InvalidQuantity
+from tactsim.identification.columns import read_columns
+from tactsim.interfaces import Array
+from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
+from tactsim.sensors.channel_scatter import ChannelScatter
+from tactsim.sensors.signal_chain import SignalChain
+from tactsim.units import Force, FrozenModel, Time
+
+Readings = tuple[Array, Array, Array]
+"""Forces in N of shape (points,), voltages in V and whether each is saturated, of shape (points, sensors)."""
+MOST_SENSORS = 64
+
+
+class SyntheticCalibration(FrozenModel):
+    """Forces held one after the other on sensors of known lines and read at the end of each hold."""
+
+    kind: Literal["synthetic"] = "synthetic"
+    line: AnyCalibration = THESIS_LINE
+    """The true line; by default that of thesis section 3.1.2."""
+    sensors: Annotated[int, Field(ge=1, le=MOST_SENSORS)] = 1
+    """Number of sensors, each with its channel; 18 in thesis section 6.2."""
+    scatter: ChannelScatter | None = None
+    """How the sensors' conductances differ from the line; null is not at all."""
+    forces: Annotated[tuple[Annotated[Force, Field(ge=0)], ...], Field(min_length=1)] = tuple(map(float, range(26)))
+    """Forces applied; by default 0 to 25 N, the range of thesis section 3.1.2, in steps of 1 N (an assumption)."""
+    repeats: Annotated[int, Field(ge=1, le=1000)] = 2
+    """How often the forces are applied, one after the other."""
+    hold: Annotated[Time, Field(gt=0, le=100)] = 1.0
+    """How long each force is held; its last sample is read, one second after its application in thesis section 2.2.1."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Seed of the chain's noise."""
+
+    def truth(self) -> tuple[Array, Array]:
+        """True slopes in S/N and intercepts in S, shape (sensors,)."""
+        return self.line.slope * self._gains(), self.line.intercept * self._gains()
+
+    def readings(self, chain: SignalChain) -> Readings:
+        """Filtered readings; one is saturated if any sample of its hold was."""
+        forces = np.tile(self.forces, self.repeats)
+        samples = chain.times(self.hold).size
+        stream = chain.stream(np.random.default_rng(self.seed))
+        voltages, saturated = [], []
+        for conductance in self.line.conductance(forces)[:, None] * self._gains():
+            recording, stream = stream.take(np.broadcast_to(conductance, (samples, self.sensors)))
+            voltages.append(recording.filtered[-1])
+            saturated.append(recording.saturated.any(axis=0))
+        return forces, np.array(voltages), np.array(saturated)
+
+    def _gains(self) -> Array:
+        return np.ones(self.sensors) if self.scatter is None else self.scatter.gains((self.sensors,), self.line)
+
+
+class MeasuredCalibration(FrozenModel):
+    """Readings from a file."""
+
+    kind: Literal["file"] = "file"
+    path: str
+    """CSV file, relative to the working folder; header such as ``force [N], voltage [V]``."""
+    sensors: Annotated[int, Field(ge=1, le=MOST_SENSORS)] = 1
+    """Number of columns of voltage; beyond one they are numbered: ``force [N], voltage 1 [V], voltage 2 [V]``."""
+
+    def truth(self) -> None:
+        """No true line is known."""
+        return None
+
+    def readings(self, chain: SignalChain) -> Readings:
+        """The columns of the file; a voltage at an end of the converter's range counts as saturated.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read.
+        InvalidQuantity
+            If it does not hold one finite force and one voltage of every sensor per row.
+        """
+        names = ["voltage"] if self.sensors == 1 else [f"voltage {number}" for number in range(1, self.sensors + 1)]
+        columns = read_columns(self.path, {"force": "N", **dict.fromkeys(names, "V")})
+        missing = [name for name in ("force", *names) if name not in columns]
+        if missing:
+            raise InvalidQuantity(f"{self.path}: no column {', '.join(missing)}; allowed: force [N], {' [V], '.join(names)} [V]")
+        voltage = np.stack([columns[name] for name in names], axis=1)
+        return columns["force"], voltage, chain.converter.at_end(voltage)

@@ -1,0 +1,165 @@
+"""Standard linear solid from creep of a film under constant forces, and the lines of its coefficients over the force."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import OptimizeWarning, curve_fit
+from scipy.stats import linregress
+from scipy.stats import t as student
+
+from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.identification.columns import read_columns
+from tactsim.sensors.composite import Composite
+from tactsim.sensors.film_equations import creep_strain
+
+Array = np.ndarray
+COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
+"""E0 in Pa, E1 in Pa and mu1 in Pa s."""
+FEWEST_SAMPLES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class CreepTest:
+    """Strain (n,) at times (n,) in s under a constant force in N."""
+
+    force: float
+    time: Array
+    strain: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CreepFit:
+    """Coefficients (3,) of one test in the order of ``COEFFICIENTS``, their half-widths (3,), residuals (n,) of the strain."""
+
+    force: float
+    coefficients: Array
+    half_widths: Array
+    residuals: Array
+
+
+@dataclass(frozen=True)
+class CoefficientLine:
+    """A coefficient over the force: slope per N, intercept, and the half-widths of their intervals."""
+
+    slope: float
+    intercept: float
+    slope_half_width: float
+    intercept_half_width: float
+
+
+def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> CreepFit:
+    r"""E0, E1 and mu1 by least squares of the strain.
+
+    .. math:: \varepsilon(t) = \frac{F}{A E_0} + \frac{F}{A E_1} \left(1 - e^{-E_1 t / \mu_1}\right)
+
+    Parameters
+    ----------
+    test : CreepTest
+    area : float
+        A in m^2.
+    confidence : float
+        Of the intervals, from the covariance of the fit and Student's distribution.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there are fewer than six samples, times do not increase from 0 s or later, or force or area is not positive.
+    ConvergenceError
+        If no fit is found, or the data do not determine the coefficients.
+
+    Source: thesis, eq. 2.1.15 with the exponent of errata E1.
+    """
+    _check(test, area)
+    stress = test.force / area
+    end, first = float(test.time[-1]), max(float(test.strain[0]), 1e-12)
+    late = max(float(test.strain[-1] - first), 1e-3 * first)
+
+    def strain(t: Array, *logarithms: float) -> Array:
+        instantaneous, delayed, rate = np.exp(logarithms)
+        return stress / instantaneous - np.expm1(-rate * t) * stress / delayed
+
+    start = np.log([stress / first, stress / late, 5 / end])
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", OptimizeWarning)  # an infinite covariance, which is judged below
+            found, covariance = curve_fit(strain, test.time, test.strain, p0=start, maxfev=5000)
+    except RuntimeError as error:
+        raise ConvergenceError(f"the creep at {test.force:g} N could not be fitted: {error}") from None
+    if not np.isfinite(covariance).all():
+        raise ConvergenceError(f"the creep at {test.force:g} N does not determine E0, E1 and mu1; record longer")
+    # mu1 = E1 / rate: its logarithm is a difference of two fitted ones.
+    change = np.array([[1.0, 0, 0], [0, 1, 0], [0, 1, -1]])
+    values = np.exp(change @ found)
+    deviations = values * np.sqrt(np.diag(change @ covariance @ change.T))
+    quantile = student.ppf((1 + confidence) / 2, len(test.time) - 3)
+    return CreepFit(test.force, values, quantile * deviations, test.strain - strain(test.time, *found))
+
+
+def coefficient_lines(fits: Sequence[CreepFit], *, confidence: float = 0.95) -> dict[str, CoefficientLine]:
+    """Straight lines of E0, E1 and mu1 over the force, by least squares as in thesis Fig. 2.6b.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there are fewer than three different forces, which leave nothing to judge a line by.
+    """
+    forces = np.array([fit.force for fit in fits])
+    if len(np.unique(forces)) < 3:
+        raise InvalidQuantity(f"creep at {len(np.unique(forces))} different forces; allowed: at least 3 for lines with intervals")
+    quantile = student.ppf((1 + confidence) / 2, len(forces) - 2)
+    lines = {}
+    for k, name in enumerate(COEFFICIENTS):
+        line = linregress(forces, [fit.coefficients[k] for fit in fits])
+        widths = (quantile * line.stderr, quantile * line.intercept_stderr)
+        lines[name] = CoefficientLine(float(line.slope), float(line.intercept), float(widths[0]), float(widths[1]))
+    return lines
+
+
+def synthetic_creep(
+    composite: Composite, forces: Sequence[float], times: Array, *, noise: float, generator: np.random.Generator
+) -> list[CreepTest]:
+    """Tests on the reference area with Gaussian noise, its standard deviation relative to each test's last strain."""
+    tests = []
+    for force in forces:
+        strain = creep_strain(composite, force, times)
+        tests.append(CreepTest(float(force), times, strain + noise * strain[-1] * generator.standard_normal(len(times))))
+    return tests
+
+
+def read_creep(path: str | Path) -> list[CreepTest]:
+    """Tests of a CSV file with the columns ``time [s], force [N], strain [1]``, one test for each force.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be read.
+    InvalidQuantity
+        If a column is missing or a row is wrong, with file and line.
+    """
+    columns = read_columns(path, {"time": "s", "force": "N", "strain": "1"})
+    missing = {"time", "force", "strain"} - set(columns)
+    if missing:
+        raise InvalidQuantity(f"{path}: no column {', '.join(sorted(missing))}; needed: time [s], force [N], strain [1]")
+    chosen = [(force, columns["force"] == force) for force in np.unique(columns["force"])]
+    return [CreepTest(float(force), columns["time"][rows], columns["strain"][rows]) for force, rows in chosen]
+
+
+def _check(test: CreepTest, area: float) -> None:
+    if not (test.force > 0 and area > 0):
+        raise InvalidQuantity(f"force {test.force} N on {area} m^2; allowed: > 0")
+    if len(test.time) < FEWEST_SAMPLES or len(test.time) != len(test.strain):
+        raise InvalidQuantity(
+            f"creep at {test.force:g} N has {len(test.time)} times and {len(test.strain)} strains; "
+            f"allowed: as many, at least {FEWEST_SAMPLES}"
+        )
+    if not (np.isfinite(test.time).all() and np.isfinite(test.strain).all()):
+        raise InvalidQuantity(f"creep at {test.force:g} N has values that are not finite")
+    if test.time[0] < 0 or (np.diff(test.time) <= 0).any():
+        raise InvalidQuantity(f"the times of the creep at {test.force:g} N must increase from 0 s or later")
+    if np.max(test.strain) <= 0:
+        raise InvalidQuantity(f"the creep at {test.force:g} N never strains; compressive strain is positive")

@@ -1,0 +1,70 @@
+"""Initial resistance and contact resistance of a composite from a measured straight line of conductance over force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from tactsim.errors import InvalidQuantity
+from tactsim.sensors.composite import Composite
+from tactsim.sensors.film import Film
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class FilmLine:
+    """A composite identified to a line: resistances in ohm, forces (n,) in N and relative errors (n,) of the resistance."""
+
+    initial_resistance: float
+    contact_resistance: float
+    forces: Array
+    errors: Array
+
+
+def identify_film(
+    composite: Composite,
+    line: tuple[float, float],
+    *,
+    forces: tuple[float, float] = (0.5, 5.0),
+    delay: float = 1.0,
+    points: int = 91,
+) -> FilmLine:
+    r"""Resistances R0 and R_1 with the least squares of relative errors of the resistance at evenly spaced forces.
+
+    .. math:: \frac{R_1}{\sqrt{F}} + R_0 (1 - \varepsilon) e^{-\gamma s_0 \varepsilon} = \frac{1}{m F + n}
+
+    Parameters
+    ----------
+    composite : Composite
+        Gives filler and creep; its resistances are not used.
+    line : (float, float)
+        m in S/N and n in S of the conductance C = m F + n.
+    forces : (float, float)
+        Range in N; the thesis (7.1) wants accuracy from 0.5 to 5 N.
+    delay : float
+        Time in s after the force was applied at which the line was measured (thesis 2.2.1: 1 s).
+
+    Raises
+    ------
+    InvalidQuantity
+        If the line or the range is not positive, or one of the resistances comes out as zero.
+
+    Source: errata E28; thesis, eqs. 2.1.17 and 2.2.1.
+    """
+    applied = np.linspace(*forces, points)
+    measured = line[0] * applied + line[1]
+    if not (0 < forces[0] < forces[1] and delay > 0 and np.all(measured > 0)):
+        raise InvalidQuantity(f"line {line} S/N, S over {forces} N at {delay} s; allowed: rising forces, C > 0")
+    # With both resistances at 1 ohm the film's resistance is R_pol / R0 + 1 / sqrt(F).
+    unit = Film(composite=composite.model_copy(update={"initial_resistance": 1.0, "contact_resistance": 1.0}))
+    history = np.tile(applied, (2, 1))
+    contact = 1 / np.sqrt(applied)
+    relative = 1 / unit.conductance([0.0, delay], history)[-1] - contact
+    columns = np.column_stack([relative, contact]) * measured[:, None]
+    (initial, touching), _ = nnls(columns, np.ones(points))
+    if min(initial, touching) <= 0:
+        raise InvalidQuantity(f"the line {line} S/N, S gives resistances {initial:g} and {touching:g} ohm; both must be positive")
+    return FilmLine(float(initial), float(touching), applied, columns @ (initial, touching) - 1)

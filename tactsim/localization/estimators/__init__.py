@@ -1,0 +1,1 @@
+"""Estimators of a case file: one file each, found by its ``kind``."""

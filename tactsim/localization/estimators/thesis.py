@@ -1,0 +1,92 @@
+"""The thesis's algorithm as an estimator: place from the top view, depth from the ratio of both jaws, no size."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import InputError
+from tactsim.localization.bands import Form
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.section_image import depth_share
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+
+class ThesisEstimator(Estimator):
+    r"""One inclusion at most, read off the views of thesis 6.3 at real positions instead of pixels.
+
+    The signal is the force of each taxel, or with ``background: reference`` what it reads more than the tissue without a lump
+    (less, where the strongest change is a loss: an inclusion softer than the tissue). Its sum over both jaws is the top view.
+
+    Something is there if the largest sum exceeds its base by more than ``threshold`` standard deviations. With a reference the
+    base is zero and the deviation 2 noise, as the reference has noise of its own. Without, the base is the median of the sums
+    and the deviation :math:`\sqrt 2` noise; then the unevenness of plain tissue under the jaws counts as a signal, the known
+    weakness of the thesis's algorithm. The depth is a/(a + b) of eq. .2.3, of the undeformed thickness.
+
+    Source: thesis, 6.3.1 to 6.3.4 and Appendix .2, errata E13, E24, E25.
+    """
+
+    kind: Literal["thesis"] = "thesis"
+    background: Literal["none", "reference"] = "none"
+    """Whether the readings of tissue without a lump at the same closing are taken off."""
+    lateral: Literal["centroid", "peak"] = "centroid"
+    """Centroid of the sums above their base, or the brightest point of the top view, which lies in the centre of a column."""
+    form: Form = "corrected"
+    """Eq. .2.3 corrected (E13), or as printed, which turns the depth upside down."""
+    threshold: Annotated[float, Field(ge=0)] = 4.0
+    """Standard deviations of the noise by which the strongest place must exceed its base."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The corrected algorithm on the bare forces."""
+        return cls()
+
+    def estimate(self, readings: Readings) -> Estimate:
+        """At most one inclusion, without radius, contrast or covariance."""
+        signal, softer = self._signal(readings)
+        upper, lower = np.maximum(signal, 0.0)
+        total = upper + lower
+        base = 0.0 if self.background == "reference" else float(np.median(total))
+        strength, least = float(total.max()) - base, self.threshold * self._deviation(readings)
+        over = f"{'less' if softer else 'more'} than {'the reference' if self.background == 'reference' else 'the median of all'}"
+        words = f"the strongest place reads {format_quantity(strength, 'N')} {over}"
+        limit = f"{self.threshold:g} standard deviations of the noise, {format_quantity(least, 'N')}"
+        if strength <= least:
+            return Estimate(False, (), f"nothing there: {words}, within {limit}")
+        weights = self._weights(total, base)
+        x, y = readings.taxel_places()
+        share = float(depth_share((weights * upper).sum(), (weights * lower).sum(), self.form))
+        place = (float(weights.sum(axis=0) @ x), float(weights.sum(axis=1) @ y), float((1 - share) * readings.block_size[2]))
+        return Estimate(True, (EstimatedInclusion("unknown", place),), f"{words}, beyond {limit}")
+
+    def _signal(self, readings: Readings) -> tuple[Array, bool]:
+        """Signal (jaw, row, column) in N, and whether it is a loss, as over something softer than the tissue."""
+        if self.background == "none":
+            return readings.filled, False
+        if readings.difference is None:
+            raise InputError(
+                "background: reference needs readings of the tissue without a lump; give a reference, or background: none"
+            )
+        sums = readings.difference.sum(axis=0)
+        softer = bool(-sums.min() > sums.max())
+        return (-readings.difference if softer else readings.difference), softer
+
+    def _deviation(self, readings: Readings) -> float:
+        """Standard deviation in N of the sum of both jaws at one place."""
+        return float(readings.noise * (2.0 if self.background == "reference" else np.sqrt(2.0)))
+
+    def _weights(self, total: Array, base: float) -> Array:
+        """Share of each place (row, column) in the position found; they add up to 1."""
+        if self.lateral == "centroid":
+            found = np.maximum(total - base, 0.0)
+        else:
+            found = np.zeros_like(total)
+            pairs = total[:-1] + total[1:] if len(total) > 1 else total
+            row, column = np.unravel_index(int(pairs.argmax()), pairs.shape)
+            rows = slice(int(row), int(row) + 2)
+            found[rows, column] = total[rows, column]
+        return found / found.sum()

@@ -1,0 +1,54 @@
+"""Shipped composites, each with the source of its numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tactsim.errors import UnknownName
+from tactsim.sensors.composite import Composite
+from tactsim.sensors.tunnelling import contact_coefficient
+
+_CREEP: dict[str, Any] = {
+    "instantaneous": {"slope": 60_900.0, "intercept": 651_200.0},
+    "delayed": {"slope": 449_900.0, "intercept": 397_700.0},
+    "viscosity": {"slope": 1_208_200.0, "intercept": 2_892_800.0},
+    "reference_area": 15e-3 * 15e-3,
+    "largest_force": 8.0,
+}
+"""Eq. 2.3.1 with errata E3; creep tests at 2, 4, 6 and 8 N."""
+_FILLER: dict[str, Any] = {"volume_fraction": 0.2873, "particle_diameter": 500e-9, "barrier": "0.05 eV"}
+"""Table 2.1 and section 2.1.1."""
+_RESISTIVITY, _THICKNESS, _HARDNESS = 5.0, 0.2e-3, 52e6
+"""Table 2.1: 500 ohm cm, 0.2 mm, Meyer hardness 52, its unit taken as MPa."""
+
+_LITERAL = Composite(
+    **_FILLER,
+    **_CREEP,
+    initial_resistance=_RESISTIVITY * _THICKNESS / _CREEP["reference_area"],
+    contact_resistance=contact_coefficient((_RESISTIVITY, 0.0), _HARDNESS),
+    source="thesis, Table 2.1 and eq. 2.3.1, taken literally; hardness 52 read as MPa (errata E28)",
+)
+LIBRARY: dict[str, Composite] = {
+    "lingstat_literal": _LITERAL,
+    "lingstat_identified": _LITERAL.model_copy(
+        update={
+            "initial_resistance": 56_940.0,
+            "contact_resistance": 9_948.0,
+            "source": "identified to F = 20.94 C - 0.132 (thesis, 3.1.2; C in mS) 0.5 to 5 N at 1 s; rest lingstat_literal",
+        }
+    ),
+}
+"""Name -> composite."""
+
+
+def named_composite(name: str) -> Composite:
+    """A shipped composite.
+
+    Raises
+    ------
+    UnknownName
+        With the nearest name.
+    """
+    if name not in LIBRARY:
+        raise UnknownName("composite", name, LIBRARY)
+    return LIBRARY[name]

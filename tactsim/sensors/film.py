@@ -1,0 +1,199 @@
+"""Resistance of a piezoresistive film under any history of force: tunnelling, contact at the electrodes, and creep.
+
+The creep law is that of errata E29, whose coefficients depend on the force. Strain and delayed strain follow
+
+    eps = sigma / E0(F) + eps1,    mu1(F) eps1' + E1(F) eps1 = sigma,    sigma = F / A
+
+which under a constant force gives the strain of eq. 2.3.1 exactly. The force is linear between samples; each interval is
+integrated with the coefficients of its middle (exponential midpoint rule, second order, exact for a constant force).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+
+from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.interfaces import Sensor
+from tactsim.sensors.composite import AnyComposite
+from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.force_history import checked_conductances, checked_forces, checked_times
+from tactsim.sensors.tunnelling import relative_resistance
+from tactsim.units import Area
+
+Array = np.ndarray
+HOLM = 100.0
+"""Largest force in N of Holm's contact resistance (thesis, before eq. 2.1.12)."""
+INVERSION = 1e-12
+"""Relative accuracy of a force found from its conductance."""
+ITERATIONS = 60
+COMPLEX_STEP = 1e-30
+"""Imaginary part of the logarithm of the force, with which a slope is exact to round-off."""
+
+
+@dataclass(frozen=True)
+class FilmState:
+    """Where a film stands after its last sample: time in s, forces in N and delayed strains, of the shape of the channels."""
+
+    time: float
+    force: Array
+    delayed_strain: Array
+
+
+class Film(Sensor):
+    """A film of composite between two electrodes, pressed by a total force in N; any number of equal films at once.
+
+    A film of another area than the composite's reference is strained by its pressure, and its unstrained resistance is inverse
+    to its area; the contact resistance depends on the force alone (2.1.12).
+    """
+
+    kind: Literal["film"] = "film"
+    composite: AnyComposite = named_composite("lingstat_identified")
+    """Name of a shipped composite, or its numbers."""
+    active_area: Annotated[Area, Field(gt=0)] | None = None
+    """Area that carries the force; null is the composite's reference area."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """Lingstat, identified to the measured line."""
+        return cls()
+
+    @property
+    def magnification(self) -> float:
+        """Reference area over active area, dimensionless."""
+        reference = self.composite.reference_area
+        return reference / (self.active_area or reference)
+
+    @property
+    def largest_force(self) -> float:
+        """Force in N up to which the creep was measured."""
+        return self.composite.largest_force / self.magnification
+
+    def read(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Conductance; see ``conductance``."""
+        return self.conductance(time, force)
+
+    def conductance(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Conductance in S of the whole film with its contacts, 0 without force.
+
+        Parameters
+        ----------
+        time : (n,) array
+            Strictly increasing, in s. The film is at rest before the first sample, at which the first force jumps on.
+        force : (n, ...) array
+            Compressive force in N, 0 <= F <= 100; linear between samples.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a force is negative, too large or not finite.
+        """
+        return self.advance(None, time, force)[0]
+
+    def advance(self, state: FilmState | None, time: ArrayLike, force: ArrayLike) -> tuple[Array, FilmState]:
+        """Conductance in S of the next samples, and the state after them; ``None`` is a film at rest."""
+        times = checked_times(time, after=None if state is None else state.time)
+        forces = checked_forces(force, len(times), HOLM)
+        strains = self._delayed_strains(state, times, forces)
+        return self._conductance(forces, strains), FilmState(float(times[-1]), forces[-1], strains[-1])
+
+    def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Compressive strain, of the shape of ``force``; the arguments are those of ``conductance``."""
+        times = checked_times(time)
+        forces = checked_forces(force, len(times), HOLM)
+        return self._strain(forces, self._delayed_strains(None, times, forces))
+
+    def sensitivity(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Immediate change of the conductance with the force in S/N, of the shape of ``force``; infinite without force."""
+        times = checked_times(time)
+        forces = checked_forces(force, len(times), HOLM)
+        delayed = self._delayed_strains(None, times, forces)
+        loaded = forces > 0
+        slope = self._conductance(forces * (1 + 1j * COMPLEX_STEP), delayed).imag / COMPLEX_STEP
+        return np.divide(slope, forces, where=loaded, out=np.full(forces.shape, np.inf))
+
+    def force(self, time: ArrayLike, conductance: ArrayLike) -> Array:
+        """Force in N whose history gives these conductances: the inverse of ``conductance``, creep included.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a conductance is negative, not finite or that of more than 100 N.
+        ConvergenceError
+            If a force is not found to 1e-12.
+        """
+        return self.retreat(None, time, conductance)[0]
+
+    def retreat(self, state: FilmState | None, time: ArrayLike, conductance: ArrayLike) -> tuple[Array, FilmState]:
+        """Force in N of the next samples of conductance in S, and the state after them."""
+        times = checked_times(time, after=None if state is None else state.time)
+        values = checked_conductances(conductance, len(times))
+        found = np.empty_like(values)
+        for n, (moment, value) in enumerate(zip(times, values, strict=True)):
+            found[n], state = self._force(state, float(moment), value)
+        assert state is not None  # there is at least one sample
+        return found, state
+
+    def _strain(self, force: Array, delayed: Array) -> Array:
+        felt = force * self.magnification
+        return felt / (self.composite.reference_area * self.composite.instantaneous.at(felt)) + delayed
+
+    def _conductance(self, force: Array, delayed: Array) -> Array:
+        composite, root = self.composite, np.sqrt(force)
+        relative = relative_resistance(self._strain(force, delayed), composite.exponent)
+        film = composite.initial_resistance * self.magnification * relative
+        return root / (composite.contact_resistance + root * film)
+
+    def _decay(self, force: Array, duration: Array) -> tuple[Array, Array]:
+        """Factor of the delayed strain and what is added to it while a force in N acts for a duration in s."""
+        felt, composite = force * self.magnification, self.composite
+        modulus = composite.delayed.at(felt)
+        exponent = -duration * modulus / composite.viscosity.at(felt)
+        return np.exp(exponent), -np.expm1(exponent) * felt / (composite.reference_area * modulus)
+
+    def _delayed_strains(self, state: FilmState | None, times: Array, forces: Array) -> Array:
+        start = np.zeros(forces.shape[1:]) if state is None else state.delayed_strain
+        before_time = times[:1] if state is None else [state.time]
+        before_force = forces[:1] if state is None else state.force[None]
+        steps = np.diff(times, prepend=before_time).reshape(-1, *[1] * (forces.ndim - 1))
+        factors, gains = self._decay((forces + np.concatenate([before_force, forces[:-1]])) / 2, steps)
+        strains, last = np.empty_like(forces), start
+        for n in range(len(times)):
+            last = strains[n] = factors[n] * last + gains[n]
+        return strains
+
+    def _force(self, state: FilmState | None, time: float, conductance: Array) -> tuple[Array, FilmState]:
+        """Force in N at the next sample and the state there: Newton's method in the logarithms of force and conductance."""
+        step = np.asarray(0.0 if state is None else time - state.time)
+        before = None if state is None else state.force
+        delayed = np.zeros(conductance.shape) if state is None else state.delayed_strain
+        loaded = conductance > 0
+        wanted = np.log(conductance, where=loaded, out=np.zeros_like(conductance))
+        force = np.where(loaded, np.clip(0.0 if before is None else before, 1e-3, HOLM), 0.0)
+
+        def delayed_strain(force: Array) -> Array:
+            factor, gain = self._decay((force + (force if before is None else before)) / 2, step)
+            return factor * delayed + gain
+
+        for _ in range(ITERATIONS):
+            # One complex evaluation gives value and slope: every function here is analytic.
+            nearby = force * np.exp(1j * COMPLEX_STEP)
+            found = np.log(self._conductance(nearby, delayed_strain(nearby)), where=loaded, out=np.ones_like(nearby))
+            slope = np.where(loaded, found.imag / COMPLEX_STEP, 1.0)
+            change = np.where(loaded, np.clip((wanted - found.real) / slope, -2.0, 2.0), 0.0)
+            force = force * np.exp(change)
+            if np.any(force > 10 * HOLM):
+                break
+            if np.all(np.abs(change) <= INVERSION):
+                break
+        else:
+            raise ConvergenceError(
+                f"no force was found for the conductance at {time:g} s: last change {np.abs(change).max():.1e}"
+            )
+        if np.any(force > HOLM):
+            raise InvalidQuantity(f"the conductance at {time:g} s is that of more than {HOLM:g} N, up to which the film is known")
+        return force, FilmState(time, force, delayed_strain(force))

@@ -1,0 +1,27 @@
+"""The straight line that a film itself gives, when it is calibrated with constant forces."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import linregress
+
+from tactsim.errors import InvalidQuantity
+from tactsim.sensors.calibration import LinearCalibration
+from tactsim.sensors.film import Film
+
+
+def film_line(film: Film, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:
+    """Least-squares line C = m F + n through conductances read ``delay`` seconds after constant forces, in N, between two bounds.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the bounds are not 0 <= low < high.
+
+    Source: thesis, section 2.2.1: read one second after the force was applied.
+    """
+    if not 0 <= forces[0] < forces[1]:
+        raise InvalidQuantity(f"forces of the calibration are {forces} N; allowed: 0 <= low < high")
+    applied = np.linspace(*forces, points)
+    fit = linregress(applied, film.conductance([0.0, delay], np.tile(applied, (2, 1)))[-1])
+    return LinearCalibration(slope=float(fit.slope), intercept=float(fit.intercept))

@@ -1,0 +1,123 @@
+"""Small sweeps of the closed form for the tests of data sets, computed in this process."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.dataset.computing import computed
+from tactsim.dataset.executor import Executor, Outcome
+from tactsim.dataset.layout import layout_of
+from tactsim.dataset.running import SweepRun, opened_run
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import Sweep, load_sweep
+
+TEXT = """\
+schema: tactsim/sweep/1
+title: A small sweep
+experiment:
+  kind: closed_form
+  material: {kind: neo_hookean, c10: {log_uniform: [1 kPa, 20 kPa]}, relaxation: {fractions: [0.5], times: [1 s]}}
+  inner_radius: {uniform: [1 mm, 2.5 mm]}
+  outer_radius: {uniform: [2 mm, 4 mm]}
+  loading:
+    control: displacement
+    pieces:
+      - {kind: ramp, to: {uniform: [0.1 mm, 0.2 mm]}, duration: 1 s}
+  points: 5
+sweep:
+  samples: 24
+  samples_per_specimen: 3
+  within_specimen: [experiment.loading.pieces.0.to]
+  seed: 7
+  times: 4
+  reading: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}}
+  splits:
+    train: 0.5
+    validation: 0.25
+    out_of_distribution: {softer: {instantaneous_shear_modulus: {below: 4000}}}
+"""
+
+
+class Inline(Executor):
+    """Computes in this process; may lose what it is told to lose."""
+
+    def __init__(self, sweep: Sweep, *, losing: dict[int, int] | None = None, stop_after: int | None = None):
+        self.sweep, self.losing, self.stop_after = sweep, dict(losing or {}), stop_after
+        self.tasks: list[tuple[int, ...]] = []
+
+    @property
+    def slots(self) -> int:
+        return 1
+
+    def submit(self, samples: tuple[int, ...]) -> None:
+        self.tasks.append(samples)
+
+    def wait(self, seconds: float) -> list[Outcome]:
+        task = self.tasks.pop(0)
+        if self.stop_after is not None:
+            self.stop_after -= 1
+            if self.stop_after < 0:
+                raise KeyboardInterrupt
+        unlucky = [number for number in task if self.losing.get(number, 0) > 0]
+        if unlucky:
+            self.losing[unlucky[0]] -= 1
+            return [Outcome(task, None, "its process ended (SIGKILL)")]
+        return [Outcome(task, computed(self.sweep.text, task))]
+
+    def close(self) -> None:
+        self.tasks = []
+
+
+def sweep_file(folder: Path, text: str = TEXT) -> Path:
+    """The file of a sweep."""
+    path = folder / "sweep.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def run_sweep(sweep: Sweep, place: Path, *, resume: bool = False, **options: object) -> SweepRun:
+    """A sweep computed in this process."""
+    with opened_run(sweep, place, resume=resume, accept_changes=resume) as going:
+        going.compute(Inline(sweep, **options), lambda tally: None)  # type: ignore[arg-type]
+    return going
+
+
+def small_store(folder: Path, text: str = TEXT) -> Path:
+    """The store of a whole sweep."""
+    place = folder / "small.zarr"
+    run_sweep(load_sweep(sweep_file(folder, text)), place)
+    return place
+
+
+def content(place: Path) -> dict[str, np.ndarray]:
+    """Every variable but wall times and code."""
+    store = Store.open(place)
+    return {name: store.read(name) for name in store.arrays if name not in ("wall_time", "code")}
+
+
+def assert_same(one: Path, other: Path) -> None:
+    """Refuse two stores whose content differs."""
+    first, second = content(one), content(other)
+    assert first.keys() == second.keys()
+    for name, values in first.items():
+        np.testing.assert_array_equal(values, second[name], err_msg=name)
+
+
+def main() -> None:
+    """``python sweeps.py FILE STORE``: goes on with a store in this process, folding the journal often."""
+    import sys
+
+    from tactsim.dataset import running
+
+    running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
+    sweep, place = load_sweep(sys.argv[1]), Path(sys.argv[2])
+    layout_of(sweep)
+    sys.stdout.write("begins\n")
+    sys.stdout.flush()
+    run_sweep(sweep, place, resume=(place / "zarr.json").exists())
+
+
+if __name__ == "__main__":
+    main()

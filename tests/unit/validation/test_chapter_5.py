@@ -1,0 +1,93 @@
+"""The table of chapter 5: rows without simulations hold, a number wrong by three tolerances does not, and its evaluators."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactsim.errors import InputError
+from tactsim.validation import load_tables
+from tactsim.validation.comparison import compare_row
+from tactsim.validation.evaluator import Inputs
+from tactsim.validation.evaluators.probe_force_ratio import Press, ProbeForceRatio
+from tactsim.validation.evaluators.switch_mean_rate import SwitchMeanRate
+from tactsim.validation.execution import simulated
+from tactsim.validation.study import RunOutcome
+from tactsim.validation.table import Bound, OutsideBy, Row
+
+SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+TABLE = load_tables(SHIPPED, ["chapter_5"]).tables["chapter_5"]
+FAST = [study for study in TABLE.studies if study.name != "finite_elements"]
+KINDS = ("probe_dimension", "switch_mean_rate")
+
+
+@pytest.fixture(scope="module")
+def inputs() -> Inputs:
+    """The studies of the fast model, computed."""
+    studies = {
+        study.name: tuple(simulated((run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
+        for study in FAST
+    }
+    return Inputs(folder=SHIPPED, studies=studies)
+
+
+def without_finite_elements(row: Row) -> bool:
+    return getattr(row.evaluate, "study", "") != "finite_elements"
+
+
+def test_rows_hold_without_finite_elements(inputs: Inputs) -> None:
+    rows = [row for row in TABLE.rows if without_finite_elements(row)]
+    assert len(rows) == len(TABLE.rows) - 4
+    assert [row.id for row in rows if not compare_row(row, inputs).held] == []
+
+
+@pytest.mark.parametrize(
+    "row", [pytest.param(row, id=row.id) for row in TABLE.rows if getattr(row.evaluate, "kind", "") in KINDS]
+)
+def test_a_number_wrong_by_three_tolerances_is_noticed(row: Row) -> None:
+    assert row.expected is not None
+    wrong = (
+        row.expected * (1 + 3 * row.state.tolerance)
+        if isinstance(row.state, OutsideBy)
+        else row.expected + 3 * (row.allowed or 1)
+    )
+    printed: Any = wrong if row.unit == "1" else f"{wrong!r} {row.unit}"
+    assert not compare_row(row.model_copy(update={"printed": printed}), Inputs()).held
+
+
+def test_every_finding_can_fail(inputs: Inputs) -> None:
+    for row in TABLE.rows:
+        if isinstance(row.state, Bound):
+            turned = {"above": None, "below": row.state.above} if row.state.above else {"above": row.state.below, "below": None}
+            assert not compare_row(row.model_copy(update={"state": row.state.model_copy(update=turned)}), inputs).held
+
+
+def touch(force: float) -> RunOutcome:
+    """A pretended way in and back, the force proportional to the depth on the way in and nothing on the way back."""
+    depth = np.array([0.0, 2.5e-3, 5e-3, 2.5e-3, 0.0])
+    history = {"tissue": np.ones(5), "rate": np.full(5, 1e-3), "depth": depth, "force": force * depth * (np.arange(5) < 3)}
+    values = {name: tuple(column.tolist()) for name, column in history.items()}
+    return RunOutcome(id="r", case_id="r", status="converged", reason="end", quantities={}, history=values, seconds=0.0)
+
+
+def test_a_ratio_is_taken_on_the_way_in() -> None:
+    press = Press(tissue=1, rate=1e-3)
+    found = ProbeForceRatio(study="s", run="r", press=press, over=press, depth=1.2e-3)
+    assert found.found(Inputs(studies={"s": (touch(2.0),)})) == 1.0
+    for other in ({"tissue": 2, "rate": 1e-3}, {"tissue": 1, "rate": 2e-3}):
+        with pytest.raises(InputError, match="no touch of tissue"):
+            found.model_copy(update={"over": Press(**other)}).found(Inputs(studies={"s": (touch(2.0),)}))
+    with pytest.raises(InputError, match="down to"):
+        found.model_copy(update={"depth": 6e-3}).found(Inputs(studies={"s": (touch(2.0),)}))
+    failed = touch(2.0).model_copy(update={"status": "failed", "reason": "gave up"})
+    with pytest.raises(InputError, match="gave up"):
+        found.found(Inputs(studies={"s": (failed,)}))
+
+
+def test_coarse_sampling_misses_the_rate_by_its_step() -> None:
+    coarse = SwitchMeanRate(rate=0.97e-3, sampling_rate=20.0).found(Inputs())
+    assert coarse == pytest.approx(0.97e-3, rel=0.02)
+    assert coarse != pytest.approx(0.97e-3, rel=1e-4)
