@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from tactsim.display.canvas import new_figure, png, styled
 from tactsim.display.grasp_history import draw_histories, has_history, panels
 from tactsim.display.grasp_maps import draw_maps
+from tactsim.display.grasp_moment import shown_moment
 from tactsim.display.grasp_parts import grasp_of
 from tactsim.display.grasp_section import draw_section
 from tactsim.display.grasp_view import VIEW, grasp_view
@@ -35,14 +36,15 @@ class GraspFigures(ResultFigures):
         """What the result has fields and steps for; nothing if no step was accepted."""
         if not result.steps:
             return {}
-        drawings: dict[str, Drawing] = {"grasp.png": lambda: png(grasp_figure(result))}
-        drawings["grasp_maps.png"] = lambda: png(maps_figure(result))
+        moment = shown_moment(result) if result.status is Status.CONVERGED else result
+        drawings: dict[str, Drawing] = {"grasp.png": lambda: png(grasp_figure(moment))}
+        drawings["grasp_maps.png"] = lambda: png(maps_figure(moment))
         if result.frames:
-            drawings["grasp_section.png"] = lambda: png(section_figure(result))
+            drawings["grasp_section.png"] = lambda: png(section_figure(moment))
         if has_history(result):
             drawings["grasp_history.png"] = lambda: png(history_figure(result))
         if has_views(result):
-            drawings[VIEWS] = lambda: png(views_figure(result))
+            drawings[VIEWS] = lambda: png(views_figure(moment))
         if has_voltages(result):
             drawings[VOLTAGES] = lambda: png(voltages_figure(result))
         if result.frames:

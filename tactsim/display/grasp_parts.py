@@ -95,9 +95,9 @@ def history(result: Result, name: str) -> Array:
 
 
 def ending(result: Result) -> str:
-    """The last step in words: how far the jaws have closed."""
-    closing = result.quantities["displacement"].value
-    return f"each jaw closed by {format_quantity(float(closing), 'm')}"
+    """What is shown in words: how far the jaws have closed, and which moment it is if not the last."""
+    closing, moment = result.quantities["displacement"].value, result.details.get("moment")
+    return f"each jaw closed by {format_quantity(float(closing), 'm')}" + (f"; {moment}" if moment else "")
 
 
 def inclusions_of(frame: FieldFrame) -> dict[int, Array]:

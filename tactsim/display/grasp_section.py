@@ -51,7 +51,8 @@ def draw_section(axis: Axes, result: Result, grasp: Grasp) -> None:
     """The cut of the last frame."""
     frame = result.frames[-1]
     across, level, number = cutting_plane(frame, grasp.size)
-    cut = plane_cut(frame, across, level, np.asarray(frame.point_data["pressure [Pa]"]).ravel())
+    pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
+    cut = plane_cut(frame, across, level, np.asarray(pressure))
     _draw_pressure(axis, cut)
     _draw_outlines(axis, cut, result)
     limits = _window(cut, grasp)
@@ -60,7 +61,8 @@ def draw_section(axis: Axes, result: Result, grasp: Grasp) -> None:
     along = "yx"[across]
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
     through = f"the middle of {described(result.details, number)}" if number else "the middle of the block"
-    axis.set_title(f"cut at {'xy'[across]} = {1e3 * level:.3g} mm through {through}; {ending(result)}", loc="left")
+    place = f"cut at {'xy'[across]} = {1e3 * level:.3g} mm through {through}"
+    axis.set_title(place + ("\n" if "moment" in result.details else "; ") + ending(result), loc="left")
     despined(axis)
 
 

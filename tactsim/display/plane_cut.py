@@ -67,30 +67,40 @@ def regions_of(frame: FieldFrame) -> Array:
 
 
 def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> PlaneCut:
-    """The cut where the deformed coordinate ``axis`` is ``level`` in m, with nodal ``values`` (n,) interpolated on it."""
+    """The cut where the deformed coordinate ``axis`` is ``level`` in m, with values interpolated on it.
+
+    ``values`` are nodal (n,), or (E, 4) at the corners of each element, linear in it: these may jump between elements.
+    """
     nodes, others = deformed(frame), [k for k in range(3) if k != axis]
-    carried = np.column_stack([nodes[:, axis] - level, nodes[:, others], values])
+    carried = np.column_stack([nodes[:, axis] - level, nodes[:, others]])
     elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
-    cut = _cut_tetrahedra(_divided(carried, _crossed(carried, elements)))
-    pieces, number = _cut_triangles(_divided(carried[:, :3], faces))
+    crossed = _crossed(carried, elements)
+    own = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
+    cut = _cut_tetrahedra(_divided(np.concatenate([carried[elements[crossed]], own[:, :, None]], axis=2)))
+    pieces, number = _cut_triangles(_divided(carried[faces]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
     return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[number // PARTS**2])
 
 
 def _crossed(carried: Array, elements: Array) -> Array:
-    """The elements that the plane may pass: between their nodes a curved one may reach a little farther than these."""
+    """Numbers of the elements that the plane may pass: between its nodes a curved one may reach a little farther than these."""
     side = carried[elements, 0]
     beyond = BEYOND_NODES * np.ptp(side, axis=1)
-    return elements[(side.min(axis=1) < beyond) & (side.max(axis=1) >= -beyond)]
+    return np.flatnonzero((side.min(axis=1) < beyond) & (side.max(axis=1) >= -beyond))
 
 
-def _divided(carried: Array, elements: Array) -> Array:
-    """What is carried (n, c) at the corners of small straight simplices (S, d + 1, c) in quadratic ones (E, 6 or 10)."""
-    flat = elements.shape[1] == 6
+def _quadratic_values(corners: Array) -> Array:
+    """Values (E, 10) at the nodes of elements in which they are linear, from those at the corners (E, 4)."""
+    return np.hstack([corners, np.stack([(corners[:, i] + corners[:, j]) / 2 for i, j in EDGES], axis=1)])
+
+
+def _divided(carried: Array) -> Array:
+    """What quadratic simplices carry at their nodes (E, 6 or 10, c), at the corners (S, d + 1, c) of small straight ones."""
+    flat = carried.shape[1] == 6
     corners = _TRIANGLES if flat else _TETRAHEDRA
     shapes = _quadratic(corners, FACE_EDGES if flat else EDGES)
-    return np.einsum("pka,eac->epkc", shapes, carried[elements]).reshape(-1, corners.shape[1], carried.shape[1])
+    return np.einsum("pka,eac->epkc", shapes, carried).reshape(-1, corners.shape[1], carried.shape[2])
 
 
 def _quadratic(corners: Array, edges: Sequence[tuple[int, int]]) -> Array:

@@ -21,15 +21,16 @@ def solid_frame(
 ) -> FieldFrame:
     """Fields of a state; ``time`` stands in the index.
 
-    The pressure is the mean stress, compression positive; where regions meet, the mean of theirs. ``isochoric`` (6, E, Q) is the
-    relaxed isochoric stress in Pa, whose trace in the deformed state counts to it.
+    The pressure is the mean stress, compression positive. It jumps where regions meet: ``corner_pressure`` (E, 4) has it at
+    the corners of each element, the nodal ``pressure`` the mean of the regions there. ``isochoric`` (6, E, Q) is the relaxed
+    isochoric stress in Pa, whose trace in the deformed state counts to it.
     """
     u, p = body.space.split(state.unknowns)
     pressure, corners = np.zeros(len(u)), body.space.pressure_corners
-    count = body.space.corner_count
-    pressure[:count] = -np.bincount(corners, p) / np.bincount(corners)
+    own = -p
     if isochoric is not None:
-        pressure[:count] -= corner_means(body, mesh, mean_stress(body, state.kinematics, isochoric))
+        own = own - corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    pressure[: body.space.corner_count] = np.bincount(corners, own) / np.bincount(corners)
     pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES]].mean(axis=2)
     return FieldFrame(
         time=time,
@@ -37,6 +38,7 @@ def solid_frame(
         cells={"tetra10": mesh.elements},
         point_data={"displacement [m]": u.copy(), "pressure [Pa]": pressure},
         cell_data={
+            "corner_pressure [Pa]": own[body.space.pressures],
             "region [1]": mesh.regions.astype(float),
             "largest_stretch [1]": principal_stretches(state.kinematics.F)[0].max(axis=1),
             "volume_ratio [1]": state.kinematics.J.mean(axis=1),
@@ -45,9 +47,9 @@ def solid_frame(
     )
 
 
-def corner_means(body: Body, mesh: QuadraticMesh, values: Array) -> Array:
-    """Values (E, Q) at the volume points as means over the elements around each corner node, by volume."""
-    weights, corners = body.points.weights, mesh.elements[:, :4]
+def corner_means(body: Body, values: Array) -> Array:
+    """Values (E, Q) at the volume points as means over the elements around each corner, region by region, by volume."""
+    weights, corners = body.points.weights, body.space.pressures
     volume = np.repeat(weights.sum(axis=1), 4)
     total = np.repeat((weights * values).sum(axis=1), 4)
     return np.bincount(corners.ravel(), total) / np.bincount(corners.ravel(), volume)

@@ -15,6 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.display import figures_for, grasp_view, off_screen
 from tactsim.display.grasp import grasp_figure, history_figure, maps_figure, section_figure
 from tactsim.display.grasp_maps import inclusion_shadows
+from tactsim.display.grasp_moment import shown_moment
 from tactsim.display.grasp_parts import SIDES, grasp_of
 from tactsim.display.grasp_section import cutting_plane
 from tactsim.display.plane_cut import OUTER, interfaces, plane_cut
@@ -112,6 +113,40 @@ def test_cut_of_a_deformed_block_is_where_the_plane_is_now(frame):
     shifted = replace(frame, point_data={**frame.point_data, "displacement [m]": moved})
     assert len(plane_cut(shifted, 1, 3e-3, frame.points[:, 1]).triangles) == 0
     np.testing.assert_allclose(plane_cut(shifted, 1, 25e-3, frame.points[:, 1]).values, 10e-3, atol=1e-12)
+
+
+def test_values_of_elements_may_jump_where_regions_meet(frame):
+    regions = np.asarray(frame.cell_data["region [1]"])
+    by_element = np.repeat(1.0 + regions[:, None], 4, axis=1)
+    jumping = plane_cut(frame, 1, 20e-3, by_element)
+    assert set(np.unique(jumping.values.round(9))) == {1.0, 2.0}
+    nodal = np.ones(len(frame.points))
+    nodal[np.unique(frame.cells["tetra10"][regions == 1])] = 2.0
+    assert len(np.unique(plane_cut(frame, 1, 20e-3, nodal).values.round(3))) > 2
+    linear = frame.points[frame.cells["tetra10"][:, :4], 0]
+    whole = plane_cut(frame, 1, 20e-3, frame.points[:, 0])
+    assert plane_cut(frame, 1, 20e-3, linear).values.max() == pytest.approx(whole.values.max(), rel=0.02)
+
+
+def test_an_artery_is_shown_at_its_highest_pressure(frame):
+    result = made_up(frame=frame)
+    course = [0.0, 1e3, 5e3, 2e3, 1e3, 0.0]
+    steps = tuple(
+        replace(step, values=step.values | {"lumen_pressure_1": p}) for step, p in zip(result.steps, course, strict=True)
+    )
+    places = {side: [20e-3, 20e-3, 19e-3 if side == "upper" else 1e-3] for side in SIDES}
+    frames = (replace(frame, time=steps[2].values["time"]), replace(frame, time=steps[-1].values["time"]))
+    pulsing = replace(result, steps=steps, frames=frames, details=result.details | {"jaw_places": places})
+    shown = shown_moment(pulsing)
+    assert [found.time for found in shown.frames] == [frames[0].time]
+    assert shown.steps == steps
+    force = np.asarray(result.quantities["taxel_force_upper_history"].value)[2]
+    np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)
+    opened = CLOSING - steps[2].values["displacement"]
+    assert shown.details["jaw_places"]["upper"][2] == pytest.approx(19e-3 + opened)
+    assert "highest pressure, 5 kPa" in told(section_figure(shown))
+    assert shown_moment(result) is result
+    assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
 
 
 def test_interfaces_close_every_region_once(frame):
