@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -29,7 +30,7 @@ _MISSING = object()
 
 def problems_of(error: ValidationError, document: Document, model: type[BaseModel]) -> list[Problem]:
     """One problem for every key path that the model refused."""
-    schema = model.model_json_schema(by_alias=True)
+    schema = _schema_of(model)
     found: dict[Path, list[str]] = {}
     for detail in _details(error):
         path = _path_in_file(detail["loc"], document.value, str(detail["type"]))
@@ -40,6 +41,12 @@ def problems_of(error: ValidationError, document: Document, model: type[BaseMode
         if message not in messages:
             messages.append(message)
     return [Problem(path, document.line(path), "; or ".join(messages)) for path, messages in found.items()]
+
+
+@cache
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """The JSON Schema of a model, which takes long to make; it is only read."""
+    return model.model_json_schema(by_alias=True)
 
 
 def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:

@@ -31,11 +31,24 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
     StorageError
         If the file is missing or cannot be read.
     """
+    return validated_case(*read_document(path, overrides))
+
+
+def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Document, Place]:
+    """What a case file says, after the overrides, and how messages name its places; nothing is validated yet.
+
+    Raises
+    ------
+    CaseError
+        If the text is not YAML, not a mapping, or an override cannot be applied.
+    StorageError
+        If the file is missing or cannot be read.
+    """
     text = read_case_text(path)
     try:
         document = read_yaml(text)
     except YamlProblems as error:
-        raise _case_error(error.problems, _place_in(path, {})) from None
+        raise case_error(error.problems, _place_in(path, {})) from None
     if not isinstance(document.value, dict):
         found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
         raise CaseError(f"{path}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
@@ -44,9 +57,9 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
         try:
             key_path = apply_override(document, override)
         except YamlProblems as error:
-            raise _case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
+            raise case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
         overridden[key_path] = override.partition("=")[0].strip()
-    return _validated(document, _place_in(path, overridden))
+    return document, _place_in(path, overridden)
 
 
 def read_case_text(path: str | Path) -> str:
@@ -66,7 +79,14 @@ def read_case_text(path: str | Path) -> str:
         raise CaseError(f"{path}:{line}: byte {content[error.start]:#04x} is not UTF-8 text") from None
 
 
-def _validated(document: Document, place: Place) -> Case:
+def validated_case(document: Document, place: Place) -> Case:
+    """The case that a document describes; faults are named by ``place``.
+
+    Raises
+    ------
+    CaseError
+        With one line for every fault.
+    """
     _check_version(document, place)
     experiment = document.value.get("experiment")
     kind = experiment.get("kind") if isinstance(experiment, dict) else None
@@ -81,7 +101,7 @@ def _validated(document: Document, place: Place) -> Case:
     except InputError as error:
         problems.append(Problem(("experiment",), document.line(("experiment",)), str(error)))
     if problems:
-        raise _case_error(problems, place)
+        raise case_error(problems, place)
     return case
 
 
@@ -93,7 +113,7 @@ def _check_version(document: Document, place: Place) -> None:
         message = f"missing; the file must begin with 'schema: {SCHEMA}'"
     else:
         message = f"the version {as_written(version)} is not supported; this tactsim reads {SCHEMA!r}"
-    raise _case_error([Problem(("schema",), document.line(("schema",)), message)], place)
+    raise case_error([Problem(("schema",), document.line(("schema",)), message)], place)
 
 
 def _kind_problems(document: Document, known: dict[str, Any]) -> list[Problem]:
@@ -127,7 +147,8 @@ def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
     return place
 
 
-def _case_error(problems: Sequence[Problem], place: Place) -> CaseError:
+def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
+    """One error with a line for each problem, in the order of the file."""
     lines = []
     for problem in sorted(problems, key=lambda problem: problem.line):
         where, key = place(problem), ".".join(map(str, problem.path))

@@ -9,10 +9,19 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from tactsim import __version__
-from tactsim.cli import command_material, command_run, command_schema, command_show, command_validate, console
+from tactsim.cli import (
+    command_data,
+    command_material,
+    command_run,
+    command_schema,
+    command_show,
+    command_sweep,
+    command_validate,
+    console,
+)
 from tactsim.errors import InputError, Interrupted, TactsimError
 
-COMMANDS = (command_run, command_show, command_material, command_validate, command_schema)
+COMMANDS = (command_run, command_sweep, command_data, command_show, command_material, command_validate, command_schema)
 EXIT_CODES = """\
 exit codes:
   0    done

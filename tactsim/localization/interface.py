@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Kind
+from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.readings import JAWS, checked_readings
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
@@ -37,6 +38,7 @@ class Readings:
     valid : (jaw, row, column), False for a dead or saturated taxel; None if all can be trusted
     middle : (2,) x and y in m of the middle of both matrices; None for that of the block
     closing : of each jaw from first touch, in m; None if not known
+    response : fast forward model of lumps in this tissue at this closing; None if not known
 
     Raises
     ------
@@ -52,6 +54,7 @@ class Readings:
     valid: Array | None = None
     middle: Array | None = None
     closing: float | None = None
+    response: LumpResponse | None = field(default=None, repr=False)
     filled: Array = field(init=False, repr=False)
     """The forces with those of invalid taxels interpolated from their neighbours."""
     difference: Array | None = field(init=False, repr=False)

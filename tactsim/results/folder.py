@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.errors import StorageError
+from tactsim.results.locking import beside, only_one
 from tactsim.results.storage import naming
 
 RESULT_FILE = "result.json"
@@ -33,12 +34,12 @@ class OutputFolder:
     @property
     def partial(self) -> Path:
         """Where the files are written before they are complete."""
-        return _beside(self.path, "partial")
+        return beside(self.path, "partial")
 
     @property
     def replaced(self) -> Path:
         """Where the earlier folder stands for the moment of the exchange."""
-        return _beside(self.path, "replaced")
+        return beside(self.path, "replaced")
 
     def start(self) -> Path:
         """An empty folder to write into."""
@@ -111,7 +112,7 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     folder = OutputFolder(path, replace)
     with naming(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-    with _lock(path):
+    with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another with --out"):
         try:
             folder.recover()
             check_replaceable(path, replace)
@@ -145,56 +146,8 @@ def _foreign_names(path: Path) -> list[str]:
     return [name for name in names if not _OWN_NAME.fullmatch(name) and name not in _IGNORED_NAMES]
 
 
-def _beside(path: Path, ending: str) -> Path:
-    return path.with_name(f".{path.name}.{ending}")
-
-
 def _remove(path: Path) -> None:
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:
         path.unlink(missing_ok=True)
-
-
-@contextmanager
-def _lock(path: Path) -> Iterator[None]:
-    """Keeps other runs out of the folder; the system frees the lock when its process ends in any way."""
-    with naming(path):
-        lock = _beside(path, "lock")
-        descriptor = _locked(lock, path)
-    try:
-        yield
-    finally:
-        try:
-            with suppress(OSError):
-                lock.unlink(missing_ok=True)
-        finally:
-            os.close(descriptor)
-
-
-def _locked(lock: Path, path: Path) -> int:
-    """The descriptor of the lock."""
-    while True:
-        descriptor = _opened_alone(lock, path)
-        with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(descriptor), os.stat(lock)):
-                return descriptor
-        os.close(descriptor)  # the last owner removed the file between our opening and locking it
-
-
-def _opened_alone(lock: Path, path: Path) -> int:
-    in_use = StorageError(f"the output folder {path} is in use by another run; wait for it or choose another with --out")
-    try:
-        import fcntl
-    except ImportError:  # Windows deletes the file with its last handle, so that its existence is the lock
-        try:
-            return os.open(lock, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_TEMPORARY", 0))
-        except FileExistsError:
-            raise in_use from None
-    descriptor = os.open(lock, os.O_CREAT | os.O_RDWR, 0o666)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(descriptor)
-        raise in_use from None
-    return descriptor

@@ -1,0 +1,152 @@
+"""``tactsim sweep``: turns a case with ranges into a data set."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactsim.cli import console
+from tactsim.cli.interruption import interruptible
+from tactsim.errors import ConvergenceError, InputError, Interrupted
+
+if TYPE_CHECKING:
+    from tactsim.dataset.executor import Executor
+    from tactsim.dataset.progress import Tally
+    from tactsim.dataset.running import SweepRun
+    from tactsim.dataset.sweep import Sweep
+
+NAME = "sweep"
+SUMMARY = "compute a data set from a case with ranges"
+DESCRIPTION = """\
+Draws samples from a sweep file (a case in which numbers are ranges or distributions), computes
+each and writes them into a Zarr store that xarray.open_zarr reads. README.md in the store says
+what is in it.
+
+Samples are computed by --workers processes of this machine, one thread each, or by the Dask
+cluster whose scheduler answers at --scheduler:
+
+  dask scheduler                                   # prints its address
+  dask worker tcp://HOST:8786 --nthreads 1 --nworkers 8
+  tactsim sweep CASE --out STORE --scheduler tcp://HOST:8786
+
+On SLURM, dask-jobqueue starts the workers. What was computed survives a kill at any moment:
+the same command with --resume goes on. A worker that dies costs its samples one try; after
+three they are marked failed, with the reason. If a sample failed the exit code is 3.
+"""
+EXAMPLES = """\
+examples:
+  tactsim sweep cases/sweep_closed_form.yaml --out fast.zarr
+  tactsim sweep cases/sweep_lumps.yaml --out lumps.zarr --samples 200 --workers 2
+  tactsim sweep cases/sweep_lumps.yaml --out lumps.zarr --resume
+"""
+PROGRESS_SECONDS = 5.0
+"""Between lines of progress."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options."""
+    parser.add_argument("case", metavar="CASE", type=Path, help="sweep file (YAML)")
+    parser.add_argument("--out", metavar="STORE", type=Path, required=True, help="folder of the data set, such as lumps.zarr")
+    parser.add_argument("--samples", metavar="N", type=int, help="number of samples (default: that of the file)")
+    place = parser.add_mutually_exclusive_group()
+    place.add_argument("--workers", metavar="N", type=int, help="processes of this machine (default: one per core)")
+    place.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask scheduler, such as tcp://host:8786")
+    parser.add_argument("--resume", action="store_true", help="go on with the data set in --out")
+    parser.add_argument(
+        "--accept-changed-code", action="store_true", help="resume by another version of tactsim; its samples are marked"
+    )
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="set path.to.key; may be repeated")
+    loudness = parser.add_mutually_exclusive_group()
+    loudness.add_argument("--quiet", action="store_true", help="write no progress and no summary, only errors")
+    loudness.add_argument("--progress", action="store_true", help="report progress even where nobody watches")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code of the whole command."""
+    from tactsim.dataset.card import write_card
+    from tactsim.dataset.running import opened_run
+    from tactsim.dataset.sweep import load_sweep
+
+    for name in ("samples", "workers"):
+        given = getattr(arguments, name)
+        if given is not None and given < 1:
+            raise InputError(f"--{name} {given} is out of range; must be at least 1")
+    with interruptible() as interruption:
+        sweep = load_sweep(arguments.case, tuple(arguments.set), arguments.samples)
+        changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}
+        with opened_run(sweep, arguments.out, **changes) as going:
+            write_card(going.store, sweep, going.layout)
+            stopped = _computed(going, sweep, arguments)
+            with interruption.deferred():
+                _draw(arguments.out)
+                write_card(going.store, sweep, going.layout)
+                return _finish(going, arguments, stopped or interruption.requested)
+
+
+def _computed(going: SweepRun, sweep: Sweep, arguments: argparse.Namespace) -> bool:
+    """Computes until the end or the first signal; whether there was one."""
+    executor = _executor(sweep, arguments)
+    try:
+        going.compute(executor, _progress(arguments))
+    except KeyboardInterrupt:
+        return True
+    finally:
+        executor.close()
+    return False
+
+
+def _draw(store: Path) -> None:
+    """Draws the figures of the card; one that cannot be drawn never costs the data."""
+    try:
+        from tactsim.dataset.card import FIGURES
+        from tactsim.display.dataset_card import card_figures
+        from tactsim.results.storage import replace_file
+
+        for name, draw in card_figures(store).items():
+            (store / FIGURES).mkdir(exist_ok=True)
+            replace_file(store / FIGURES / name, draw())
+    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
+        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {error}")
+
+
+def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:
+    if arguments.scheduler:
+        from tactsim.dataset.cluster import Cluster
+
+        return Cluster(sweep.text, arguments.scheduler)
+    from tactsim.dataset.local_workers import LocalWorkers, usable_cores
+
+    return LocalWorkers(sweep.text, arguments.workers or usable_cores())
+
+
+def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
+    if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
+        return lambda tally: None
+    last = -PROGRESS_SECONDS
+
+    def told(tally: Tally) -> None:
+        nonlocal last
+        if time.monotonic() - last >= PROGRESS_SECONDS:
+            console.note(tally.line())
+            last = time.monotonic()
+
+    return told
+
+
+def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
+    from tactsim.dataset.variable import FAILED
+
+    failed = int((going.store.read("status") == FAILED).sum())
+    if not arguments.quiet:
+        for line in going.tally.summary():
+            console.out(line)
+        left = len(going.store.pending())
+        if left:
+            console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")
+        console.out(f"data set {arguments.out}; check it with: tactsim data check {arguments.out}")
+    if stopped:
+        return Interrupted.exit_code
+    return ConvergenceError.exit_code if failed else 0

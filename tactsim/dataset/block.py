@@ -1,0 +1,66 @@
+"""Samples on their way: arrays by name for a few samples, as bytes without pickle, and the checksum of each sample."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import zipfile
+from collections.abc import Iterable
+
+import numpy as np
+
+from tactsim.dataset.variable import CHECKSUM_BYTES, Variable
+from tactsim.errors import StorageError
+
+Array = np.ndarray
+Block = dict[str, Array]
+"""Variable -> values (samples in the block, ...); ``sample`` holds the numbers of the samples."""
+NOT_SUMMED = ("checksum", "wall_time", "code")
+"""What may differ between two runs of the same sample, or is the sum itself."""
+
+
+def encoded(block: Block) -> bytes:
+    """The block as bytes."""
+    content = io.BytesIO()
+    np.savez(content, allow_pickle=False, **block)
+    return content.getvalue()
+
+
+def decoded(content: bytes) -> Block:
+    """The block of `encoded`.
+
+    Raises
+    ------
+    StorageError
+        If the bytes are not one.
+    """
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+    except (ValueError, OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise StorageError(f"a block of samples is damaged: {error}") from None
+
+
+def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:
+    """SHA-256 (32,) over name, type and bytes of every variable of one sample, in the order of the names."""
+    summed = hashlib.sha256()
+    for variable in sorted(variables, key=lambda variable: variable.name):
+        if variable.name in NOT_SUMMED:
+            continue
+        summed.update(variable.name.encode() + b"\0")
+        value = sample[variable.name]
+        if variable.dtype == "str":
+            summed.update(str(value).encode() + b"\0")
+        else:
+            kind = np.dtype(variable.dtype).newbyteorder("<")
+            summed.update(np.ascontiguousarray(value, dtype=kind).tobytes())
+    return np.frombuffer(summed.digest(), dtype=np.uint8, count=CHECKSUM_BYTES)
+
+
+def stacked(samples: list[dict[str, Array]], variables: Iterable[Variable]) -> Block:
+    """The block of single samples."""
+    found: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
+    for variable in variables:
+        values = [sample[variable.name] for sample in samples]
+        found[variable.name] = np.array([str(v) for v in values]) if variable.dtype == "str" else np.stack(values)
+    return found

@@ -1,0 +1,98 @@
+"""The card of a data set: README.md in its folder, written anew after every run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from tactsim.dataset.description import failures, ranges, split_counts, status_counts, variable_rows
+from tactsim.dataset.layout import Layout
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import Sweep
+from tactsim.results.storage import replace_file
+
+CARD = "README.md"
+FIGURES = "figures"
+GENERAL_LIMITS = (
+    "Simulated, not measured: the sensor's film and electronics are models, and tissue is homogeneous but for what is named.",
+    "Failed samples are not random: they gather where the tissue is squeezed most; see the table of failures before training.",
+    "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
+)
+
+
+def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
+    """Writes the card."""
+    replace_file(store.path / CARD, card_text(store, sweep, layout).encode())
+
+
+def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
+    """The card in Markdown."""
+    told = store.attributes
+    title = told["title"] or f"Data set {told['sweep_id']}"
+    head = ["---", f"license: {told['license'].lower()}", "tags: [tactile, simulation, tactsim]", "---", f"# {title}", ""]
+    parts = [
+        layout.recorder.describe(),
+        "",
+        *_how(store, sweep),
+        *_counts(store),
+        *_figures(store.path),
+        *_use(),
+        *_limits(told["limits"]),
+    ]
+    tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
+    tables += _table("Variables", ("variable", "dimensions beside sample", "unit", "meaning"), variable_rows(store))
+    case = ["## The sweep", "```json", json.dumps(json.loads(told["sweep"]), indent=1), "```", ""]
+    return "\n".join([*head, *parts, *tables, *case])
+
+
+def _how(store: Store, sweep: Sweep) -> list[str]:
+    told, settings = store.attributes, sweep.settings
+    versions = ", ".join(f"{name} {number}" for name, number in told["versions"].items())
+    shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
+    hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
+    redrawn = int((store.read("redraws") > 0).sum())
+    return [
+        "## How it was made",
+        f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
+        f"Sample k depends on the seed and on k only{hypercube}.",
+        f"Draws whose case is impossible are drawn again: {redrawn} samples, {int(store.read('redraws').sum())} refused draws.",
+        f"Computed by tactsim {', '.join(told['codes'])}; {versions}.",
+        "",
+    ]
+
+
+def _counts(store: Store) -> list[str]:
+    rows = [(name, str(count)) for name, count in status_counts(store).items()]
+    splits = [(name, str(count)) for name, count in split_counts(store).items()]
+    told = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples"), splits)
+    failed = [(reason, str(count)) for reason, count in failures(store)]
+    return told + (_table("Failures", ("reason", "samples"), failed) if failed else [])
+
+
+def _figures(path: Path) -> list[str]:
+    drawn = sorted((path / FIGURES).glob("*.png")) if (path / FIGURES).is_dir() else []
+    return ["## Figures", *(f"![{figure.stem}]({FIGURES}/{figure.name})" for figure in drawn), ""] if drawn else []
+
+
+def _use() -> list[str]:
+    return [
+        "## Reading",
+        "```python",
+        "import xarray",
+        'data = xarray.open_zarr("STORE")',
+        "done = data.isel(sample=(data.status == 1).values)  # 0 pending, 1 done, 2 failed",
+        "```",
+        "Split by `split` (numbers: attribute flag_meanings), never by sample: samples may share a specimen.",
+        "Variables without noise say so; voltage and read_force have it.",
+        "",
+    ]
+
+
+def _limits(own: str) -> list[str]:
+    return ["## Known limits", *(f"- {line}" for line in (*GENERAL_LIMITS, *own.splitlines()) if line), ""]
+
+
+def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
+    cells = [" | ".join(cell.replace("|", "/") for cell in row) for row in rows]
+    return [f"## {title}", f"| {' | '.join(head)} |", "|" + " --- |" * len(head), *(f"| {row} |" for row in cells), ""]

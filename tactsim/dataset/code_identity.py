@@ -1,0 +1,21 @@
+"""Which code computed a sample: the version of tactsim and a hash of its source."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+import tactsim
+
+
+@cache
+def code_identity() -> str:
+    """Version and twelve hexadecimal digits over every source file of the package but display, command line and validation."""
+    root = Path(tactsim.__file__).parent
+    summed = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        place = path.relative_to(root).as_posix()
+        if not place.startswith(("display/", "cli/", "validation/")):
+            summed.update(place.encode() + b"\0" + path.read_bytes())
+    return f"{tactsim.__version__}+{summed.hexdigest()[:12]}"

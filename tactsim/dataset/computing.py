@@ -1,0 +1,104 @@
+"""Computes samples: what a worker does, wherever it runs."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tactsim.dataset.block import checksum, encoded, stacked
+from tactsim.dataset.drawing import Drawn, drawn_specimen, noise_generator, noise_seed
+from tactsim.dataset.layout import Layout, layout_of, split_of
+from tactsim.dataset.sweep import Sweep, sweep_of_text
+from tactsim.dataset.variable import DONE, FAILED
+from tactsim.errors import InvalidQuantity, TactsimError
+from tactsim.results.result import Status
+
+Array = np.ndarray
+LONGEST_REASON = 500
+
+
+def computed(text: str, samples: Sequence[int], lost: str = "") -> bytes:
+    """The samples of these numbers as bytes of a block; with ``lost``, the reason for which they are given up, nothing is run."""
+    sweep = sweep_of_text(text)
+    layout = layout_of(sweep)
+    done = []
+    for specimen, numbers in itertools.groupby(samples, key=lambda number: number // sweep.per_specimen):
+        drawn = drawn_specimen(sweep, specimen)
+        split = _split(sweep, layout, drawn[0])
+        done += [_sample(sweep, layout, drawn[number - drawn[0].sample], split, lost) for number in numbers]
+    return encoded(stacked(done, layout.variables))
+
+
+def _split(sweep: Sweep, layout: Layout, first: Drawn) -> int:
+    labels: dict[str, Array] = {}
+    if first.case is not None:
+        labels = layout.recorder.labels(first.case.experiment)
+        known = {variable.name: variable for variable in layout.variables}
+        return split_of(sweep, first.specimen, labels, known)
+    return 0
+
+
+def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -> dict[str, Array]:
+    begin = time.perf_counter()
+    found: dict[str, Any] = {
+        "sample": drawn.sample,
+        "specimen": drawn.specimen,
+        "split": split,
+        "seed": noise_seed(sweep, drawn.sample),
+        "redraws": drawn.redraws,
+        "code": 0,
+        "case_id": drawn.case.case_id if drawn.case else "",
+    }
+    found |= {place.variable: drawn.values.get(place.path, np.nan) for place in sweep.places}
+    status, reason = FAILED, lost or drawn.refusal
+    if drawn.case is not None:
+        found |= layout.recorder.labels(drawn.case.experiment)
+        if not lost:
+            status, reason, read = _run(sweep, layout, drawn)
+            found |= read
+    found |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
+    found |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
+    sample = _complete(found, layout)
+    return sample | {"checksum": checksum(sample, layout.variables)}
+
+
+def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str, Array]]:
+    """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
+    assert drawn.case is not None
+    try:
+        result = drawn.case.experiment.run(lambda record: None)
+        if result.status is not Status.CONVERGED:
+            return FAILED, f"{result.status}: {result.reason}", {}
+        readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
+        found = layout.recorder.numbers(result) | readings
+        _check(found, layout)
+    except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
+        return FAILED, f"{type(error).__name__}: {error}", {}
+    return DONE, result.reason, found
+
+
+def _check(found: dict[str, Array], layout: Layout) -> None:
+    for name, value in found.items():
+        variable = layout.named(name)
+        if np.shape(value) != variable.sizes:
+            raise InvalidQuantity(f"{name} has the shape {np.shape(value)}; the store has {variable.sizes}: sizes must not vary")
+        if not (variable.optional or np.isfinite(value).all()):
+            raise InvalidQuantity(f"{name} is not finite")
+
+
+def _complete(found: dict[str, Any], layout: Layout) -> dict[str, Array]:
+    """Every variable with its type, those without a value filled."""
+    sample: dict[str, Any] = {"sample": found["sample"]}
+    for variable in layout.variables:
+        value = found.get(variable.name)
+        if value is None:
+            sample[variable.name] = variable.empty(1)[0]
+        elif variable.dtype == "str":
+            sample[variable.name] = str(value)
+        else:
+            sample[variable.name] = np.asarray(value, dtype=variable.dtype)
+    return sample

@@ -1,0 +1,117 @@
+"""A data set in the formats of others: one HDF5 file, or an index (Parquet) with shards (npz). No pickle in either."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.dataset.loading import load, split_names
+from tactsim.dataset.store import Store
+from tactsim.errors import InputError, StorageError
+from tactsim.results.storage import naming
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = np.ndarray
+SHARD_SAMPLES = 1000
+INDEX = "index.parquet"
+META = "dataset.json"
+
+
+def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str] | None = None) -> int:
+    """Writes the samples that are done, of all splits or some, and returns how many.
+
+    A place that ends in ``.h5`` or ``.hdf5`` becomes a file, any other a folder; nothing that exists is replaced.
+
+    Raises
+    ------
+    InputError
+        If h5py or pyarrow is missing, or the split is empty or unknown.
+    StorageError
+        If the place exists or cannot be written.
+    """
+    target = Path(place)
+    if target.exists():
+        raise StorageError(f"{target} exists; choose another place with --to")
+    data = load(store, split=split)
+    if not data.sizes["sample"]:
+        raise InputError(f"{store} has no sample that is done{f' in {split}' if split else ''}")
+    told = Store.open(store).attributes
+    waiting = target.with_name(f".{target.name}.partial")
+    with naming(target):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.suffix in (".h5", ".hdf5"):
+            _hdf5(data, told, waiting)
+        else:
+            _shards(data, told, waiting)
+        waiting.rename(target)
+    return int(data.sizes["sample"])
+
+
+def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path) -> None:
+    """One data set per variable, the first dimension the sample; dimensions and units as attributes."""
+    try:
+        import h5py
+    except ImportError:
+        raise InputError("HDF5 needs h5py; install it with: pip install 'tactsim[export]'") from None
+    with h5py.File(target, "w") as file:
+        file.attrs.update({name: _plain(value) for name, value in told.items()})
+        file["sample"] = data["sample"].values
+        for name, values in data.data_vars.items():
+            content = np.asarray(values.values)
+            written = content if content.dtype.kind in "fiub" else np.array([str(value).encode() for value in content])
+            file[str(name)] = written
+            file[str(name)].attrs.update({key: _plain(value) for key, value in values.attrs.items()})
+            file[str(name)].attrs["dimensions"] = ",".join(map(str, values.dims))
+
+
+def _shards(data: xarray.Dataset, told: dict[str, Any], target: Path) -> None:
+    """The index has one row per sample with every variable that is one number or text, and the shard of its arrays."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise InputError("Parquet needs pyarrow; install it with: pip install 'tactsim[export]'") from None
+    target.mkdir()
+    count = data.sizes["sample"]
+    numbers = np.arange(count)
+    columns: dict[str, Any] = {"sample": data["sample"].values, "shard": numbers // SHARD_SAMPLES, "row": numbers % SHARD_SAMPLES}
+    columns |= {_headed(name, values): _column(name, values, data) for name, values in data.data_vars.items() if values.ndim == 1}
+    pyarrow.parquet.write_table(pyarrow.table(columns), target / INDEX)
+    for number, part in enumerate(_parts(data)):
+        arrays = {str(name): values.values for name, values in part.data_vars.items() if values.ndim > 1}
+        np.savez(target / f"shard_{number:05d}.npz", allow_pickle=False, sample=part["sample"].values, **arrays)
+    described = {str(name): {"dimensions": list(v.dims), **v.attrs} for name, v in data.data_vars.items()}
+    text = json.dumps({"attributes": told, "variables": described}, indent=1, default=_listed)
+    (target / META).write_text(text + "\n", encoding="utf-8")
+
+
+def _parts(data: xarray.Dataset) -> Iterator[xarray.Dataset]:
+    for begin in range(0, data.sizes["sample"], SHARD_SAMPLES):
+        yield data.isel(sample=slice(begin, begin + SHARD_SAMPLES))
+
+
+def _headed(name: Any, values: xarray.DataArray) -> str:
+    unit = values.attrs.get("units", "1")
+    return str(name) if unit == "1" else f"{name} [{unit}]"
+
+
+def _column(name: Any, values: xarray.DataArray, data: xarray.Dataset) -> Any:
+    content = values.values
+    if name == "split":
+        known = split_names(data)
+        return [known[int(number)] for number in content]
+    return content if content.dtype.kind in "fiub" else [str(value) for value in content]
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, str | int | float) else json.dumps(value, default=_listed)
+
+
+def _listed(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else str(value)

@@ -1,0 +1,132 @@
+"""What of an experiment a store keeps: one small class for each kind, in a file of ``tactsim.dataset.recorders``."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tactsim.dataset.force_reading import ForceReading
+from tactsim.dataset.settings import SweepSettings
+from tactsim.dataset.variable import Variable, reading
+from tactsim.errors import CaseError, InvalidQuantity
+from tactsim.interfaces import Experiment
+from tactsim.registry import kinds
+from tactsim.results.result import Result
+from tactsim.units import FrozenModel
+
+Array = np.ndarray
+PACKAGE = "tactsim.dataset.recorders"
+Values = dict[str, Array]
+
+
+class Recorder(FrozenModel, ABC):
+    """The labels and readings of one kind of experiment; subclass it with that kind as default."""
+
+    kind: str
+    settings: SweepSettings
+    most_inclusions: int = 0
+    """Largest number of inclusions that the sweep can draw."""
+    quantities: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """Name of a number of the result -> unit and description; stored as they are."""
+    optional: ClassVar[tuple[str, ...]] = ()
+    """Those of them that a result may lack."""
+
+    def variables(self, experiment: Experiment) -> list[Variable]:
+        """Labels, then readings; sizes as those of this experiment."""
+        return [*self.labels_of(experiment), *self._scalars(), *self.readings_of(experiment)]
+
+    def labels_of(self, experiment: Experiment) -> list[Variable]:
+        """What is known before the experiment is run."""
+        return []
+
+    def readings_of(self, experiment: Experiment) -> list[Variable]:
+        """What its result holds beside ``quantities``."""
+        return []
+
+    def labels(self, experiment: Any) -> Values:
+        """Values of `labels_of`."""
+        return {}
+
+    def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
+        """Values of `readings_of`; the generator makes noise."""
+        return {}
+
+    def numbers(self, result: Result) -> Values:
+        """The stored numbers of the result, NaN where it has none.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the result calls one by another unit, or it is not one number.
+        """
+        return {variable.name: self._number(variable, result) for variable in self._scalars()}
+
+    def _scalars(self) -> list[Variable]:
+        if self.settings.quantities is not None:
+            named = self.settings.quantities.items()
+            return [reading(name, unit, name.replace("_", " "), optional=True) for name, unit in named]
+        told = self.quantities.items()
+        return [reading(name, unit, words, optional=name in self.optional) for name, (unit, words) in told]
+
+    def _number(self, variable: Variable, result: Result) -> Array:
+        found = result.quantities.get(variable.name)
+        if found is None or found.value is None:
+            if found is None and self.settings.quantities is not None:
+                known = ", ".join(sorted(result.quantities)) or "none"
+                raise InvalidQuantity(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
+            return np.array(np.nan)
+        value = np.asarray(found.value, dtype=float)
+        if value.size != 1 or found.unit != variable.unit:
+            told = f"{value.size} values in {found.unit}"
+            raise InvalidQuantity(f"sweep.quantities.{variable.name}: {told}; needed: one number in {variable.unit}")
+        return value.reshape(())
+
+    def history(self, result: Result) -> tuple[Array, dict[str, Array]]:
+        """Times (n,) in s and the history values (n,) by name, with their beginning at 0 s if the result begins later."""
+        times = np.array([step.values["time"] for step in result.steps])
+        columns = {name: np.array([step.values.get(name, np.nan) for step in result.steps]) for name in result.units}
+        if times[0] > 0:
+            times = np.append(0.0, times)
+            columns = {name: np.append(0.0, column) for name, column in columns.items()}
+        return times, columns
+
+    def stored_times(self, end: float) -> Array:
+        """The stored times in s of a history that ends at ``end``."""
+        return np.arange(1, self.settings.times + 1) * end / self.settings.times
+
+    @property
+    def reading(self) -> ForceReading | None:
+        """The sensor through which a force is read."""
+        return self.settings.reading
+
+    @abstractmethod
+    def describe(self) -> str:
+        """What is simulated, for the card of the data set."""
+
+
+def recorder_for(kind: str, settings: SweepSettings, most_inclusions: int = 0) -> Recorder:
+    """The recorder of a kind of experiment; a kind without one needs ``sweep.quantities``.
+
+    Raises
+    ------
+    CaseError
+        If the kind has no recorder and no quantities are named.
+    """
+    known = kinds(PACKAGE, Recorder)
+    if kind not in known and settings.quantities is None:
+        raise CaseError(
+            f"sweep.quantities: missing; an experiment of kind {kind} stores what you name, such as quantities: "
+            f"{{max_penetration: m}}; kinds that need none: {', '.join(sorted(known))}"
+        )
+    return known.get(kind, NamedQuantities)(kind=kind, settings=settings, most_inclusions=most_inclusions)
+
+
+class NamedQuantities(Recorder):
+    """Only the quantities that the sweep names."""
+
+    def describe(self) -> str:
+        """The kind."""
+        return f"experiments of kind {self.kind}"

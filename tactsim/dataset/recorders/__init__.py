@@ -1,0 +1,1 @@
+"""Recorders, one file for each kind of experiment."""

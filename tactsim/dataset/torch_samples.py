@@ -1,0 +1,66 @@
+"""A data set as PyTorch's loaders take it; PyTorch itself is needed only when a sample is taken."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactsim.dataset.loading import chosen_samples, opened
+from tactsim.errors import InputError, UnknownName
+
+
+class TorchSamples:
+    """A map-style data set: ``(inputs, targets)`` of one sample, two mappings from variable to a tensor of 32-bit floats.
+
+    The store is opened in each process when its first sample is taken, so that any number of loader workers share nothing.
+    Whole numbers stay whole. NaN of padded inclusions stays NaN.
+    """
+
+    def __init__(
+        self,
+        store: str | Path,
+        *,
+        inputs: Sequence[str],
+        targets: Sequence[str] = (),
+        split: str | Iterable[str] | None = None,
+        transform: Callable[[dict[str, Any], dict[str, Any]], Any] | None = None,
+    ):
+        whole = opened(store)
+        for name in (*inputs, *targets):
+            if name not in whole:
+                raise UnknownName("variable", name, map(str, whole.data_vars))
+            if whole[name].dtype.kind not in "fiub":
+                raise InputError(f"{name} holds text, which a tensor cannot; take numbers")
+        self.store, self.inputs, self.targets, self.transform = str(store), tuple(inputs), tuple(targets), transform
+        self.numbers = chosen_samples(whole, split)
+        self._opened: tuple[int, dict[str, Any]] | None = None
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, index: int) -> Any:
+        number = int(self.numbers[index])
+        inputs, targets = ({name: self._tensor(name, number) for name in names} for names in (self.inputs, self.targets))
+        return self.transform(inputs, targets) if self.transform else (inputs, targets)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_opened": None}
+
+    def _tensor(self, name: str, number: int) -> Any:
+        import torch
+
+        value = np.asarray(self._arrays()[name][number])
+        return torch.from_numpy(np.array(value, dtype=np.float32 if value.dtype.kind == "f" else np.int64))
+
+    def _arrays(self) -> dict[str, Any]:
+        """The arrays of this process."""
+        if self._opened is None or self._opened[0] != os.getpid():
+            import zarr
+
+            group = zarr.open_group(self.store, mode="r", zarr_format=3)
+            self._opened = os.getpid(), {name: group[name] for name in (*self.inputs, *self.targets)}
+        return self._opened[1]

@@ -1,0 +1,110 @@
+"""How the forces on all taxels change when a ball in the block is stiffer or softer than the tissue: the fast forward model.
+
+To first order in the contrast the change is an integral over the ball of a density that depends on the plain tissue alone. It is
+tabulated for balls of several radii on a grid of centres, and interpolated between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+from scipy.signal import oaconvolve
+
+from tactsim.errors import InvalidQuantity
+
+Array = np.ndarray
+FINER = 4
+"""Parts per side of a voxel by which the share of a voxel in a ball is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class LumpResponse:
+    """Change of force in N for a contrast of one.
+
+    Attributes
+    ----------
+    axes : three ascending arrays of centres in m along x, y and z
+    radii : (R,) ascending, in m
+    values : (R, nx, ny, nz, jaw, row, column) in N
+    """
+
+    axes: tuple[Array, Array, Array]
+    radii: Array
+    values: Array
+    _interpolator: RegularGridInterpolator = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        shape = (len(self.radii), *map(len, self.axes))
+        if self.values.shape[:4] != shape or self.values.ndim != 7 or not np.isfinite(self.values).all():
+            raise InvalidQuantity(f"values of shape {self.values.shape}; needed: finite, {shape} and (jaw, row, column)")
+        found = RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
+        object.__setattr__(self, "_interpolator", found)
+
+    @classmethod
+    def of_density(
+        cls, places: Array, volumes: Array, densities: Array, *, size: Sequence[float], radii: Array, spacing: float
+    ) -> Self:
+        """Integrals over balls of a density given at points, on a grid of voxels.
+
+        Parameters
+        ----------
+        places, volumes : (n, 3) in m and (n,) in m^3 of quadrature points that fill the block
+        densities : (jaw, row, column, n) in N/m^3
+        size : (3,) of the block in m
+        radii : (R,) of the balls in m
+        spacing : of the centres in m, at most; it divides the block evenly
+        """
+        counts = [max(2, int(np.ceil(side / spacing))) for side in size]
+        edges = [np.linspace(0, side, count + 1) for side, count in zip(size, counts, strict=True)]
+        cell = np.array([edge[1] for edge in edges])
+        index = np.ravel_multi_index(
+            [np.clip((places[:, k] / cell[k]).astype(int), 0, counts[k] - 1) for k in range(3)], tuple(counts)
+        )
+        flat = densities.reshape(-1, densities.shape[-1]) * volumes
+        voxels = np.stack([np.bincount(index, row, int(np.prod(counts))) for row in flat]).reshape(-1, *counts)
+        values = []
+        for radius in radii:
+            ball = _ball(float(radius), cell)
+            values.append(oaconvolve(voxels, ball[None], mode="same", axes=(1, 2, 3)))
+        table = np.moveaxis(np.stack(values), 1, -1).reshape(len(radii), *counts, *densities.shape[:-1])
+        centres = tuple((edge[:-1] + edge[1:]) / 2 for edge in edges)
+        return cls(centres, np.asarray(radii, dtype=float), table)  # type: ignore[arg-type]
+
+    def signal(self, centers: Array, radii: Array) -> Array:
+        """Change of force (n, jaw, row, column) in N for balls with centres (n, 3) and radii (n,) in m and a contrast of one.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a ball lies outside the table.
+        """
+        try:
+            return self._interpolator(np.column_stack([radii, centers]))
+        except ValueError as error:
+            raise InvalidQuantity(f"a ball outside the table of the response: {error}") from None
+
+
+def eshelby_contrast(shear_ratio: Array) -> Array:
+    r"""Contrast of a small ball in incompressible tissue, dimensionless, for its shear modulus over that of the tissue.
+
+    .. math:: c = \frac{5 (k - 1)}{2 k + 3}
+
+    It lies between -5/3 (a hole) and 5/2 (rigid). Source: J. D. Eshelby 1957, doi:10.1098/rspa.1957.0133, for nu = 1/2.
+    """
+    ratio = np.asarray(shear_ratio, dtype=float)
+    return 5 * (ratio - 1) / (2 * ratio + 3)
+
+
+def _ball(radius: float, cell: Array) -> Array:
+    """Share (a, b, c) of each voxel of a centred grid that lies in a ball, odd in each direction, with the ball's volume."""
+    reach = np.ceil(radius / cell + 0.5).astype(int)
+    halves = [n * FINER + FINER // 2 for n in reach]
+    lines = [(np.arange(-half, half) + 0.5) / FINER * side for half, side in zip(halves, cell, strict=True)]
+    inside = sum(line.reshape([-1 if k == axis else 1 for k in range(3)]) ** 2 for axis, line in enumerate(lines)) <= radius**2
+    shape = [part for n in reach for part in (2 * n + 1, FINER)]
+    shares = np.asarray(inside).reshape(shape).mean(axis=(1, 3, 5))
+    return shares * (4 / 3 * np.pi * radius**3) / (shares.sum() * np.prod(cell))

@@ -1,0 +1,88 @@
+"""Distributions of a sweep file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactsim.dataset.distributions import distribution
+from tactsim.dataset.places import filled, places_of
+from tactsim.errors import InvalidQuantity
+
+SHARES = (np.arange(2000) + 0.5) / 2000
+
+
+def drawn(written: dict[str, Any]) -> np.ndarray:
+    """Stored numbers at even shares of the probability."""
+    return np.array([distribution(written).value(share)[1] for share in SHARES])
+
+
+def test_quantities_are_written_in_their_unit_and_stored_in_si() -> None:
+    assert distribution({"uniform": ["2 mm", "0.6 cm"]}).value(0.5) == ("4 mm", pytest.approx(4e-3, rel=1e-14))
+    assert distribution({"uniform": ["2 mm", "0.6 cm"]}).unit == "m"
+    assert distribution({"uniform": [1, 3]}).value(0.25) == (1.5, 1.5)
+    assert distribution({"values": ["3 kPa", "4000 Pa"]}).value(0.9) == ("4000 Pa", 4000.0)
+    assert type(distribution({"values": [1, 2]}).value(0.1)[0]) is int
+    assert distribution({"integer": [2, 4]}).value(0.999)[0] == 4
+    assert distribution({"range": ["1 mm", "2 mm", 3]}).options == ("1 mm", "1.5 mm", "2 mm")
+
+
+def test_moments_are_those_of_the_distribution() -> None:
+    # tolerances: error of the midpoint rule with 2000 points
+    assert drawn({"uniform": [2, 4]}).std() == pytest.approx(2 / np.sqrt(12), rel=1e-3)
+    assert np.log(drawn({"log_uniform": [1, 100]})).mean() == pytest.approx(np.log(10), rel=1e-3)
+    normal = drawn({"normal": [5, 2]})
+    assert (normal.mean(), normal.std()) == (pytest.approx(5, abs=1e-3), pytest.approx(2, rel=2e-3))
+    truncated = drawn({"normal": [0, 1], "within": [0, 10]})
+    assert truncated.min() >= 0
+    assert truncated.mean() == pytest.approx(np.sqrt(2 / np.pi), rel=2e-3)
+
+
+def test_a_wrong_law_would_be_noticed() -> None:
+    assert drawn({"uniform": [1, 100]}).mean() != pytest.approx(np.exp(np.log(100) / 2), rel=1e-2)
+
+
+def test_weights_count() -> None:
+    chosen = drawn({"choice": ["icf_stable", "b1a_stable"], "weights": [3, 1]})
+    assert chosen.mean() == pytest.approx(0.25)
+
+
+def test_places_within_options_have_values_only_if_chosen() -> None:
+    document = {"a": {"choice": [{"kind": "x", "r": {"uniform": [0, 1]}}, "none"]}, "b": [{"integer": [1, 2]}]}
+    places = places_of(document, ())
+    assert [place.key for place in places] == ["a", "a.choice.0.r", "b.0"]
+    used: dict = {}
+    values = {place.path: place.distribution.value(0.1) for place in places}
+    assert filled(document, (), values, used) == {"a": {"kind": "x", "r": 0.1}, "b": [1]}
+    values[("a",)] = places[0].distribution.value(0.9)
+    used.clear()
+    assert filled(document, (), values, used) == {"a": "none", "b": [1]}
+    assert set(used) == {("a",), ("b", 0)}
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [
+        ({"uniform": [2, 1]}, "must increase"),
+        ({"uniform": ["1 mm", 2]}, "mixes plain numbers and quantities"),
+        ({"uniform": ["1 mm", "2 kPa"]}, "wrong dimension"),
+        ({"uniform": [1]}, "list of 2"),
+        ({"uniform": 3}, "takes a list"),
+        ({"uniform": [1, 2], "weights": [1, 1]}, "not one distribution"),
+        ({"log_uniform": [0, 2]}, "must be positive"),
+        ({"normal": [0, 0]}, "must be positive"),
+        ({"normal": [0, 1], "within": [50, 60]}, "hold a part"),
+        ({"integer": [1.5, 2]}, "whole numbers"),
+        ({"integer": [True, 2]}, "whole numbers"),
+        ({"range": [1, 2, 1]}, "number of values"),
+        ({"values": ["icf_stable"]}, "not a number or a quantity"),
+        ({"choice": []}, "takes a list"),
+        ({"choice": [1, 2], "weights": [0, 0]}, "not all zero"),
+        ({"choice": [1, 2], "weights": [1]}, "list of 2"),
+    ],
+)
+def test_what_cannot_be_drawn_from_is_refused(written: dict[str, Any], words: str) -> None:
+    with pytest.raises(InvalidQuantity, match=words):
+        distribution(written)

@@ -1,0 +1,140 @@
+"""What is stored of each kind of experiment, and the sweeps that are shipped."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactsim.dataset.block import decoded
+from tactsim.dataset.computing import computed
+from tactsim.dataset.drawing import drawn_specimen
+from tactsim.dataset.layout import layout_of, split_of
+from tactsim.dataset.recorder import PACKAGE, Recorder, recorder_for
+from tactsim.dataset.recorders.grasp import GraspRecorder
+from tactsim.dataset.settings import SweepSettings
+from tactsim.dataset.sweep import load_sweep
+from tactsim.experiments.grasp import Grasp
+from tactsim.registry import kinds
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+
+CASES = Path(__file__).parents[3] / "cases"
+SWEEPS = sorted(CASES.glob("sweep_*.yaml"))
+
+
+@pytest.mark.parametrize("path", SWEEPS, ids=lambda path: path.stem)
+def test_shipped_sweeps_can_be_drawn(path: Path) -> None:
+    sweep = load_sweep(path)
+    layout = layout_of(sweep)
+    known = {variable.name: variable for variable in layout.variables}
+    assert sweep.samples >= 500
+    for specimen in range(8):
+        for drawn in drawn_specimen(sweep, specimen):
+            assert drawn.case is not None, drawn.refusal
+            labels = layout.recorder.labels(drawn.case.experiment)
+            assert all(np.shape(value) == known[name].sizes for name, value in labels.items())
+            assert 0 <= split_of(sweep, specimen, labels, known) < len(sweep.settings.splits.names)
+    assert all(variable.unit and variable.description for variable in layout.variables)
+
+
+def test_all_five_sweeps_of_the_issue_are_there() -> None:
+    assert {path.stem for path in SWEEPS} == {
+        f"sweep_{name}" for name in ("lumps", "arteries", "annulus", "rates", "closed_form")
+    }
+
+
+@pytest.mark.parametrize("kind", sorted(kinds(PACKAGE, Recorder)))
+def test_labels_fill_what_a_recorder_declares(kind: str) -> None:
+    recorder = recorder_for(kind, SweepSettings(samples=1), 1)
+    from tactsim.case.model import experiment_kinds
+
+    experiment = experiment_kinds()[kind].example()
+    declared = {variable.name: variable.sizes for variable in recorder.labels_of(experiment)}
+    found = {name: np.shape(value) for name, value in recorder.labels(experiment).items()}
+    assert found == declared
+    assert recorder.describe()
+
+
+def test_touches_of_the_switch_probe_are_stored() -> None:
+    sweep = load_sweep(CASES / "sweep_rates.yaml")
+    block = decoded(computed(sweep.text, range(3)))
+    assert (block["status"] == 1).all()
+    closed = block["closed_switches"].astype(int)
+    assert (np.isfinite(block["switching_time"]).sum(axis=1) == closed).all()
+    full = closed == 5
+    np.testing.assert_allclose(block["mean_rate"][full], block["rate"][full], rtol=0.05)  # what the algorithm reads
+
+
+def grasp_result(steps: int) -> tuple[Grasp, Result]:
+    """A grasp that closed in some steps, the force of each taxel its number times the time."""
+    experiment, taxels = Grasp.example(), np.arange(9.0).reshape(3, 3)
+    times = np.arange(1, steps + 1) / steps
+    units = {"time": "s", "displacement": "m", "reaction_force": "N"}
+    records = [
+        StepRecord(k, 3, 1e-12, {"time": t, "displacement": 1e-3 * t, "reaction_force": 5 * t}) for k, t in enumerate(times)
+    ]
+    quantities = {}
+    for factor, side in ((1.0, "upper"), (2.0, "lower")):
+        quantities[f"taxel_force_{side}"] = Quantity((factor * taxels).tolist(), "N", "")
+        if steps > 1:
+            history = [(factor * t * taxels).tolist() for t in times]
+            quantities[f"taxel_force_{side}_history"] = Quantity(history, "N", "")
+        quantities |= {f"{part}_force_{side}": Quantity(0.25, "N", "") for part in ("gap", "outside")}
+    return experiment, Result("grasp", Status.CONVERGED, "", quantities, steps=tuple(records), units=units)
+
+
+@pytest.mark.parametrize("steps", [1, 4, 7])
+def test_taxels_are_stored_at_even_times_whatever_the_steps(steps: int) -> None:
+    experiment, result = grasp_result(steps)
+    recorder = GraspRecorder(settings=SweepSettings(samples=1, times=5))
+    found = recorder.readings(experiment, result, np.random.default_rng(1))
+    np.testing.assert_allclose(found["time_s"], [0.2, 0.4, 0.6, 0.8, 1.0], rtol=1e-12)
+    expected = found["time_s"][:, None, None, None] * np.arange(9.0).reshape(3, 3) * np.array([1.0, 2.0])[:, None, None]
+    np.testing.assert_allclose(found["taxel_force"], expected, rtol=1e-12)  # linear histories are met to round-off
+    np.testing.assert_allclose(found["taxel_pressure"], expected / experiment.matrix.area, rtol=1e-12)
+    np.testing.assert_allclose(found["displacement"], 1e-3 * found["time_s"], rtol=1e-12)
+    assert found["outside_force"].tolist() == [0.5, 0.5]
+    sizes = {variable.name: variable.sizes for variable in recorder.readings_of(experiment)}
+    assert {name: np.shape(value) for name, value in found.items()} == sizes
+
+
+def test_what_is_stored_is_that_at_the_end_and_not_before() -> None:
+    experiment, result = grasp_result(4)
+    last = GraspRecorder(settings=SweepSettings(samples=1)).readings(experiment, result, np.random.default_rng(1))["taxel_force"]
+    assert last[0, 0, 2, 2] == pytest.approx(8.0, rel=1e-12)
+    assert last[0, 0, 2, 2] != pytest.approx(6.0, rel=0.1)
+
+
+def test_a_lump_of_the_tissues_own_material_is_none() -> None:
+    sweep = load_sweep(CASES / "sweep_lumps.yaml")
+    layout = layout_of(sweep)
+    counts, options = [], []
+    for specimen in range(40):
+        drawn = drawn_specimen(sweep, specimen)[0]
+        labels = layout.recorder.labels(drawn.case.experiment)  # type: ignore[union-attr]
+        counts.append(int(labels["inclusion_count"]))
+        options.append(drawn.values["experiment", "inclusions", 0, "material"])
+        if counts[-1] == 0:
+            assert labels["inclusion_kind"][0] == 0
+            assert np.isnan(labels["inclusion_radius"][0])
+        else:
+            center, radius = labels["inclusion_center"][0], labels["inclusion_radius"][0]
+            assert labels["inclusion_depth"][0] == pytest.approx(20e-3 - center[2] - radius, abs=1e-9)
+    assert [count == 0 for count in counts] == [option == 1 for option in options]
+    assert 1 <= counts.count(0) <= 12
+
+
+@pytest.mark.slow
+def test_a_grasp_is_stored_with_clean_and_noisy_readings(tmp_path: Path) -> None:
+    text = (CASES / "sweep_lumps.yaml").read_text(encoding="utf-8")
+    small = tmp_path / "small.yaml"
+    small.write_text(text.replace("{kind: layers, size: 6 mm}", "{kind: structured, cells: [10, 10, 6]}"), encoding="utf-8")
+    block = decoded(computed(load_sweep(small, ("experiment.matrix.rows=2",)).text, [0]))
+    assert block["status"].tolist() == [1], block["reason"]
+    assert block["taxel_force"].shape == (1, 1, 2, 2, 3)
+    total = block["taxel_force"][0, 0].sum(axis=(1, 2)) + block["outside_force"][0]
+    np.testing.assert_allclose(total[0], block["reaction_force"][0, 0], rtol=1e-8)
+    assert np.corrcoef(block["taxel_force"].ravel(), block["read_force"].ravel())[0, 1] > 0.95
+    assert json.dumps(block["reason"].tolist()) == '["end of the history"]'

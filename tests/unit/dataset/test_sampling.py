@@ -1,0 +1,163 @@
+"""Which samples a sweep draws: from the seed and their number only, possible ones, specimens shared."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sweeps import TEXT, sweep_file
+
+from tactsim.dataset.block import decoded
+from tactsim.dataset.computing import computed
+from tactsim.dataset.designs import design_point
+from tactsim.dataset.drawing import drawn_specimen
+from tactsim.dataset.layout import layout_of
+from tactsim.dataset.sweep import Sweep, load_sweep, sweep_of_text
+from tactsim.errors import CaseError
+
+GRID = """\
+schema: tactsim/sweep/1
+experiment:
+  kind: closed_form
+  material: {kind: neo_hookean, c10: {values: [3 kPa, 5 kPa]}}
+  outer_radius: {range: [3 mm, 5 mm, 3]}
+  loading: {control: displacement, pieces: [{kind: ramp, to: {values: [0.1 mm, 0.2 mm]}, duration: 1 s}]}
+sweep: {design: grid, within_specimen: [experiment.loading.pieces.0.to]}
+"""
+
+
+def sweep_of(folder: Path, text: str = TEXT, samples: int | None = None) -> Sweep:
+    return load_sweep(sweep_file(folder, text), samples=samples)
+
+
+def values_of(sweep: Sweep, specimens: range) -> list[dict]:
+    return [drawn.values for specimen in specimens for drawn in drawn_specimen(sweep, specimen)]
+
+
+@pytest.mark.parametrize("design", ["sobol", "random"])
+def test_a_sample_depends_on_the_seed_and_its_number_only(tmp_path: Path, design: str) -> None:
+    text = TEXT.replace("seed: 7", f"seed: 7\n  design: {design}")
+    few, many = sweep_of(tmp_path, text), sweep_of(tmp_path, text, samples=3000)
+    assert values_of(few, range(8)) == values_of(many, range(8))
+    assert drawn_specimen(many, 700)[2].values == drawn_specimen(sweep_of_text(many.text), 700)[2].values
+    other = sweep_of(tmp_path, text.replace("seed: 7", "seed: 8"))
+    assert values_of(other, range(8)) != values_of(few, range(8))
+    assert few.identity == many.identity != other.identity
+
+
+def test_a_sobol_design_is_the_same_across_its_blocks() -> None:
+    points = np.array([design_point("sobol", (1, 0), k, count=0, dimensions=2) for k in range(2048)])
+    assert len(np.unique(points, axis=0)) == 2048
+    cells = np.histogram2d(*points.T, bins=16, range=[[0, 1], [0, 1]])[0]
+    assert (cells == 8).all()  # what a net of 2^11 points in two dimensions has in each of 256 squares
+
+
+def test_a_latin_hypercube_fills_every_row_once(tmp_path: Path) -> None:
+    points = np.array([design_point("latin_hypercube", (3, 0), k, count=50, dimensions=3) for k in range(50)])
+    for column in points.T:
+        assert sorted((column * 50).astype(int)) == list(range(50))
+    text = TEXT.replace("seed: 7", "seed: 7\n  design: latin_hypercube")
+    assert sweep_of(tmp_path, text).identity != sweep_of(tmp_path, text, samples=30).identity
+
+
+def test_a_grid_has_every_combination_and_groups_specimens(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path, GRID)
+    assert (sweep.samples, sweep.per_specimen) == (12, 2)
+    values = values_of(sweep, range(6))
+    assert len({tuple(sorted((str(path), value) for path, value in one.items())) for one in values}) == 12
+    first, second = drawn_specimen(sweep, 4)
+    different = [path for path in first.values if first.values[path] != second.values[path]]
+    assert different == [("experiment", "loading", "pieces", 0, "to")]
+
+
+def test_samples_of_a_specimen_share_what_is_not_named(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path)
+    block = decoded(computed(sweep.text, range(9)))
+    assert block["specimen"].tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+    for name, count in (("outer_radius", 3), ("split", None), ("varied_loading_pieces_0_to", 9)):
+        groups = block[name].reshape(3, 3)
+        assert count == 9 or (groups == groups[:, :1]).all(), name
+    assert len(np.unique(block["varied_loading_pieces_0_to"])) == 9
+    assert len(np.unique(block["case_id"])) == 9
+
+
+def test_impossible_cases_are_drawn_again_and_counted(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path, samples=300)
+    drawn = [drawn_specimen(sweep, specimen)[0] for specimen in range(100)]
+    assert sum(one.redraws > 0 for one in drawn) >= 3
+    for one in drawn:
+        experiment = one.case.experiment  # type: ignore[union-attr]
+        assert experiment.inner_radius <= 0.99 * experiment.outer_radius  # type: ignore[attr-defined]
+    never = dataclasses.replace(sweep, settings=sweep.settings.model_copy(update={"redraws": 0}))
+    refused = [drawn_specimen(never, k)[0] for k in range(100) if drawn_specimen(sweep, k)[0].redraws]
+    assert all(one.case is None and "no case was accepted in 1 draws" in one.refusal for one in refused)
+
+
+def test_a_specimen_is_drawn_whole_though_the_sweep_ends_within_it(tmp_path: Path) -> None:
+    text = TEXT.replace("[experiment.loading.pieces.0.to]", "[experiment.inner_radius]")
+    for samples in range(31, 60, 3):  # the last specimen has one sample
+        few, many = sweep_of(tmp_path, text, samples=samples), sweep_of(tmp_path, text, samples=300)
+        last = samples // 3
+        assert values_of(few, range(last, last + 1)) == values_of(many, range(last, last + 1))
+        assert decoded(computed(few.text, [samples - 1]))["checksum"].shape == (1, 32)
+    redrawn = [specimen for specimen in range(100) if drawn_specimen(many, specimen)[0].redraws]
+    assert redrawn  # or nothing was tried
+    for drawn in drawn_specimen(many, redrawn[0]):
+        assert drawn.case is not None
+
+
+def test_batches_do_not_matter(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path)
+    whole, alone = decoded(computed(sweep.text, range(6))), decoded(computed(sweep.text, [4]))
+    assert whole["checksum"][4].tolist() == alone["checksum"][0].tolist()
+    assert whole["checksum"][3].tolist() != alone["checksum"][0].tolist()
+
+
+def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path, samples=900)
+    block = decoded(computed(sweep.text, range(0, 900, 3)))
+    names = sweep.settings.splits.names
+    softer = block["instantaneous_shear_modulus"] < 4000
+    assert names[3] == "softer"
+    assert ((block["split"] == 3) == softer).all()
+    shares = np.bincount(block["split"][~softer], minlength=3)[:3] / (~softer).sum()
+    assert shares == pytest.approx([0.5, 0.25, 0.25], abs=0.1)  # three standard deviations of some 230 specimens
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("tactsim/sweep/1", "tactsim/sweep/2", "a sweep begins with 'schema: tactsim/sweep/1'"),
+        ("uniform: [1 mm, 2.5 mm]", "uniform: [1 mm, 2.5 kPa]", r"sweep.yaml:6: experiment.inner_radius: .*wrong dimension"),
+        ("kind: neo_hookean", "kind: neo_hokean", "unknown kind|neo_hookean"),
+        ("inner_radius:", "iner_radius:", "did you mean 'inner_radius'"),
+        ("uniform: [2 mm, 4 mm]", "uniform: [0.2 mm, 0.4 mm]", "no case was accepted in 101 draws"),
+        ("pieces.0.to]", "pieces.0.too]", "did you mean 'experiment.loading.pieces.0.to'"),
+        ("samples: 24\n", "samples: 24\n  sample: 3\n", r"sweep.sample: unknown key.*did you mean 'samples'"),
+        ("samples: 24\n", "samples: 0\n", "sweep.samples"),
+        ("  samples: 24\n", "", "sweep.samples: missing"),
+        ("samples_per_specimen: 3", "samples_per_specimen: 1", "nothing varies within a specimen"),
+        ("white: 1 mV", "white: 1", "has no unit"),
+        ("instantaneous_shear_modulus: {below", "shear_modulus: {below", "unknown label"),
+        ("{below: 4000}", "{}", "a condition needs above, below or equal"),
+        ("train: 0.5", "train: 0.9", "add up to more than 1"),
+        ("seed: 7", "design: grid", "a grid takes lists"),
+    ],
+)
+def test_what_cannot_be_swept_is_refused_with_its_place(tmp_path: Path, old: str, new: str, words: str) -> None:
+    assert old in TEXT
+    with pytest.raises(CaseError, match=words):
+        layout_of(sweep_of(tmp_path, TEXT.replace(old, new)))
+
+
+def test_a_kind_without_recorder_needs_names(tmp_path: Path) -> None:
+    text = TEXT.replace("title: A small sweep", "title: x").replace("kind: closed_form", "kind: film_creep")
+    with pytest.raises(CaseError, match=r"sweep\.quantities: missing"):
+        layout_of(sweep_of(tmp_path, text))
+
+
+def test_a_file_without_places_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="nothing varies"):
+        sweep_of(tmp_path, "schema: tactsim/sweep/1\nexperiment: {kind: closed_form}\nsweep: {samples: 3}\n")

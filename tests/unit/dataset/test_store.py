@@ -1,0 +1,281 @@
+"""The store: kills, resumption, locks, changes, full disks, lost workers, and what xarray sees."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
+
+from tactsim.dataset import code_identity, running
+from tactsim.dataset.checking import check
+from tactsim.dataset.journal import Journal
+from tactsim.dataset.local_workers import LocalWorkers
+from tactsim.dataset.running import opened_run
+from tactsim.dataset.store import Store, chunk_samples
+from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.variable import Variable
+from tactsim.errors import StorageError, TactsimError
+
+SCRIPT = Path(__file__).parents[2] / "sweeps.py"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store that nothing disturbed."""
+    return small_store(tmp_path_factory.mktemp("whole"))
+
+
+def test_xarray_opens_it_without_our_code(whole: Path) -> None:
+    program = (
+        "import sys, xarray; data = xarray.open_zarr(sys.argv[1]); assert 'tactsim' not in sys.modules; "
+        "print(dict(data.sizes), data.force.attrs['units'], data.force.dims, float(data.force.max()), data.reason.values[0])"
+    )
+    command = [sys.executable, "-W", "error", "-c", program, str(whole)]
+    told = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert "'sample': 24" in told
+    assert "'time': 4" in told
+    assert "N ('sample', 'time')" in told
+    assert "end of the history" in told
+
+
+def test_every_variable_has_a_unit_and_a_meaning(whole: Path) -> None:
+    data = xarray.open_zarr(whole)
+    assert all(values.attrs["units"] and values.attrs["long_name"] for values in data.data_vars.values())
+    assert data["varied_inner_radius"].attrs["units"] == "m"
+    np.testing.assert_array_equal(data["varied_inner_radius"], data["inner_radius"])
+    assert data.attrs["license"] == "CC-BY-4.0"
+    assert json.loads(data.attrs["sweep"])["schema"] == "tactsim/sweep/1"
+    assert (data["status"] == 1).all()
+
+
+def test_noise_is_apart_from_what_is_clean(whole: Path) -> None:
+    data = xarray.open_zarr(whole)
+    assert not np.allclose(data["force"], data["read_force"], rtol=1e-6)
+    assert np.corrcoef(data["force"].values.ravel(), data["read_force"].values.ravel())[0, 1] > 0.9
+
+
+@pytest.mark.parametrize("tasks", [0, 1, 5])
+def test_an_interrupted_sweep_goes_on(whole: Path, tmp_path: Path, tasks: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(running, "MOST_IN_TASK", 2)
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
+        going.compute(Inline(sweep, stop_after=tasks), lambda tally: None)
+    assert len(Store.open(place).pending()) > 0
+    assert not (place / running.JOURNAL).exists()
+    going = run_sweep(sweep, place, resume=True)
+    assert going.tally.before + going.tally.done == 24
+    assert_same(whole, place)
+
+
+def killed_often(case: Path, kills: int, seed: int) -> Path:
+    """The store of a sweep that was killed at random moments and went on each time."""
+    moments, place = random.Random(seed), case.with_name("killed.zarr")
+    command = [sys.executable, str(SCRIPT), str(case), str(place)]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    for _ in range(kills):
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+        assert process.stdout is not None
+        assert process.stdout.readline() == "begins\n"
+        time.sleep(moments.uniform(0.0, 0.5))
+        process.kill()
+        process.communicate()
+    left = len(Store.open(place).pending()) if (place / "zarr.json").exists() else 1
+    assert left > 0, "the kills came too late to try anything"
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return place
+
+
+@pytest.mark.parametrize(("kills", "seed"), [(1, 1), pytest.param(20, 2, marks=pytest.mark.slow)])
+def test_kills_at_random_moments_lose_nothing(tmp_path: Path, kills: int, seed: int) -> None:
+    text = TEXT.replace("samples: 24", f"samples: {42 * kills}")
+    place = killed_often(sweep_file(tmp_path, text), kills, seed)
+    assert_same(small_store(tmp_path, text), place)
+    assert check(place).findings == ()
+
+
+def test_blocks_of_a_torn_journal_are_kept_up_to_the_tear(tmp_path: Path) -> None:
+    journal = Journal(tmp_path / "journal")
+    journal.append(b"one")
+    journal.append(b"two" * 50)
+    whole = journal.path.read_bytes()
+    for size in range(len(whole)):
+        journal.path.write_bytes(whole[:size])
+        assert list(journal.blocks()) == ([b"one"] if size >= 51 else [])
+    journal.path.write_bytes(whole)
+    assert list(journal.blocks()) == [b"one", b"two" * 50]
+    journal.path.write_bytes(whole[:60] + b"x" + whole[61:])
+    assert list(journal.blocks()) == [b"one"]
+
+
+def test_a_second_sweep_is_refused_while_the_first_runs(tmp_path: Path) -> None:
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    with opened_run(sweep, place), pytest.raises(StorageError, match="in use by another sweep"):
+        run_sweep(sweep, place, resume=True)
+    (tmp_path / ".s.zarr.lock").write_text("what a dead process left")
+    run_sweep(sweep, place, resume=True)
+
+
+def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path: Path) -> None:
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    with pytest.raises(StorageError, match=r"no data set .* to resume"):
+        run_sweep(sweep, place, resume=True)
+    run_sweep(sweep, place)
+    with pytest.raises(StorageError, match="--resume"):
+        run_sweep(sweep, place)
+    changed = load_sweep(sweep_file(tmp_path, TEXT.replace("2.5 mm", "2.4 mm")))
+    with pytest.raises(StorageError, match=r"experiment\.inner_radius\.uniform differs"):
+        run_sweep(changed, place, resume=True)
+    with pytest.raises(StorageError, match="would lose some"):
+        run_sweep(load_sweep(sweep_file(tmp_path), samples=12), place, resume=True)
+    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
+    longer = content(place)
+    for name, values in content(whole).items():
+        np.testing.assert_array_equal(values, longer[name][:24], err_msg=name)
+    assert check(place).findings == ()
+
+
+def test_changed_code_is_refused_or_marked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
+        going.compute(Inline(sweep, stop_after=1), lambda tally: None)
+    monkeypatch.setattr(running, "code_identity", lambda: "9.9.9+other")
+    with pytest.raises(StorageError, match="--accept-changed-code"), opened_run(sweep, place, resume=True):
+        pass
+    run_sweep(sweep, place, resume=True)
+    store = Store.open(place)
+    assert store.attributes["codes"] == [code_identity.code_identity(), "9.9.9+other"]
+    assert sorted(set(store.read("code").tolist())) == [0, 1]
+
+
+@pytest.mark.parametrize("thing", ["file", "folder"])
+def test_what_is_not_a_data_set_is_left_alone(tmp_path: Path, thing: str) -> None:
+    place = tmp_path / "mine"
+    (place if thing == "folder" else tmp_path).mkdir(exist_ok=True)
+    target = place / "notes.txt" if thing == "folder" else place
+    target.write_text("mine")
+    with pytest.raises(StorageError, match="not a data set of tactsim"):
+        run_sweep(load_sweep(sweep_file(tmp_path)), place)
+    assert target.read_text() == "mine"
+    with pytest.raises(StorageError, match="not a data set"):
+        Store.open(place)
+
+
+def test_a_store_of_another_schema_is_refused(tmp_path: Path) -> None:
+    place = small_store(tmp_path)
+    Store.open(place, writing=True).tell(schema="tactsim/dataset/2")
+    with pytest.raises(StorageError, match=r"schema 'tactsim/dataset/2'; this tactsim reads 'tactsim/dataset/1'"):
+        Store.open(place)
+
+
+@pytest.mark.parametrize("room", [1_500, 40_000])
+def test_a_full_disk_ends_with_an_error_and_keeps_what_was_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int
+) -> None:
+    """The largest file that may be written stands for the room: there is none for the first task, or for a later one."""
+    monkeypatch.setattr(running, "MOST_IN_TASK", 2)
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    limits, earlier = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    with opened_run(sweep, place) as going:
+        try:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (room, limits[1]))
+            with pytest.raises(StorageError, match=r"cannot write .*: File too large"):
+                going.compute(Inline(sweep), lambda tally: None)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            signal.signal(signal.SIGXFSZ, earlier)
+    assert going.tally.done == (0 if room < 2_000 else 24 - len(Store.open(place).pending()))
+    assert (going.tally.done > 0) == (room > 2_000)
+    run_sweep(sweep, place, resume=True)
+    assert check(place).findings == ()
+
+
+def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise StorageError("no room")
+
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    with monkeypatch.context() as patch, opened_run(sweep, place) as going:
+        patch.setattr(Store, "write", full)
+        with pytest.raises(StorageError, match="no room"):
+            going.compute(Inline(sweep), lambda tally: None)
+    assert [finding.kind for finding in check(place).findings] == ["missing", "unfinished"]
+    with opened_run(sweep, place, resume=True, accept_changes=True):
+        pass
+    assert_same(whole, place)
+
+
+def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole: Path, tmp_path: Path) -> None:
+    sweep = load_sweep(sweep_file(tmp_path))
+    run_sweep(sweep, tmp_path / "lucky.zarr", losing={5: 2})
+    assert_same(whole, tmp_path / "lucky.zarr")
+    going = run_sweep(sweep, tmp_path / "unlucky.zarr", losing={5: 99})
+    store = Store.open(tmp_path / "unlucky.zarr")
+    assert (store.read("status") == 2).nonzero()[0].tolist() == [5]
+    assert store.read("reason")[5].startswith("lost 3 times: its process ended (SIGKILL)")
+    assert going.tally.failed == 1
+    assert store.read("varied_inner_radius")[5] > 0
+    assert np.isnan(store.group["force"][5]).all()
+    assert check(tmp_path / "unlucky.zarr").findings == ()
+
+
+def test_workers_that_always_die_end_the_sweep_and_mark_little(tmp_path: Path) -> None:
+    sweep = load_sweep(sweep_file(tmp_path), samples=300)
+    with opened_run(sweep, tmp_path / "s.zarr") as going, pytest.raises(TactsimError, match="30 tasks in a row were lost"):
+        going.compute(Inline(sweep, losing=dict.fromkeys(range(300), 999)), lambda tally: None)
+    assert (Store.open(tmp_path / "s.zarr").read("status") == 2).sum() <= 30
+
+
+def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
+    text = TEXT.replace("times: 4", "times: 4\n  quantities: {largest_force: Pa}")
+    place = small_store(tmp_path, text)
+    store = Store.open(place)
+    assert (store.read("status") == 2).all()
+    assert "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa" in store.read("reason")[0]
+
+
+@pytest.mark.slow
+def test_processes_give_the_same_and_a_killed_one_is_replaced(whole: Path, tmp_path: Path) -> None:
+    sweep = load_sweep(sweep_file(tmp_path))
+    workers = LocalWorkers(sweep.text, 2)
+    killed: list[int] = []
+
+    def kill_once(tally: object) -> None:
+        if not killed and workers.processes:
+            killed.append(workers.processes[0])
+            os.kill(killed[0], signal.SIGKILL)
+
+    with opened_run(sweep, tmp_path / "s.zarr") as going:
+        try:
+            going.compute(workers, kill_once)
+        finally:
+            workers.close()
+    assert killed
+    assert_same(whole, tmp_path / "s.zarr")
+
+
+def test_chunks_hold_many_small_samples_or_a_few_large_ones() -> None:
+    small, large = Variable("a", "1", "a", "reading"), Variable("b", "1", "b", "reading", ("time",), (100_000,))
+    assert chunk_samples([small], 10_000) == 1024
+    assert chunk_samples([small, large], 10_000) == 2
+    assert chunk_samples([small], 24) == 16
+
+
+def test_opening_ten_thousand_samples_is_fast(tmp_path: Path) -> None:
+    sweep = load_sweep(sweep_file(tmp_path), samples=10_000)
+    with opened_run(sweep, tmp_path / "s.zarr"):
+        pass
+    begin = time.perf_counter()
+    xarray.open_zarr(tmp_path / "s.zarr")
+    assert time.perf_counter() - begin < 1.0  # asked for: under a second

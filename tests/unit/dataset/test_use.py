@@ -1,0 +1,275 @@
+"""Using a data set: loading, splits, checks, exports, the card, the command line."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow.parquet
+import pytest
+from sweeps import small_store, sweep_file
+
+from tactsim.cli import main
+from tactsim.dataset import TorchSamples, load
+from tactsim.dataset.block import checksum
+from tactsim.dataset.checking import check
+from tactsim.dataset.layout import layout_of
+from tactsim.dataset.progress import Tally
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import sweep_of_text
+from tactsim.errors import InputError, StorageError, UnknownName
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    """A small store to be spoilt."""
+    return small_store(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small store that stays as it is."""
+    return small_store(tmp_path_factory.mktemp("kept"))
+
+
+def test_splits_are_apart_and_together_all(kept: Path) -> None:
+    parts = {name: load(kept, split=name) for name in ("train", "validation", "test", "softer")}
+    specimens = [set(part["specimen"].values.tolist()) for part in parts.values()]
+    assert sum(map(len, specimens)) == len(set.union(*specimens)) == 8
+    assert sum(part.sizes["sample"] for part in parts.values()) == load(kept).sizes["sample"] == 24
+    assert load(kept, split=["train", "test"]).sizes["sample"] == parts["train"].sizes["sample"] + parts["test"].sizes["sample"]
+    assert list(load(kept, variables=["force"]).data_vars) == ["force"]
+    assert load(kept)["sample"].values.tolist() == list(range(24))
+
+
+def test_unknown_names_are_refused(kept: Path, tmp_path: Path) -> None:
+    with pytest.raises(UnknownName, match="did you mean 'train'"):
+        load(kept, split="trian")
+    with pytest.raises(UnknownName, match="did you mean 'force'"):
+        load(kept, variables=["forze"])
+    with pytest.raises(InputError, match="empty list"):
+        load(kept, split=[])
+    with pytest.raises(StorageError, match=r"holds no zarr\.json"):
+        load(tmp_path)
+
+
+def test_a_whole_store_has_no_findings(kept: Path) -> None:
+    checked = check(kept)
+    assert checked.findings == ()
+    assert checked.counts == {"pending": 0, "done": 24, "failed": 0}
+
+
+def summed_again(store: Store, number: int) -> None:
+    """Makes the checksum fit what is there."""
+    variables = layout_of(sweep_of_text(store.attributes["sweep"])).variables
+    sample = {variable.name: store.read(variable.name)[number] for variable in variables}
+    store.group["checksum"][number] = checksum(sample, variables)
+
+
+def changed(store: Store, name: str, number: int, value: object) -> None:
+    """Changes a sample as a faulty program might, checksum and all."""
+    store.group[name][number] = value
+    summed_again(store, number)
+
+
+def copied(store: Store) -> None:
+    for name in ("force", "displacement", "read_force", "voltage", "time_s", "largest_force", "largest_displacement"):
+        store.group[name][4] = store.group[name][2]
+    for name in ("tissue_rise_axis", "force_factor", "rise_factor"):
+        store.group[name][4] = store.group[name][2]
+    summed_again(store, 4)
+
+
+FAULTS: dict[str, Callable[[Store], None]] = {
+    "checksum": lambda store: store.group["force"].__setitem__(3, 0.5 + store.group["force"][3]),
+    "not finite": lambda store: changed(store, "force", 3, np.nan),
+    "constant": lambda store: changed(store, "force", 3, 0.25),
+    "duplicate": copied,
+    "missing": lambda store: store.group["status"].__setitem__(3, 0),
+    "leakage": lambda store: changed(store, "split", 3, (store.read("split")[3] + 1) % 3),
+    "damaged": lambda store: store.group["status"].__setitem__(3, 77),
+}
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_planted_faults_are_found(store: Path, kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    FAULTS[kind](Store.open(store, writing=True))
+    findings = check(store).findings
+    assert kind in [finding.kind for finding in findings]
+    if kind not in ("leakage", "damaged"):  # which show in more than one way
+        assert len(findings) == 1
+    assert main(["data", "check", str(store)]) == 4
+    assert kind in capsys.readouterr().out
+
+
+def test_the_same_case_twice_is_found(store: Path) -> None:
+    opened = Store.open(store, writing=True)
+    changed(opened, "case_id", 3, opened.read("case_id")[4])
+    assert [finding.kind for finding in check(store).findings] == ["duplicate"]
+
+
+def test_a_byte_changed_on_the_disk_is_found(store: Path) -> None:
+    chunk = next(path for path in (store / "force" / "c").rglob("*") if path.is_file())
+    content = bytearray(chunk.read_bytes())
+    content[len(content) // 2] ^= 1
+    chunk.write_bytes(content)
+    try:
+        kinds = [finding.kind for finding in check(store).findings]
+    except StorageError as error:  # the compression may notice first
+        kinds = ["checksum"] if "force" in str(error) else []
+    assert kinds == ["checksum"]
+
+
+def test_a_lost_array_is_found(store: Path) -> None:
+    (store / "force" / "zarr.json").unlink()
+    assert [str(finding) for finding in check(store).findings] == ["missing: the variable force"]
+
+
+def test_hdf5_holds_the_same(kept: Path, tmp_path: Path) -> None:
+    assert main(["data", "export", str(kept), "--to", str(tmp_path / "small.h5"), "--split", "train"]) == 0
+    data = load(kept, split="train")
+    with h5py.File(tmp_path / "small.h5") as file:
+        for name, values in data.data_vars.items():
+            if values.dtype.kind in "fiub":
+                np.testing.assert_array_equal(file[str(name)][...], values.values)
+        assert file["force"].attrs["units"] == "N"
+        assert file["force"].attrs["dimensions"] == "sample,time"
+        assert file["reason"][0] == b"end of the history"
+
+
+def test_shards_hold_the_same_with_an_index(kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tactsim.dataset.export.SHARD_SAMPLES", 10)
+    assert main(["data", "export", str(kept), "--to", str(tmp_path / "shards")]) == 0
+    index = pyarrow.parquet.read_table(tmp_path / "shards" / "index.parquet").to_pydict()
+    data = load(kept)
+    assert index["sample"] == list(range(24))
+    np.testing.assert_array_equal(index["inner_radius [m]"], data["inner_radius"])
+    assert set(index["split"]) <= {"train", "validation", "test", "softer"}
+    with np.load(tmp_path / "shards" / f"shard_{index['shard'][13]:05d}.npz", allow_pickle=False) as shard:
+        np.testing.assert_array_equal(shard["force"][index["row"][13]], data["force"].values[13])
+    described = json.loads((tmp_path / "shards" / "dataset.json").read_text(encoding="utf-8"))
+    assert described["variables"]["force"]["units"] == "N"
+
+
+def test_a_data_set_is_shown(kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", str(kept), "--save", str(tmp_path / "spread.png")]) == 0
+    assert "A small sweep" in capsys.readouterr().out
+    assert (tmp_path / "spread.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_export_replaces_nothing(kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "there.h5").write_text("mine")
+    assert main(["data", "export", str(kept), "--to", str(tmp_path / "there.h5")]) == 5
+    assert main(["data", "export", str(kept)]) == 2
+    assert main(["data", "export", str(kept), "--to", str(tmp_path / "x.h5"), "--split", "nothing"]) == 2
+    assert "known: softer, test, train, validation" in capsys.readouterr().err
+    assert not (tmp_path / "x.h5").exists()
+
+
+def test_torch_samples_need_torch_only_for_a_sample(kept: Path) -> None:
+    samples = TorchSamples(kept, inputs=["read_force"], targets=["inner_radius"], split="train")
+    assert len(samples) == load(kept, split="train").sizes["sample"]
+    with pytest.raises(InputError, match="reason holds text"):
+        TorchSamples(kept, inputs=["reason"])
+    assert samples._arrays()["read_force"].shape == (24, 4)
+    assert samples.__getstate__()["_opened"] is None
+
+
+def test_torch_loaders_with_eight_workers(kept: Path) -> None:
+    torch = pytest.importorskip("torch")
+    samples = TorchSamples(kept, inputs=["read_force"], targets=["inner_radius"])
+    loader = torch.utils.data.DataLoader(samples, batch_size=5, num_workers=8)
+    batches = [inputs["read_force"] for inputs, _ in loader]
+    np.testing.assert_allclose(torch.cat(batches).numpy(), load(kept)["read_force"], rtol=1e-6)
+
+
+def test_reading_needs_no_torch_and_no_dask() -> None:
+    program = "import sys, tactsim.dataset; print(sorted({'torch', 'dask', 'zarr', 'xarray', 'h5py'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip() == "[]"
+
+
+def test_a_sweep_by_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case, place = str(sweep_file(tmp_path)), str(tmp_path / "s.zarr")
+    assert main(["sweep", case, "--out", place, "--samples", "6", "--workers", "1", "--progress"]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("6 samples done, 0 failed in ")
+    assert "samples, 0 failed, " in err
+    assert main(["sweep", case, "--out", place, "--samples", "6"]) == 5
+    assert main(["data", "info", place]) == 0
+    told = capsys.readouterr().out
+    assert "A small sweep" in told
+    assert "voltage after the low pass, with noise" in told
+    assert Path(place, "figures", "spread.png").read_bytes().startswith(b"\x89PNG")
+    card = Path(place, "README.md").read_text(encoding="utf-8")
+    for part in (
+        "license: cc-by-4.0",
+        "Design sobol, seed 7, 6 samples",
+        "| done | 6 |",
+        "| softer | ",
+        "Known limits",
+        "c10",
+        "![spread]",
+    ):
+        assert part in card, part
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [(["--workers", "0"], "--workers 0 is out of range"), (["--samples", "-3"], "--samples -3 is out of range")],
+)
+def test_bad_options_are_refused(tmp_path: Path, options: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", str(sweep_file(tmp_path)), "--out", str(tmp_path / "s.zarr"), *options]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "s.zarr").exists()
+
+
+def test_progress_tells_rate_time_left_and_reasons() -> None:
+    tally = Tally(samples=100, before=10, begin=time.monotonic() - 10)
+    assert tally.line() == "10 of 100 samples, 0 failed, 0 samples/h"
+    tally.add(18, ["stopped at 3.5e-2 mm", "stopped at 7 mm"])
+    assert tally.line() == "30 of 100 samples, 2 failed, 2 samples/s, 35 s left"
+    lines = tally.summary()
+    assert lines[0] == "18 samples done, 2 failed in 10 s (2 samples/s)"
+    assert lines[2] == "  2 x stopped at # mm"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Signals) -> None:
+    case, place = sweep_file(tmp_path), tmp_path / "s.zarr"
+    command = [
+        sys.executable,
+        "-m",
+        "tactsim.cli",
+        "sweep",
+        str(case),
+        "--out",
+        str(place),
+        "--samples",
+        "3000",
+        "--workers",
+        "2",
+    ]
+    process = subprocess.Popen([*command, "--progress"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    while not (line := process.stderr.readline()).strip().endswith("left"):
+        assert line, "it ended early"
+    second = subprocess.run([*command, "--resume"], capture_output=True, text=True, timeout=60)
+    assert second.returncode == 5
+    assert "in use by another sweep" in second.stderr
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in err
+    assert "samples are left; go on with: tactsim sweep" in out
+    assert [finding.kind for finding in check(place).findings] == ["missing"]
+    computed = int((Store.open(place).read("status") == 1).sum())
+    assert 0 < computed < 3000
+    assert f"| done | {computed} |" in (place / "README.md").read_text(encoding="utf-8")

@@ -1,0 +1,98 @@
+"""The fast forward model and the estimator on it."""
+
+import numpy as np
+import pytest
+
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.localization.estimators.model_based import ModelBasedEstimator
+from tactsim.localization.interface import Readings
+from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIZE = np.array([40e-3, 40e-3, 20e-3])
+LAYOUT = TaxelLayout()
+RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3])
+NOISE = 1e-4
+
+
+def quadrature(count=(80, 80, 40)):
+    """Midpoints and volumes of equal cells that fill the block."""
+    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip(count, SIZE, strict=True)]
+    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    return places, np.full(len(places), np.prod(SIZE) / len(places))
+
+
+def taxel_density(places):
+    """A bell over every taxel that fades with the distance from its jaw, (2, 3, 3, n) in N/m^3."""
+    x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
+    away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
+    depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
+    return 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
+
+
+@pytest.fixture(scope="module")
+def response():
+    places, volumes = quadrature()
+    return LumpResponse.of_density(places, volumes, taxel_density(places), size=SIZE, radii=RADII, spacing=1e-3)
+
+
+def readings(response, center, radius, contrast, *, seed=1, noise=NOISE):
+    generator = np.random.default_rng(seed)
+    plain = np.full((2, 3, 3), 0.3)
+    change = contrast * response.signal(np.array([center]), np.array([radius]))[0] if contrast else 0.0
+    forces, reference = (plain + part + noise * generator.standard_normal(plain.shape) for part in (change, 0.0))
+    return Readings(forces, LAYOUT, SIZE, reference=reference, noise=noise, response=response)
+
+
+def test_a_linear_density_gives_its_middle_times_the_volume():
+    places, volumes = quadrature()
+    density = np.stack([np.ones(len(places)), 1 + 20 * places[:, 0]]).reshape(2, 1, 1, -1)
+    found = LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=1e-3)
+    center = np.array([[21.5e-3, 18.5e-3, 9.5e-3]])
+    signal = found.signal(center, np.array([5e-3]))[0, :, 0, 0]
+    volume = 4 / 3 * np.pi * 5e-3**3
+    assert signal == pytest.approx([volume, volume * (1 + 20 * 21.5e-3)], rel=1e-3)
+    assert signal != pytest.approx([volume * 1.01, volume * (1 + 20 * 21.5e-3)], rel=3e-3)
+
+
+def test_a_ball_outside_the_table_is_refused(response):
+    with pytest.raises(InvalidQuantity, match="outside the table"):
+        response.signal(np.array([[0.0, 0.02, 0.01]]), np.array([5e-3]))
+
+
+def test_contrast_of_a_small_ball_has_its_limits():
+    assert eshelby_contrast(np.array([0.0, 1.0, 1e9])) == pytest.approx([-5 / 3, 0.0, 2.5], abs=1e-8)
+
+
+@pytest.mark.parametrize(("center", "contrast"), [((20e-3, 20e-3, 13e-3), 2.0), ((13e-3, 26e-3, 8e-3), -1.2)])
+def test_a_lump_is_found_within_its_uncertainty(response, center, contrast):
+    estimate = ModelBasedEstimator(model_error=0.01).estimate(readings(response, center, 4e-3, contrast))
+    assert estimate.present
+    assert estimate.probability > 0.999
+    found = estimate.inclusions[0]
+    deviations = np.sqrt(np.diag(found.covariance))
+    assert np.all(np.abs(np.array(found.center) - center) < 3 * deviations[:3] + 0.5e-3)
+    assert np.sign(found.contrast) == np.sign(contrast)
+    assert abs(found.center[0] - (center[0] + 6e-3)) > 3 * deviations[0] + 0.5e-3
+
+
+def test_more_noise_widens_the_region(response):
+    widths = []
+    for noise in (1e-4, 2e-3):
+        found = ModelBasedEstimator(model_error=0.0).estimate(readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 2.0, noise=noise))
+        widths.append(np.linalg.det(found.inclusions[0].covariance[:3, :3]) ** (1 / 6))
+    assert widths[1] > widths[0]
+
+
+def test_plain_tissue_has_nothing_in_it(response):
+    answers = [ModelBasedEstimator().estimate(readings(response, (0, 0, 0), 4e-3, 0.0, seed=seed)) for seed in range(20)]
+    assert sum(answer.present for answer in answers) <= 1
+    assert all(answer.inclusions == () for answer in answers if not answer.present)
+
+
+def test_reference_and_response_are_needed(response):
+    bare = Readings(np.full((2, 3, 3), 0.3), LAYOUT, SIZE, reference=np.full((2, 3, 3), 0.3))
+    with pytest.raises(InputError, match="reference"):
+        ModelBasedEstimator().estimate(bare)
+    with pytest.raises(InputError, match="radius"):
+        ModelBasedEstimator(radii=(8e-3, 9e-3)).estimate(readings(response, (20e-3, 20e-3, 10e-3), 4e-3, 1.0))
