@@ -8,12 +8,12 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 
+from tactsim.dataset.child_environment import child_environment
 from tactsim.dataset.executor import Executor, Outcome
 from tactsim.errors import TactsimError
 
@@ -101,28 +101,13 @@ class LocalWorkers(Executor):
     def _started(self) -> Worker:
         context = multiprocessing.get_context("spawn")
         own, other = context.Pipe()
-        with one_thread_each():
+        with child_environment(dict.fromkeys(THREADS, "1")):
             process = context.Process(target=serve, args=(other, self._text), daemon=True)
             process.start()
         other.close()
         worker = Worker(process, own)
         self._workers.append(worker)
         return worker
-
-
-@contextmanager
-def one_thread_each() -> Iterator[None]:
-    """An environment in which a new process computes in one thread."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 def serve(connection: Connection, text: str) -> None:

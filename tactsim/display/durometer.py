@@ -8,11 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import new_figure, png, scale_of, styled
-from tactsim.display.contact_section import draw_contact_section
-from tactsim.display.indentation import mark_failure
+from tactsim.display.canvas import png, scale_of
+from tactsim.display.indentation import section_beside
 from tactsim.display.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 
 Array = np.ndarray
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
@@ -32,18 +31,7 @@ class DurometerFigures(ResultFigures):
 
 def durometer_figure(result: Result) -> Figure:
     """Section (if the result has fields) and forces over the depth."""
-    with styled():
-        has_section = bool(result.frames)
-        figure = new_figure(11.0 if has_section else 6.0, 4.4)
-        axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
-        if has_section:
-            draw_contact_section(axes[0], result, result.frames[-1].time)
-        _draw_balance(axes[-1], result)
-        title = str(result.details.get("title") or "") or "Durometer"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        if result.status is not Status.CONVERGED:
-            mark_failure(figure, result)
-    return figure
+    return section_beside(result, _draw_balance, str(result.details.get("title") or "") or "Durometer")
 
 
 def _draw_balance(axis: Axes, result: Result) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
@@ -31,14 +32,19 @@ class IndentationFigures(ResultFigures):
 
 def indentation_figure(result: Result) -> Figure:
     """Section (if the result has fields) and force-displacement curve of an indentation."""
+    return section_beside(result, draw_curve, _title(result))
+
+
+def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:
+    """The section of the last frame, if there is one, and a curve that ``draw`` draws; a failure across the foot."""
     with styled():
         has_section = bool(result.frames)
         figure = new_figure(11.0 if has_section else 6.0, 4.4)
         axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
         if has_section:
             draw_contact_section(axes[0], result, result.frames[-1].time)
-        draw_curve(axes[-1], result)
-        figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
+        draw(axes[-1], result)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
             mark_failure(figure, result)
     return figure

@@ -47,7 +47,7 @@ def force_over_depth_figure(result: Result) -> Figure:
             for colour, rate in zip(_colours(len(rates)), rates, strict=True):
                 _draw_curve(axis, result, (tissue, rate), colour, f"{1e3 * rate:g} mm/s")
             _finish(axis, result, tissue)
-        _title(figure, result, "Force over depth; dots: read as each switch closed")
+        _title(figure, result, "Force over depth; dots: read as each switch closed, at its height")
     return figure
 
 
@@ -60,7 +60,7 @@ def tissues_by_rate_figure(result: Result) -> Figure:
             for colour, tissue in zip(_colours(len(tissues)), tissues, strict=True):
                 _draw_curve(axis, result, (tissue, rate), colour, tissue)
             _finish(axis, result, f"{1e3 * rate:g} mm/s")
-        _title(figure, result, "Tissues at the same rate; dots: read as each switch closed")
+        _title(figure, result, "Tissues at the same rate; dots: read as each switch closed, at its height")
     return figure
 
 

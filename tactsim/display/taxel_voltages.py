@@ -48,7 +48,8 @@ def voltages_figure(result: Result) -> Figure:
             row[0].set(ylabel=f"voltage in {unit}", title=f"{side.capitalize()} jaw")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
-        axes[0, 1].legend(loc="upper right")
+        axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
+        axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes.flat:
             despined(axis)
         title = str(result.details.get("title") or "Voltages of the matrices")

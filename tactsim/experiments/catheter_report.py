@@ -202,6 +202,12 @@ class CatheterReport:
         for index, reading in enumerate(self._readings, 1):
             if reading.state != "measured":
                 yield f"sensor {index}: {reading.state}"
+            elif not reading.valid.all():
+                count = np.count_nonzero(~reading.valid)
+                yield (
+                    f"sensor {index}: {count} of {reading.valid.size} touches report no usable threshold: "
+                    "no trigger, one before the touch, or a saturated converter; change trigger, noise or range"
+                )
         straddling = [str(index + 1) for index, share in enumerate(self._shares) if share.max() < 1]
         if straddling:
             yield f"sensors over two tissues: {', '.join(straddling)}; their thresholds are mixed"

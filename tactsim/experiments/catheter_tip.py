@@ -21,8 +21,10 @@ from tactsim.sensors.threshold_sensor import ThresholdSensor
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
 from tactsim.units import Angle, Length, Speed, Time
 
-STEEPEST = np.pi / 6
-"""Largest tilt in rad of the tip."""
+STEEPEST = np.pi / 6 * (1 + 1e-12)
+"""Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
+MOST_SAMPLES = 500_000
+"""Longest recording of one touch, in samples."""
 
 
 class CatheterTip(Experiment):
@@ -64,6 +66,12 @@ class CatheterTip(Experiment):
                 raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
             if self.ring.recess >= tissue.thickness:
                 raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
+        needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
+        if needed > MOST_SAMPLES:
+            raise ValueError(
+                f"lead and press / speed take {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
+                "press faster, shorten the lead or sample more slowly"
+            )
         return self
 
     @classmethod

@@ -12,8 +12,11 @@ from scipy.interpolate import PchipInterpolator
 from tactsim.analytic.force_factor import force_factor
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.results.result import Result, Status
+from tactsim.units import format_quantity
 
 Array = np.ndarray
+RECESS_TOLERANCE = 0.01
+"""Difference of the rise at the touch from the recess, over the recess, beyond which a curve is that of another sensor."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,7 @@ class ContactCurve:
         Raises
         ------
         InvalidQuantity
-            If a number is negative or the small sensor is never touched.
+            If a number is negative, the small sensor is never touched, or not after a rise by the recess.
         """
         d, plate, rise, small = (columns[name] for name in ("displacement", "plate force", "tissue rise", "small sensor force"))
         if min(d.min(), plate.min(), small.min()) < 0:
@@ -92,6 +95,13 @@ class ContactCurve:
         pressed = small > 0
         if not pressed.any() or pressed[0]:
             raise InvalidQuantity("a contact curve must begin before the small sensor is touched and go on past the touch")
+        risen = float(rise[int(pressed.argmax()) - 1])
+        if abs(risen - shape.recess) > RECESS_TOLERANCE * shape.recess:
+            found, given = format_quantity(risen, "m"), format_quantity(shape.recess, "m")
+            raise InvalidQuantity(
+                f"in the contact curve the tissue has risen by {found} in the last row without a force on the small sensor, "
+                f"but the recess is {given}; give the recess of the curve, or a row at the touch"
+            )
         if d[0] > 0:
             d, plate, rise, small = (np.append(0.0, values) for values in (d, plate, rise, small))
             pressed = small > 0

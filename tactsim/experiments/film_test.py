@@ -18,8 +18,10 @@ from tactsim.sensors.film_report import film_assumptions, film_quantities, film_
 from tactsim.units import Force, Time
 
 Array = np.ndarray
-PositiveForce = Annotated[Force, Field(gt=0, le=HOLM)]
-PositiveTime = Annotated[Time, Field(gt=0)]
+LEAST_FORCE, LONGEST = 1e-9, 1e12
+"""Range in N and s that is far wider than any test and in which no quotient or product leaves the floats."""
+PositiveForce = Annotated[Force, Field(ge=LEAST_FORCE, le=HOLM)]
+PositiveTime = Annotated[Time, Field(gt=0, le=LONGEST)]
 
 
 class FilmTest(Experiment):

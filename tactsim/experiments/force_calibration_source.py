@@ -18,6 +18,8 @@ from tactsim.units import Force, FrozenModel, Time
 Readings = tuple[Array, Array, Array]
 """Forces in N of shape (points,), voltages in V and whether each is saturated, of shape (points, sensors)."""
 MOST_SENSORS = 64
+MOST_NUMBERS = 100_000_000
+"""Samples of all sensors, holds and repeats together."""
 
 
 class SyntheticCalibration(FrozenModel):
@@ -44,8 +46,20 @@ class SyntheticCalibration(FrozenModel):
         return self.line.slope * self._gains(), self.line.intercept * self._gains()
 
     def readings(self, chain: SignalChain) -> Readings:
-        """Filtered readings; one is saturated if any sample of its hold was."""
+        """Filtered readings; one is saturated if any sample of its hold was.
+
+        Raises
+        ------
+        InvalidQuantity
+            If they would take more than `MOST_NUMBERS` samples.
+        """
         forces = np.tile(self.forces, self.repeats)
+        samples = int(min(self.hold * chain.sampling_rate + 1, MOST_NUMBERS + 1))
+        if samples * forces.size * self.sensors > MOST_NUMBERS:
+            raise InvalidQuantity(
+                f"data: {forces.size} holds of {self.sensors} sensors take {self.hold * chain.sampling_rate:.3g} samples each; "
+                f"allowed: {MOST_NUMBERS:g} in all; lower hold, repeats or sampling_rate"
+            )
         samples = chain.times(self.hold).size
         stream = chain.stream(np.random.default_rng(self.seed))
         voltages, saturated = [], []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,6 +12,7 @@ from scipy.signal import chirp, square
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.loading import ForceLoading
 from tactsim.identification.columns import read_columns
+from tactsim.sensors.film import HOLM
 from tactsim.sensors.force_history import checked_forces, checked_times
 from tactsim.units import Force, Frequency, FrozenModel, Time, format_quantity
 
@@ -42,6 +43,11 @@ class Wave(FrozenModel):
         """Force in N at times in s."""
         return self.low + (self.high - self.low) * self.share(time)
 
+    @property
+    @abstractmethod
+    def highest_frequency(self) -> float:
+        """In Hz."""
+
     @abstractmethod
     def share(self, time: Array) -> Array:
         """Part of the way from the smallest to the largest force, between 0 and 1."""
@@ -64,6 +70,11 @@ class Chirp(Wave):
     """Frequency at the end."""
     duration: PositiveTime = 20.0
     """Length."""
+
+    @property
+    def highest_frequency(self) -> float:
+        """In Hz."""
+        return max(self.start_frequency, self.end_frequency)
 
     def share(self, time: Array) -> Array:
         """Half of one plus the chirp, which begins at minus one."""
@@ -88,6 +99,11 @@ class Square(Wave):
     duration: PositiveTime = 24.0
     """Length."""
 
+    @property
+    def highest_frequency(self) -> float:
+        """In Hz, that of the fundamental."""
+        return self.frequency
+
     def share(self, time: Array) -> Array:
         """Zero in the first half of a period, then one or what the increments have reached."""
         phase = self.frequency * np.asarray(time) * (1 + 1e-12)
@@ -103,6 +119,7 @@ class Pieces(FrozenModel):
     kind: Literal["pieces"]
     loading: ForceLoading
     """The pieces."""
+    highest_frequency: ClassVar[float] = 0.0
 
     @property
     def duration(self) -> float:
@@ -120,6 +137,7 @@ class Record(FrozenModel):
     kind: Literal["file"]
     path: str
     """CSV file, relative to the working folder, with the columns ``time [s], force [N]``."""
+    highest_frequency: ClassVar[float] = 0.0
 
     @property
     def duration(self) -> float:
@@ -135,8 +153,11 @@ class Record(FrozenModel):
         missing = {"time", "force"} - set(columns)
         if missing:
             raise InvalidQuantity(f"{self.path}: no column {', '.join(sorted(missing))}; needed: time [s], force [N]")
-        times = checked_times(columns["time"])
-        return times - times[0], checked_forces(columns["force"], len(times), np.inf)
+        try:
+            times = checked_times(columns["time"])
+            return times - times[0], checked_forces(columns["force"], len(times), HOLM)
+        except InvalidQuantity as error:
+            raise InvalidQuantity(f"{self.path}: {error}") from None
 
 
 AnyForceSignal = Annotated[Chirp | Square | Pieces | Record, Field(discriminator="kind")]

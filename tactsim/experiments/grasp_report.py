@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from tactsim.errors import InvalidQuantity
 from tactsim.experiments.block_source import SourcedBlock
 from tactsim.experiments.ellipticity import elliptic_in
 from tactsim.experiments.grasp_model import SIDES, GraspModel
@@ -56,6 +57,7 @@ class GraspRecord:
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._setup_time = time.perf_counter() - begin
         self._read: MatrixReading | None = None
+        self._unread: str | None = None
 
     def accept(self, state: TimedState) -> StepRecord:
         """Record an accepted state.
@@ -105,7 +107,10 @@ class GraspRecord:
         if readout is not None and self.steps:
             times = np.array([step.values["time"] for step in self.steps])
             forces = np.array([[reading[side].taxels.taxels[2] for side in SIDES] for reading in self.readings])
-            self._read = readout.read(times, forces, layout.area)
+            try:
+                self._read = readout.read(times, forces, layout.area)
+            except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
+                self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
         return Result(
             kind="grasp",
             status=status,
@@ -166,6 +171,8 @@ class GraspRecord:
         readout, told = self.experiment.readout, []
         if readout is not None and self._read is not None:
             told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
+        if self._unread:
+            told.append(self._unread)
         share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
         if share == 0:
             return told

@@ -6,8 +6,9 @@ import time
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
+from pydantic import ValidationError
 
-from tactsim.errors import InputError
+from tactsim.errors import InputError, StorageError
 from tactsim.experiments.taxel_voltages import SIDES, readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.reading import read_result
@@ -42,8 +43,12 @@ class MatrixReadoutRun(Experiment):
         """Read the stored forces; one step for every sample."""
         begin = time.perf_counter()
         stored = read_result(self.grasp, fields=False).result
-        times, forces = _history(stored, self.grasp)
-        area = TaxelLayout.model_validate(stored.details["matrix"]).area
+        try:
+            times, forces = _history(stored, self.grasp)
+            area = TaxelLayout.model_validate(stored.details["matrix"]).area
+        except (KeyError, ValidationError) as error:
+            told = f"{self.grasp}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again"
+            raise StorageError(told) from None
         reading = self.readout.read(times, forces, area)
         steps = _steps(reading, self.history_units)
         for step in steps:

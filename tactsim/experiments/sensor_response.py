@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.errors import InvalidQuantity
 from tactsim.experiments.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
@@ -19,6 +20,8 @@ from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, format_quantity
 
 Array = np.ndarray
+MOST_SAMPLES = 100_000
+"""Longest recording, in samples: the inverse of the film takes about a minute for it."""
 
 
 class SensorResponse(Experiment):
@@ -67,7 +70,7 @@ class SensorResponse(Experiment):
     def run(self, progress: Progress) -> Result:
         """One step for every sample."""
         begin = time.perf_counter()
-        times = self.chain.times(self.force.duration)
+        times = self._times()
         force = self.force.sampled(times)
         conductance = self.film.conductance(times, force)
         recording = self.chain.acquire(conductance, np.random.default_rng(self.seed))
@@ -91,10 +94,32 @@ class SensorResponse(Experiment):
             details={"ranges": list(self.ranges), "seed": self.seed},
         )
 
+    def _times(self) -> Array:
+        """Sampling times in s.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there are too many, or the force changes too fast for them.
+        """
+        rate, duration = self.chain.sampling_rate, self.force.duration
+        if duration * rate > MOST_SAMPLES:
+            raise InvalidQuantity(
+                f"force: {duration:.3g} s at a sampling_rate of {format_quantity(rate, 'Hz')} are {duration * rate:.3g} samples; "
+                f"allowed: up to {MOST_SAMPLES}; take a shorter force or sample more slowly"
+            )
+        if self.force.highest_frequency > rate / 2:
+            fastest, given = (format_quantity(value, "Hz") for value in (self.force.highest_frequency, rate))
+            raise InvalidQuantity(
+                f"force: its frequency of {fastest} is above half the sampling_rate of {given}, so that samples would show "
+                "another force; lower it or sample faster"
+            )
+        return self.chain.times(duration)
+
     def _linear(self, voltage: Array) -> Array:
         """Force in N by the straight line; a saturated voltage at the supply reads as the last one below it."""
         below = np.nextafter(self.chain.supply, 0)
-        return self.calibration.force(self.chain.conductance(np.clip(voltage, 0.0, below)))
+        return self.calibration.force(self.chain.conductance(np.minimum(voltage, below)))
 
     def _modelled(self, times: Array, recording: Recording) -> Array:
         """Force in N by the inverse of the film's model from unfiltered samples, up to the first saturated one."""
@@ -106,18 +131,21 @@ class SensorResponse(Experiment):
             found[good:] = found[good - 1]
         return found
 
-    def _inversion(self, times: Array, force: Array, model: Array, saturated: Array) -> float:
-        """Largest error of the model's force, in steps of the converter at that force; up to the first saturated sample."""
+    def _inversion(self, times: Array, force: Array, model: Array, saturated: Array) -> float | None:
+        """Largest error of the model's force, in steps of the converter at that force; None without a sample to judge by.
+
+        Samples from the first saturated one on do not count.
+        """
         good = ~np.logical_or.accumulate(saturated)
         slope = self.film.sensitivity(times, force)
         step = self.chain.conductance_step(self.film.conductance(times, force)) / slope
         loaded = good & (force > 0)
-        return float((np.abs(model - force)[loaded] / step[loaded]).max(initial=0.0))
+        return float((np.abs(model - force)[loaded] / step[loaded]).max()) if loaded.any() else None
 
     def _quantities(self, times: Array, force: Array, recording: Recording, readings: dict[str, Array]) -> dict[str, Quantity]:
         read, raw, model = readings["read"], readings["raw"], readings["model"]
         inversion = self._inversion(times, force, model, recording.saturated)
-        return {
+        found = {
             "rms_error": Quantity(root_mean_square(read - force), "N", "root mean square of read minus applied force, filtered"),
             "rms_error_unfiltered": Quantity(root_mean_square(raw - force), "N", "the same without the low pass"),
             "largest_error": Quantity(float(np.abs(read - force).max()), "N", "largest difference of read and applied force"),
@@ -127,16 +155,22 @@ class SensorResponse(Experiment):
                 "widest loop of the unfiltered reading over the force",
             ),
             "saturated_fraction": Quantity(float(recording.saturated.mean()), "1", "samples outside the range of the converter"),
-            "inversion_steps": Quantity(
-                inversion, "1", "largest error of the force found by the inverse of the film, in steps of the converter there"
-            ),
-        } | self._by_range(force, raw, model)
+        }
+        if inversion is not None:
+            words = "largest error of the force found by the inverse of the film, in steps of the converter there"
+            found["inversion_steps"] = Quantity(inversion, "1", f"{words}; up to the first saturated sample")
+        return found | self._by_range(force, raw, model, ~np.logical_or.accumulate(recording.saturated))
 
-    def _by_range(self, force: Array, raw: Array, model: Array) -> dict[str, Quantity]:
+    def _by_range(self, force: Array, raw: Array, model: Array, good: Array) -> dict[str, Quantity]:
+        """Errors by range of force; those of the inverse from the ``good`` samples, before the first saturated one."""
         found = {"ranges": Quantity(list(self.ranges), "N", "borders of the ranges of force")}
-        for name, reading, how in (("linear", raw, "straight line"), ("model", model, "inverse of the film")):
-            told = range_errors(force, reading, self.ranges)
-            where = f"by the {how} without low pass, for each range of force"
+        every = np.ones(len(force), bool)
+        for name, reading, how, chosen in (
+            ("model", model, "inverse of the film", good),
+            ("linear", raw, "straight line", every),
+        ):
+            told = range_errors(force[chosen], reading[chosen], self.ranges)
+            where = f"by the {how} without low pass, for each range of force" + ("" if chosen is every else "; to saturation")
             found[f"{name}_range_rms_error"] = Quantity([r.rms for r in told], "N", f"root mean square error {where}")
             found[f"{name}_range_largest_error"] = Quantity([r.largest for r in told], "N", f"largest error {where}")
         found["range_samples"] = Quantity([r.samples for r in told], "1", "samples in each range of force")

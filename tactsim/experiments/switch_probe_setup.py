@@ -22,6 +22,8 @@ from tactsim.units import FrozenModel, Length, Speed, format_quantity
 
 COUNT = 5
 """Switches of the probe of chapter 5."""
+LEAST_SAMPLES, MOST_SAMPLES = 2 * COUNT, 1_000_000
+"""Samples of one way: two for each switch at least; at most so many that a touch takes about ten seconds."""
 
 
 class ProbeTissue(FrozenModel):
@@ -88,9 +90,20 @@ class SwitchProbeSetup(FrozenModel):
         if self.depth >= self.block.height:
             given, most = format_quantity(self.depth, "m"), format_quantity(self.block.height, "m")
             raise ValueError(f"depth {given} must be smaller than the height of the block, {most}")
+        self._check_sampling()
         if self.model == "fast":
             self._check_fast()
         return self
+
+    def _check_sampling(self) -> None:
+        for rate in self.rates:
+            samples = self.duration(rate) * self.chain.sampling_rate
+            if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
+                given, change = format_quantity(rate, "m/s"), "faster" if samples < LEAST_SAMPLES else "more slowly"
+                raise ValueError(
+                    f"the way in at a rate of {given} takes {samples:.3g} samples; allowed: {LEAST_SAMPLES} to {MOST_SAMPLES}; "
+                    f"sample {change} or take another rate"
+                )
 
     def _check_fast(self) -> None:
         given, usual = (self.probe, self.block, self.contact, self.array.pitch, self.array.strip), SwitchArray()

@@ -63,5 +63,6 @@ def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float
         pull = format_quantity(reading.strongest_pull, "N")
         told.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
     if reading.saturated.any():
-        told.append(f"{int(reading.saturated.sum())} samples of taxels are outside the range of the converter: saturated_*")
+        count = int(reading.saturated.sum())
+        told.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
     return tuple(told)

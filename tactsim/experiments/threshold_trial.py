@@ -12,7 +12,7 @@ from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.experiments.contact_curve import Approach
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.threshold_report import SIGNAL_UNITS, TrialReport
-from tactsim.experiments.threshold_sampling import SILENT, ApproachSampling
+from tactsim.experiments.threshold_sampling import FINER, SILENT, ApproachSampling
 from tactsim.experiments.threshold_source import AnySource, ClosedFormSource
 from tactsim.interfaces import Experiment, Progress
 from tactsim.materials.library import named_material
@@ -68,6 +68,7 @@ class ThresholdTrial(Experiment):
             raise ValueError("the chain has no low pass whose cut-off could vary; set sensor.chain.low_pass")
         for low_pass in self.low_passes:
             low_pass.check(self.sensor.chain.sampling_rate)
+            low_pass.check(FINER * self.sensor.chain.sampling_rate)  # of the ideal chain that the errors are told against
         return self
 
     @classmethod
@@ -134,6 +135,6 @@ class ThresholdTrial(Experiment):
         if needed > MOST_SAMPLES:
             speed = format_quantity(approach.speed, "m/s")
             raise InvalidQuantity(
-                f"speeds: {speed} takes {approach.duration:.3g} s and {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
-                "press faster or sample more slowly"
+                f"speeds: {speed} takes {approach.duration:.3g} s after a lead of {self.lead:.3g} s and {needed:.3g} samples; "
+                f"allowed: up to {MOST_SAMPLES}; press faster, shorten the lead or sample more slowly"
             )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactsim.errors import InvalidQuantity, StorageError
+from tactsim.errors import InvalidQuantity, StorageError, shown
 from tactsim.interfaces import Array
 from tactsim.units import parse_quantity
 
@@ -36,7 +36,7 @@ def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
     """
     path = Path(path)
     rows = data_lines(path)
-    header = [_column(path, cell, units) for cell in next(csv.reader([rows[0][1]]))]
+    header = [_column(path, cell, units) for cell in _cells(f"{path}:{rows[0][0]}", rows[0][1])]
     names = [name for name, _ in header]
     for name in names:
         if names.count(name) > 1:
@@ -57,8 +57,10 @@ def data_lines(path: Path) -> list[tuple[int, str]]:
     """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise StorageError(f"{path}: {error}") from None
+    except UnicodeDecodeError as error:
+        raise StorageError(f"{path}: {error}; save it as UTF-8") from None
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the path
+        raise StorageError(f"{shown(str(path))}: {error}") from None
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise InvalidQuantity(f"{path}: no header and no data")
@@ -86,10 +88,17 @@ def _column(path: Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
 
 def _numbers(place: str, line: str, names: list[str]) -> list[float]:
     """The finite numbers of one row."""
-    cells = next(csv.reader([line]))
+    cells = _cells(place, line)
     if len(cells) != len(names):
         raise InvalidQuantity(f"{place}: {len(cells)} values in a row of {len(names)} columns")
     return [_number(place, cell, name) for cell, name in zip(cells, names, strict=True)]
+
+
+def _cells(place: str, line: str) -> list[str]:
+    try:
+        return next(csv.reader([line]))
+    except csv.Error as error:
+        raise InvalidQuantity(f"{place}: {error}; allowed: one number per column") from None
 
 
 def _number(place: str, cell: str, name: str) -> float:

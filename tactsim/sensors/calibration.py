@@ -25,8 +25,8 @@ class LinearCalibration(FrozenModel):
     Source: thesis, 2.2.1.
     """
 
-    slope: Annotated[ConductancePerForce, Field(gt=0)]
-    """m."""
+    slope: Annotated[ConductancePerForce, Field(ge=1e-18, le=1e12)]
+    """m, of any sensor with a wide margin."""
     intercept: Conductance = 0.0
     """n; the line is meant for forces at which the conductance is not negative."""
 

@@ -11,6 +11,9 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Array
 from tactsim.units import FrozenModel, Voltage, format_quantity
 
+LEAST_RANGE, MOST_RANGE = 1e-6, 1e6
+"""Range in V of any converter, with a wide margin, in which no quotient overflows."""
+
 
 class Converter(FrozenModel):
     r"""Rounds to the nearest of :math:`2^b` levels ``low + k step``, ``step = (high - low) / 2^b``.
@@ -31,6 +34,9 @@ class Converter(FrozenModel):
         if self.low >= self.high:
             low, high = format_quantity(self.low, "V"), format_quantity(self.high, "V")
             raise ValueError(f"low {low} must be below high {high}")
+        if not LEAST_RANGE <= self.high - self.low <= MOST_RANGE:
+            given, least, most = (format_quantity(value, "V") for value in (self.high - self.low, LEAST_RANGE, MOST_RANGE))
+            raise ValueError(f"the range from low to high is {given}; allowed: {least} to {most}")
         return self
 
     @property

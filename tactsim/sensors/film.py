@@ -23,7 +23,7 @@ from tactsim.sensors.composite import AnyComposite
 from tactsim.sensors.composite_library import named_composite
 from tactsim.sensors.force_history import checked_conductances, checked_forces, checked_times
 from tactsim.sensors.tunnelling import relative_resistance
-from tactsim.units import Area
+from tactsim.units import Area, format_quantity
 
 Array = np.ndarray
 HOLM = 100.0
@@ -90,7 +90,7 @@ class Film(Sensor):
         Raises
         ------
         InvalidQuantity
-            If times do not increase, or a force is negative, too large or not finite.
+            If times do not increase, or a force is negative, too large, not finite or would strain the film by 1 or more.
         """
         return self.advance(None, time, force)[0]
 
@@ -99,6 +99,7 @@ class Film(Sensor):
         times = checked_times(time, after=None if state is None else state.time)
         forces = checked_forces(force, len(times), HOLM)
         strains = self._delayed_strains(state, times, forces)
+        self._check(forces, strains)
         return self._conductance(forces, strains), FilmState(float(times[-1]), forces[-1], strains[-1])
 
     def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
@@ -141,6 +142,17 @@ class Film(Sensor):
     def _strain(self, force: Array, delayed: Array) -> Array:
         felt = force * self.magnification
         return felt / (self.composite.reference_area * self.composite.instantaneous.at(felt)) + delayed
+
+    def _check(self, force: Array, delayed: Array) -> None:
+        """Whether the film still has a thickness, and with it a resistance above zero."""
+        strain = self._strain(force, delayed)
+        if strain.size and strain.max() >= 1:
+            felt = format_quantity(float(force.flat[int(strain.argmax())]), "N")
+            most = format_quantity(self.largest_force, "N")
+            raise InvalidQuantity(
+                f"a force of {felt} strains the film by {strain.max():.3g}; allowed: below 1; its creep is known up to {most}: "
+                "press less, or take a larger active_area or a stiffer composite"
+            )
 
     def _conductance(self, force: Array, delayed: Array) -> Array:
         composite, root = self.composite, np.sqrt(force)
@@ -195,5 +207,8 @@ class Film(Sensor):
                 f"no force was found for the conductance at {time:g} s: last change {np.abs(change).max():.1e}"
             )
         if np.any(force > HOLM):
-            raise InvalidQuantity(f"the conductance at {time:g} s is that of more than {HOLM:g} N, up to which the film is known")
+            raise InvalidQuantity(
+                f"the conductance at {time:g} s is that of more than {HOLM:g} N, up to which the film is known; "
+                "lower the noise, the offset or the force"
+            )
         return force, FilmState(time, force, delayed_strain(force))

@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 from tactsim.errors import InvalidQuantity
 
 Array = np.ndarray
+LARGEST = 1e30
+"""Largest number in SI units that is taken, so that no difference or product overflows."""
 
 
 def checked_times(time: ArrayLike, *, after: float | None = None) -> Array:
@@ -71,7 +73,7 @@ def _sampled(values: ArrayLike, samples: int, name: str, unit: str) -> Array:
 
 
 def _check_finite(array: Array, name: str, unit: str) -> None:
-    wrong = ~np.isfinite(array)
+    wrong = ~(np.abs(array) <= LARGEST)  # NaN fails too
     if wrong.any():
         place = tuple(int(i) for i in np.argwhere(wrong)[0])
-        raise InvalidQuantity(f"{name} of sample {place[0]} is {array[place]} {unit}; allowed: finite numbers")
+        raise InvalidQuantity(f"{name} of sample {place[0]} is {array[place]} {unit}; allowed: finite numbers up to {LARGEST:g}")

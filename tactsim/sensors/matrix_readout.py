@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from tactsim.errors import InvalidQuantity
 from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.film import Film
+from tactsim.sensors.film import HOLM, Film
 from tactsim.sensors.film_calibration import film_line
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.signal_chain import SignalChain
@@ -36,7 +36,7 @@ class MatrixReading:
     force: Array
     """Force in N by the calibration from the filtered samples."""
     saturated: Array
-    """Whether a sample lies outside the range of the converter."""
+    """Whether a sample lies outside the range of the converter, or its filtered voltage is not below the supply."""
     strongest_pull: float
     """Largest tension in N that was left out; 0 if no taxel was pulled."""
 
@@ -53,7 +53,7 @@ class MatrixReadout(FrozenModel):
     """Electronics of each channel."""
     calibration: AnyCalibration | None = None
     """From conductance to force; null is the line through the film's own conductances at the ``calibration_forces``."""
-    calibration_forces: tuple[Annotated[Force, Field(ge=0)], Annotated[Force, Field(gt=0)]] = (0.0, 2.0)
+    calibration_forces: tuple[Annotated[Force, Field(ge=0)], Annotated[Force, Field(ge=1e-9, le=HOLM)]] = (0.0, 2.0)
     """Range of the constant forces of that calibration, read after 1 s."""
     scatter: ChannelScatter | None = ChannelScatter()
     """How channels differ; null makes them equal."""
@@ -98,14 +98,14 @@ class MatrixReadout(FrozenModel):
         gains = 1.0 if self.scatter is None else self.scatter.gains(applied.shape[1:], line)
         recording = self.chain.acquire(gains * film.conductance(times, applied), np.random.default_rng(self.seed))
         below = np.nextafter(self.chain.supply, 0)
-        conductance = self.chain.conductance(np.clip(recording.filtered, 0.0, below))
+        conductance = self.chain.conductance(np.minimum(recording.filtered, below))
         return MatrixReading(
             time=times,
             applied=applied,
             voltage=recording.voltage,
             filtered=recording.filtered,
             force=line.force(conductance),
-            saturated=recording.saturated,
+            saturated=recording.saturated | (recording.filtered > below),
             strongest_pull=float(max(0.0, -force.min(initial=0.0))),
         )
 

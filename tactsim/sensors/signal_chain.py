@@ -64,9 +64,9 @@ class SignalChain(FrozenModel):
     printed (Fig. 3.5: 200 Hz); 1 kohm puts the line of 3.1.2 at 25 N in the middle of the range.
     """
 
-    supply: Annotated[Voltage, Field(gt=0)] = 5.0
+    supply: Annotated[Voltage, Field(gt=0, le=1e6)] = 5.0
     """Voltage over sensor and load resistor."""
-    load_resistor: Annotated[Resistance, Field(gt=0)] = 1e3
+    load_resistor: Annotated[Resistance, Field(gt=0, le=1e12)] = 1e3
     """Resistor over which the voltage is read."""
     buffer: Buffer = UNITY
     """Amplifier in front of the converter."""

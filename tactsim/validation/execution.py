@@ -9,12 +9,13 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim import __version__
 from tactsim.case import load_case
+from tactsim.dataset.child_environment import child_environment
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.results.storage import read_text, replace_file
 from tactsim.validation.study import RunOutcome, Study
@@ -65,7 +66,7 @@ class StudyRunner:
         if not waiting:
             return
         progress(f"{len(waiting)} simulations in {min(self.workers, len(waiting))} processes")
-        with _environment(ONE_THREAD):
+        with child_environment(ONE_THREAD):
             pool = ProcessPoolExecutor(self.workers, mp_context=multiprocessing.get_context("spawn"))
             try:
                 jobs = {pool.submit(simulated, task): case_id for case_id, task in waiting.items()}
@@ -148,18 +149,3 @@ def _disc_share(body: dict[str, float]) -> float:
 
 def _recorded(steps: Sequence, key: str) -> bool:
     return bool(steps) and all(key in step.values for step in steps)
-
-
-@contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Environment variables for the processes started meanwhile."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -91,6 +91,12 @@ def test_between_equally_hard_tissues_no_answer_is_wrong():
     assert run(surface=bands(20e3, 20e3, 20e3), sensor=noisy(5e-3), trials=50).quantities["chance_of_wrong"].value == 0
 
 
+def test_touches_without_a_usable_threshold_are_told():
+    assert any("touches report no usable threshold" in words for words in run(sensor=noisy(1.0)).warnings)
+    assert not any("touches report no usable threshold" in words for words in run().warnings)
+    assert tip(tilt="30 deg").tilt == pytest.approx(np.pi / 6)
+
+
 def test_a_tilted_tip_leaves_sensors_without_contact():
     result = run(tilt=0.2, tilt_direction=np.pi, press=0.8e-3)
     assert result.details["state"] == ["no contact", "threshold not reached", "measured", "threshold not reached"]
@@ -164,6 +170,8 @@ def test_impossible_rings_are_refused(changes, words):
         ({"press": 2.5e-3}, "lower press"),
         ({"ring": SensorRing(recess=2.5e-3)}, "smaller than the thickness"),
         ({"tilt": 1.0}, "less than or equal to"),
+        ({"tilt": "30.001 deg"}, "less than or equal to"),
+        ({"lead": 1e4}, "shorten the lead"),
         ({"trials": 0}, "greater than or equal to 1"),
         ({"surface": {"tissues": [{"name": "a", "shear_modulus": 1e3, "thickness": 1e-2}], "borders": []}}, "at least 2"),
     ],

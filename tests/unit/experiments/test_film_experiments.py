@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from tactsim.errors import InvalidQuantity, StorageError
 from tactsim.experiments.film_creep import FilmCreep, MeasuredCreep
 from tactsim.experiments.film_test import FilmTest
 from tactsim.experiments.force_signal import Chirp, Record, Square
@@ -40,7 +41,14 @@ def test_a_force_beyond_the_creep_tests_is_told():
 
 
 @pytest.mark.parametrize(
-    ("forces", "times"), [((1.0, 1.0, 2.0), (1.0,)), ((1.0, 2.0, 3.0), (2.0, 1.0)), ((0.0, 1.0, 2.0), (1.0,))]
+    ("forces", "times"),
+    [
+        ((1.0, 1.0, 2.0), (1.0,)),
+        ((1.0, 2.0, 3.0), (2.0, 1.0)),
+        ((0.0, 1.0, 2.0), (1.0,)),
+        ((1e-310, 1.0, 2.0), (1.0,)),
+        ((1.0, 2.0, 3.0), (1e308,)),
+    ],
 )
 def test_a_film_test_refuses_lists_out_of_order(forces, times):
     with pytest.raises(ValidationError):
@@ -97,6 +105,33 @@ def test_saturated_samples_are_flagged_and_told():
     assert all(np.isfinite(list(step.values.values())).all() for step in result.steps)
 
 
+def test_a_record_that_is_saturated_throughout_makes_no_claim_on_the_inverse():
+    chain = SignalChain(sampling_rate=200.0, converter={"low": 4.0, "high": 5.0})
+    result = SensorResponse(force=Square(kind="square", duration=1.0), chain=chain).run(quiet)
+    assert "inversion_steps" not in result.quantities
+    assert max(values(result)["model_range_largest_error"]) == 0 < max(values(result)["linear_range_largest_error"])
+
+
+def test_noise_below_zero_is_read_as_a_force_below_the_line():
+    chain = SignalChain(sampling_rate=200.0, noise={"white": 0.01}, converter={"low": -5.0, "high": 5.0}, low_pass=None)
+    still = Square(kind="square", low=0.0, high=1e-6, duration=5.0)
+    read = [step.values["read_force"] for step in SensorResponse(force=still, chain=chain).run(quiet).steps]
+    assert np.mean(read) == pytest.approx(-0.132, abs=0.01), "the intercept of the line, not lifted by a cut at 0 V"
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        (Square(kind="square", duration=1e6), "take a shorter force"),
+        (Square(kind="square", frequency=150.0), "above half the sampling_rate"),
+        (Chirp(kind="chirp", end_frequency=150.0), "above half the sampling_rate"),
+    ],
+)
+def test_forces_that_cannot_be_sampled_are_refused(force, words):
+    with pytest.raises(InvalidQuantity, match=words):
+        SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0)).run(quiet)
+
+
 def test_waves_keep_to_their_bounds():
     time = np.linspace(0, 20, 4001)
     chirp = Chirp(kind="chirp").sampled(time)
@@ -117,6 +152,31 @@ def test_a_record_is_read_from_a_file(tmp_path):
     record = Record(kind="file", path=str(path))
     assert record.duration == 2.0
     np.testing.assert_allclose(record.sampled(np.array([0.0, 0.5, 1.0, 2.0])), [0, 0.25, 0.5, 0])
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("2, 0\n1, 0", "force.csv: .*sort them"),
+        ("1, 0\n2, -5", "force.csv: force .*allowed: 0 to 100"),
+        ("-1e308, 0\n1e308, 0", "force.csv: .*up to 1e\\+30"),
+        ("1, " + "1" * 140_000, "force.csv:2: field larger"),
+    ],
+)
+def test_bad_records_are_refused_with_their_file(tmp_path, rows, words):
+    path = tmp_path / "force.csv"
+    path.write_text(f"time [s], force [mN]\n{rows}\n", encoding="utf-8")
+    with pytest.raises(InvalidQuantity, match=words):
+        _ = Record(kind="file", path=str(path)).duration
+
+
+def test_files_that_cannot_be_read_are_named(tmp_path):
+    path = tmp_path / "force.csv"
+    path.write_text("time [s], force [N]\n1, 0\n", encoding="utf-16")
+    with pytest.raises(StorageError, match="save it as UTF-8"):
+        _ = Record(kind="file", path=str(path)).duration
+    with pytest.raises(StorageError, match="null"):
+        _ = Record(kind="file", path="a\0b").duration
 
 
 def test_errors_by_range_and_hysteresis():

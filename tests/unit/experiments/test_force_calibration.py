@@ -121,6 +121,11 @@ def test_a_curved_sensor_is_warned_of(written):
     assert not any("follow a curve" in words for words in run(chain=NOISY).warnings)
 
 
+def test_holds_that_fill_the_memory_are_refused():
+    with pytest.raises(InvalidQuantity, match="lower hold, repeats or sampling_rate"):
+        run(data=SyntheticCalibration(hold=100.0), chain=SignalChain(sampling_rate=1e6, low_pass=None))
+
+
 def test_bad_files_are_refused(written, tmp_path):
     with pytest.raises(StorageError):
         run(data=MeasuredCalibration(path=str(tmp_path / "none.csv")))

@@ -160,6 +160,8 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
         ({"rates": (0.0,)}, "greater than 0"),
         ({"rates": (1e-3, 1e-3)}, "two rates are equal"),
         ({"tissues": (tissue(), tissue())}, "the same name"),
+        ({"rates": (1e-6,)}, "sample more slowly"),
+        ({"rates": (10.0,)}, "sample faster"),
         ({"depth": 6e-3}, "beyond the curve"),
         ({"depth": 25e-3}, "smaller than the height of the block"),
         ({"probe": Trapezoid(face=3e-3)}, "set model: fem"),

@@ -1,5 +1,7 @@
 """A grasp that ends in voltages, and the same from its stored result."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,21 @@ def test_without_a_readout_a_grasp_ends_at_the_forces():
     result = Grasp.example().run(lambda step: None)
     assert "voltage_upper" not in result.quantities
     assert "taxel_voltages.png" not in figures_for(result)
+
+
+def test_a_readout_that_fails_does_not_lose_the_grasp():
+    fast = MatrixReadout(chain={"sampling_rate": 200e3, "low_pass": None})
+    result = Grasp.example().model_copy(update={"readout": fast}).run(lambda step: None)
+    assert result.status is Status.CONVERGED
+    assert "taxel_force_upper" in result.quantities
+    assert "voltage_upper" not in result.quantities
+    assert any("no voltages" in words and "lower sampling_rate" in words for words in result.warnings)
+
+
+def test_an_incomplete_grasp_is_refused(read_grasp, tmp_path):
+    write_result(replace(read_grasp, details={}), tmp_path / "grasp", case_id="0" * 16, provenance={})
+    with pytest.raises(StorageError, match="not a complete result of a grasp"):
+        MatrixReadoutRun(grasp=str(tmp_path / "grasp")).run(lambda step: None)
 
 
 def test_a_stored_grasp_is_read_alike(read_grasp, tmp_path):

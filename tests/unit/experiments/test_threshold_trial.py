@@ -223,6 +223,7 @@ HEADER = "displacement [mm], plate force [N], tissue rise [mm], small sensor for
         (HEADER + "0, 0, 0, 0\n1, -1, 0.4, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 1\n", "negative"),
         (HEADER + "0, 0, 0, 0\n2, 1, 0.4, 0\n1, 2, 0.8, 0\n3, 3, 0.8, 1\n", "increase"),
         (HEADER + "0, 0, 0, 0\n1, 1, 0.8, 0\n3, 3, 0.8, 1\n", "at least 3"),
+        (HEADER + "0, 0, 0, 0\n1, 1, 0.4, 0\n2, 2, 0.7, 0\n3, 3, 0.8, 1\n", "risen by 700 µm .*the recess is 800 µm"),
         (HEADER + "0, 0, 0, nan\n", "finite number"),
     ],
 )
@@ -251,6 +252,7 @@ def test_a_curve_is_read_with_its_units(tmp_path):
         ({"cutoffs": ()}, "at least 1"),
         ({"noises": (-1e-3,)}, "greater than or equal to 0"),
         ({"cutoffs": (600.0,)}, "half the sampling_rate"),
+        ({"cutoffs": (0.05,)}, "at least 1e-05 of the sampling_rate of 16 kHz"),
         ({"cutoffs": (20.0, 10.0)}, "cutoffs must increase"),
         ({"speeds": (1e-3, 1e-3)}, "speeds must increase"),
         ({"trials": 0}, "greater than or equal to 1"),

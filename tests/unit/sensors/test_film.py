@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.film_line import identify_film
 from tactsim.sensors.calibration import THESIS_LINE
+from tactsim.sensors.composite import ModulusLine
 from tactsim.sensors.composite_library import LIBRARY, named_composite
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_equations import creep_strain, film_resistance, varying_coefficient_jump
@@ -167,6 +168,15 @@ def test_varying_coefficients_in_2_1_14_do_not_give_2_3_1():
 def test_bad_histories_are_refused(times, forces, told):
     with pytest.raises(InvalidQuantity, match=told):
         Film().conductance(times, forces)
+
+
+def test_a_force_that_leaves_no_thickness_is_refused():
+    constant = {"slope": 0.0, "intercept": 20e6}
+    update = {"instantaneous": ModulusLine(**constant), "delayed": ModulusLine(**constant), "reference_area": 1e-6}
+    film = Film(composite=named_composite("lingstat_literal").model_copy(update=update))
+    assert film.conductance([0, 1e3], [9.0, 9.0]).min() > 0
+    with pytest.raises(InvalidQuantity, match="strains the film by 1"):
+        film.conductance([0, 1e3], [10.1, 10.1])
 
 
 def test_conductances_that_no_force_gives_are_refused():

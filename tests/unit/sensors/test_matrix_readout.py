@@ -53,6 +53,20 @@ def test_a_pull_reads_as_no_force_and_is_told():
     assert PLAIN.read(TIMES, FORCES, AREA).strongest_pull == 0
 
 
+def test_noise_below_zero_is_read_and_what_reaches_the_supply_is_flagged():
+    noisy = {"sampling_rate": 200.0, "converter": {"low": -50.0, "high": 50.0}, "low_pass": None}
+    still = np.zeros((1, 2, 3, 3))
+    quiet, loud = (
+        MatrixReadout(scatter=None, chain=SignalChain(noise={"white": white}, **noisy)).read(np.array([5.0]), still, AREA)
+        for white in (1e-2, 5.0)
+    )
+    line = PLAIN.line(AREA)
+    assert quiet.force.mean() == pytest.approx(-line.intercept / line.slope, abs=0.05 * quiet.force.std())
+    assert not quiet.saturated.any()
+    np.testing.assert_array_equal(loud.saturated, loud.filtered >= 5.0)
+    assert loud.saturated.any()
+
+
 def test_bad_input_is_refused():
     with pytest.raises(InvalidQuantity, match="at least one sample"):
         PLAIN.read(np.array([]), np.zeros((0, 2, 3, 3)), AREA)
