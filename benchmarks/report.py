@@ -54,7 +54,8 @@ def table(figures: dict[str, dict[str, float]]) -> str:
         (
             f"`grasp_lump_icf.yaml`, {figures['grasp']['unknowns']:.0f} unknowns",
             "under 30 s, 2 GB",
-            f"{figures['grasp']['seconds']:.1f} s, {figures['grasp']['peak_megabytes'] / 1000:.2f} GB",
+            f"{figures['grasp']['total_seconds']:.1f} s to the taxels, {figures['grasp']['seconds']:.1f} s with all figures, "
+            f"{figures['grasp']['peak_megabytes'] / 1000:.2f} GB",
         ),
         (
             "18 sensors at 1 kHz, conductance to force, in chunks of 10 ms / at once",
