@@ -72,11 +72,13 @@ def parse_quantity(text: str, unit: str) -> float:
 
 
 def format_quantity(value: float, unit: str) -> str:
-    """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``."""
+    """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``; angles in degrees."""
     if unit in ("", "1"):
         return f"{value:.4g}"
     if value == 0 or not math.isfinite(value):
         return f"{value:g} {unit}"
+    if unit == "rad":
+        return f"{math.degrees(value):.5g}°"
     quantity = _registry().Quantity(value, unit).to_compact()
     return f"{quantity.magnitude:.5g} {quantity.units:~P}"
 

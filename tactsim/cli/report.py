@@ -14,7 +14,7 @@ def result_report(result: Result, title: str = "") -> str:
     """Title, status, quantities with units, warnings and the number of assumptions."""
     width = max((len(name) for name in result.quantities), default=0)
     lines = [title] if title else []
-    lines.append(f"{result.status}: {result.reason}" if result.reason else str(result.status))
+    lines.append(_ending(result))
     lines += [f"  {name:<{width}}  {format_values(q):<14}  {q.description}".rstrip() for name, q in result.quantities.items()]
     lines += [f"  warning: {warning}" for warning in result.warnings]
     told = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
@@ -26,13 +26,19 @@ def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
     """What matters most and where to look: a threshold pressure only if the run converged."""
     threshold = result.quantities.get("threshold_pressure")
     if result.status is not Status.CONVERGED:
-        headline = f"{result.status}: {result.reason}"
+        headline = _ending(result)
     elif threshold is None:
         headline = str(result.status)
     else:
         headline = "threshold pressure " + ("not reached" if threshold.value is None else format_values(threshold))
     figure = next(iter(figures), None)
     return f"{headline}; " + (f"figure {place / 'figures' / figure}" if figure else f"result {place}")
+
+
+def _ending(result: Result) -> str:
+    """Status and reason, once where the reason begins with the status."""
+    told = result.reason and not result.reason.startswith(str(result.status))
+    return f"{result.status}: {result.reason}" if told else result.reason or str(result.status)
 
 
 def format_values(quantity: Quantity) -> str:

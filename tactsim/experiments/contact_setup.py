@@ -58,7 +58,7 @@ class ContactSetup(FrozenModel):
     """Friction between body and tissue."""
     recess: Annotated[Length, Field(gt=0)] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
-    penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
+    penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
     """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius."""
     mesh: MeshSettings = MeshSettings()
     """Size of the elements."""

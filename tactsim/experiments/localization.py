@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -19,6 +20,7 @@ from tactsim.experiments.localization_source import (
     true_places,
     with_reference,
 )
+from tactsim.experiments.response_store import stored_response
 from tactsim.interfaces import Experiment, Progress
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
@@ -44,6 +46,9 @@ class Localization(Experiment):
           grasp: results/grasp_lump_icf
           reference: results/grasp_plain
           estimator: {kind: thesis, background: reference}
+
+    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and tells
+    how uncertain place, radius and contrast are.
     """
 
     kind: Literal["localization"] = "localization"
@@ -103,7 +108,8 @@ class Localization(Experiment):
         if self.reference is None:
             return readings
         plain = readings_of(stored_grasp(self.reference), self.readings, noise=self.noise, dead=None)
-        return with_reference(readings, plain)
+        readings = with_reference(readings, plain)
+        return replace(readings, response=stored_response(self.reference)) if self.estimator.needs_response else readings
 
     def _dead(self, layout: TaxelLayout) -> Array:
         dead = np.zeros((len(SIDES), layout.rows, layout.columns), bool)
@@ -147,8 +153,13 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
         found["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
         found["estimated_contrast"] = Quantity(
-            first.contrast, "1", "stiffness of the strongest inclusion over that of the tissue"
+            first.contrast, "1", "contrast of the strongest inclusion, negative if softer"
         )
+    if first.covariance is not None:
+        deviations = np.sqrt(np.diag(first.covariance))
+        found["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
+        found["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
+        found["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -96,7 +97,7 @@ class EstimatedInclusion:
     kind : "sphere", "tube", or "unknown" if the estimator does not tell
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
-    contrast : stiffness over that of the tissue, dimensionless; None if not estimated
+    contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
     covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
     """
 
@@ -144,6 +145,9 @@ class Estimate:
 
 class Estimator(Kind):
     """Finds inclusions from readings: subclass it in a new file of ``estimators`` and it is registered by its ``kind``."""
+
+    needs_response: ClassVar[bool] = False
+    """Whether it needs the fast forward model of the tissue."""
 
     @abstractmethod
     def estimate(self, readings: Readings) -> Estimate:

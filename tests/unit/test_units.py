@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
@@ -66,4 +68,5 @@ def test_a_bare_number_is_si_in_python_and_refused_in_a_file() -> None:
 def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(0.0008, "m") == "800 µm"
     assert format_quantity(0.25, "1") == "0.25"
+    assert format_quantity(math.radians(30), "rad") == "30°"
     assert format_quantity(0.0, "Pa") == "0 Pa"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -31,6 +31,7 @@ class ModelBasedEstimator(Estimator):
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
 
+    needs_response: ClassVar[bool] = True
     kind: Literal["model_based"] = "model_based"
     radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
     """Least and largest radius."""

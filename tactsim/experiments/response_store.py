@@ -1,0 +1,89 @@
+"""The fast forward model of a stored plain grasp, computed once and kept."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+from pydantic import ValidationError
+
+from tactsim import __version__
+from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.lump_sensitivity import CELLS, RADII, SPACING, lump_response
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.results.reading import read_result
+from tactsim.results.storage import replace_file
+
+Array = np.ndarray
+
+
+def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
+    """Response of the tissue of a grasp whose result lies in a folder, its inclusions left out.
+
+    Parameters
+    ----------
+    folder : of the result of a grasp
+    cache : folder of responses computed before; by default the user's cache folder
+
+    Raises
+    ------
+    StorageError
+        If there is no result.
+    InputError
+        If the folder does not tell the case of a grasp.
+    ConvergenceError
+        If the plain tissue cannot be grasped.
+    """
+    setup = _plain(read_result(folder, fields=False).provenance, folder)
+    text = json.dumps([setup.model_dump(mode="json", exclude={"mesh", "readout"}), CELLS, RADII.tolist(), SPACING, __version__])
+    place = (cache or _cache_folder()) / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.npz"
+    found = _read(place)
+    if found is None:
+        found = lump_response(setup)
+        _keep(found, place)
+    return found
+
+
+def _plain(provenance: dict[str, Any], folder: str) -> Grasp:
+    """The grasp that a result was computed from, without inclusions."""
+    experiment = (provenance.get("case") or {}).get("experiment") or {}
+    if experiment.get("kind") != "grasp":
+        raise InputError(f"{folder} does not tell the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
+    try:
+        return Grasp.model_validate(experiment).model_copy(update={"inclusions": ()})
+    except ValidationError as error:
+        raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
+
+
+def _cache_folder() -> Path:
+    """The user's folder of responses, which can be computed again."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "responses"
+
+
+def _read(place: Path) -> LumpResponse | None:
+    """What was kept, None if there is nothing usable."""
+    try:
+        with np.load(io.BytesIO(place.read_bytes()), allow_pickle=False) as file:
+            return LumpResponse((file["x"], file["y"], file["z"]), file["radii"], file["values"])
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+        return None
+
+
+def _keep(response: LumpResponse, place: Path) -> None:
+    """Keep a response; a cache that cannot be written costs only time."""
+    content = io.BytesIO()
+    x, y, z = response.axes
+    np.savez_compressed(content, x=x, y=y, z=z, radii=response.radii, values=response.values)
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        replace_file(place, content.getvalue())
+    except (OSError, StorageError):
+        return

@@ -1,0 +1,67 @@
+"""Adjoint sensitivities against a central difference of two grasps on the same mesh.
+
+One taxel covers the whole face: what moves it into the tissue is then exact on any mesh, and the check is that of the adjoint.
+"""
+
+import numpy as np
+import pytest
+
+from tactsim.experiments import lump_sensitivity
+from tactsim.experiments.block_source import StructuredSource
+from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp_setup import Embedded
+from tactsim.materials.library import named_material
+from tactsim.mesh.inclusions.sphere import Sphere
+
+CELLS = (6, 6, 4)
+BALL = Sphere(center=(20e-3, 20e-3, 12.5e-3), radius=6e-3)
+CHANGE = 0.05
+AGREEMENT = 0.02
+"""Tissue slips a little at the rim of the jaws, where the adjoint sticks."""
+
+
+@pytest.fixture(scope="module")
+def plain():
+    closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": "0.5 mm", "duration": "1 s"}]}
+    return Grasp.model_validate(
+        {
+            "block": {"tissue": "icf_stable"},
+            "contact": {"kind": "coulomb", "friction": 1.0},
+            "loading": closing,
+            "time": {"steps": 1},
+            "matrix": {"rows": 1, "columns": 1, "pitch": "50 mm", "size": "50 mm"},
+            "mesh": {"kind": "structured", "cells": list(CELLS)},
+        }
+    )
+
+
+def forces(grasp):
+    result = grasp.run(lambda step: None)
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+
+
+@pytest.fixture(scope="module")
+def difference(plain):
+    """Change of the forces over the change of the stiffness in elements whose middle lies in the ball."""
+    tissue = named_material("icf_stable").material
+    found = []
+    for factor in (1 - CHANGE, 1 + CHANGE):
+        scaled = {name: factor * getattr(tissue, name) for name in ("c10", "c01", "c11")}
+        lump = Embedded(shape=BALL, material=type(tissue).model_validate(tissue.model_dump() | scaled))
+        found.append(forces(plain.model_copy(update={"inclusions": (lump,)})))
+    return (found[1] - found[0]) / (2 * CHANGE)
+
+
+def predicted(plain, monkeypatch):
+    monkeypatch.setattr(lump_sensitivity, "CELLS", CELLS)
+    found = lump_sensitivity.sensitivity(plain)
+    mesh = plain.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)}).sourced().block.mesh
+    inside = np.linalg.norm(mesh.nodes[mesh.elements[:, :4]].mean(axis=1) - BALL.center, axis=1) < BALL.radius
+    points = np.repeat(inside, len(found.places) // len(inside))
+    return (found.densities * found.volumes)[..., points].sum(axis=-1)
+
+
+def test_adjoint_is_the_difference(plain, difference, monkeypatch):
+    expected = predicted(plain, monkeypatch)
+    assert np.abs(expected - difference).max() < AGREEMENT * np.abs(difference).max()
+    assert not np.abs((1 + 3 * AGREEMENT) * expected - difference).max() < AGREEMENT * np.abs(difference).max()
