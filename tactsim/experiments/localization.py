@@ -152,9 +152,7 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
     if first.radius is not None:
         found["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
-        found["estimated_contrast"] = Quantity(
-            first.contrast, "1", "contrast of the strongest inclusion, negative if softer"
-        )
+        found["estimated_contrast"] = Quantity(first.contrast, "1", "contrast of the strongest inclusion, negative if softer")
     if first.covariance is not None:
         deviations = np.sqrt(np.diag(first.covariance))
         found["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
