@@ -48,6 +48,19 @@ def tagged_union(package: str, base: type) -> Any:
     return union_of(kinds(package, base))
 
 
+def shipped(what: str, name: str, library: Mapping[str, Any]) -> Any:
+    """The shipped set of this name; ``what`` is what a set is called in messages.
+
+    Raises
+    ------
+    UnknownName
+        With the nearest name.
+    """
+    if name not in library:
+        raise UnknownName(what, name, library)
+    return library[name]
+
+
 class Named:
     """Annotation that lets a field take the name of a shipped set beside the set itself, in files and in the JSON Schema.
 
@@ -64,10 +77,10 @@ class Named:
         """The shipped set of this name; anything but text passes."""
         if not isinstance(value, str):
             return value
-        shipped = self.library()
-        if value not in shipped:
-            raise PydanticCustomError("unknown_name", "{message}", {"message": str(UnknownName(self.what, value, shipped))})
-        return shipped[value]
+        try:
+            return shipped(self.what, value, self.library())
+        except UnknownName as error:
+            raise PydanticCustomError("unknown_name", "{message}", {"message": str(error)}) from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self.read, handler(source))

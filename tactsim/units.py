@@ -6,9 +6,10 @@ A pydantic field typed ``Length`` accepts ``"0.8 mm"`` and holds ``0.0008``. A b
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Annotated, Any
 
@@ -37,6 +38,19 @@ def _registry() -> Any:
     import pint
 
     return pint.UnitRegistry(cache_folder=None)
+
+
+def check_increasing(**lists: Sequence[float]) -> None:
+    """Nothing if every list increases strictly.
+
+    Raises
+    ------
+    ValueError
+        Naming the first that does not.
+    """
+    for name, values in lists.items():
+        if any(later <= earlier for earlier, later in itertools.pairwise(values)):
+            raise ValueError(f"{name} must increase")
 
 
 def parse_quantity(text: str, unit: str) -> float:

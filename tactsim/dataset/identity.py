@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from tactsim.dataset.code_identity import code_identity
+from tactsim.code_identity import code_identity
 from tactsim.dataset.layout import Layout
 from tactsim.dataset.sweep import Sweep
 from tactsim.errors import StorageError

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.code_identity import code_identity
 from tactsim.dataset.block import Block, decoded
-from tactsim.dataset.code_identity import code_identity
 from tactsim.dataset.computing import computed
 from tactsim.dataset.executor import Executor, Outcome
 from tactsim.dataset.identity import attributes_of, check_same

@@ -10,15 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.film_test import COEFFICIENTS
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 PER_CENT = 100.0
-COEFFICIENTS = (
-    ("instantaneous", "$E_0$ in MPa", "#1f4e79", "o"),
-    ("delayed", "$E_1$ in MPa", "#b8540a", "s"),
-    ("viscosity", "$\\mu_1$ in MPa s", "#4d9221", "^"),
-)
+MARKERS = "os^"
 
 
 class FilmCreepFigures(ResultFigures):
@@ -60,7 +57,7 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 
 def _draw_coefficients(axis: Axes, result: Result) -> None:
     forces = np.array([step.values["force"] for step in result.steps])
-    for name, label, colour, marker in COEFFICIENTS:
+    for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
         values = np.array([step.values[name] for step in result.steps]) / 1e6
         widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
         axis.errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
+from tactsim.display.grasp_parts import SIDES
 from tactsim.errors import TactsimError
 from tactsim.mesh.any_inclusion import AnyInclusion
 from tactsim.mesh.solid import Solid
@@ -16,7 +17,6 @@ from tactsim.results import Result
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
-SIDES = ("upper", "lower")
 SAMPLES = 40
 """Points along each side of an inclusion's bounds from which its outline in a view is traced."""
 NEEDED = ("block_size", "matrix")

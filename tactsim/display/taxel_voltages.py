@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.grasp_parts import SIDES
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray
-SIDES = ("upper", "lower")
 VOLTAGES = "taxel_voltages.png"
 MOST_NAMED = 16
 """Taxels of a matrix up to which each curve is named."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -16,7 +15,7 @@ from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
-from tactsim.units import Force, FrozenModel, Length, Time, format_quantity
+from tactsim.units import Force, FrozenModel, Length, Time, check_increasing, format_quantity
 
 Array = np.ndarray
 SMALL_DISPLACEMENT = 0.1
@@ -101,10 +100,7 @@ class AnnulusDesign(Experiment):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        for name in ("ratios", "recesses", "forces", "times"):
-            values = getattr(self, name)
-            if any(later <= earlier for earlier, later in itertools.pairwise(values)):
-                raise ValueError(f"{name} must increase")
+        check_increasing(ratios=self.ratios, recesses=self.recesses, forces=self.forces, times=self.times)
         if self.forces[-1] > self.largest_force or self.recommended_force > self.largest_force:
             raise ValueError(f"a force is beyond the largest one of {format_quantity(self.largest_force, 'N')}")
         if self.thickness is not None and self.formula != "exact":

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.experiments.loading import AnyLoading, ForceLoading
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment, Material, Progress
 from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.viscoelasticity import shear_compliance
@@ -22,6 +22,21 @@ SMALL = 0.1
 """Displacement over the outer radius beyond which the result warns; materials that stiffen leave linear theory before."""
 DECADES, PER_DECADE = 6, 10
 """Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
+
+
+def check_closed_form(inner_radius: float, outer_radius: float, material: Material) -> None:
+    """Nothing if there is a closed form of an annulus of these radii in m on this material.
+
+    Raises
+    ------
+    ValueError
+        If the face is too narrow or the material is compressible.
+    """
+    if inner_radius > 0.99 * outer_radius:
+        inner, outer = format_quantity(inner_radius, "m"), format_quantity(outer_radius, "m")
+        raise ValueError(f"inner_radius {inner} must be at most 0.99 of the outer_radius {outer}")
+    if material.bulk_modulus is not None:
+        raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
 
 
 class ClosedForm(Experiment):
@@ -56,11 +71,7 @@ class ClosedForm(Experiment):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        if self.inner_radius > 0.99 * self.outer_radius:
-            inner, outer = format_quantity(self.inner_radius, "m"), format_quantity(self.outer_radius, "m")
-            raise ValueError(f"inner_radius {inner} must be at most 0.99 of the outer_radius {outer}")
-        if self.material.bulk_modulus is not None:
-            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
+        check_closed_form(self.inner_radius, self.outer_radius, self.material)
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula} is for a half-space; on a layer only exact is known")
         return self

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.identification.dma_data import FEWEST_FREQUENCIES, THESIS_FREQUENCIES, DmaData, read_dma, synthetic_dma
 from tactsim.identification.dma_signals import dma_from_signals, read_dma_signals
-from tactsim.units import Area, Frequency, FrozenModel, Length
+from tactsim.units import Area, Frequency, FrozenModel, Length, check_increasing
 
 Seed = Annotated[int, Field(ge=0)]
 
@@ -33,8 +32,7 @@ class SyntheticDma(FrozenModel):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        if (np.diff(self.frequencies) <= 0).any():
-            raise ValueError("frequencies must increase")
+        check_increasing(frequencies=self.frequencies)
         return self
 
     @property

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.errors import ConvergenceError
+from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_setup import AnyLaw, MeshSettings
 from tactsim.experiments.durometer_report import DurometerRecord
@@ -99,13 +99,11 @@ class Durometer(Experiment):
         setup = self.indentation
         model = setup.model()
         record = DurometerRecord(setup, model, begin, scale=self.scale, spring_tolerance=self.spring_tolerance)
-        try:
-            for state, balanced in self._path(record):
-                progress(record.accept(state, threshold=balanced))
-        except ConvergenceError as error:
-            return record.result(Status.FAILED, f"stopped converging: {error}")
-        except KeyboardInterrupt:
-            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        early = ended_early(
+            record, (record.accept(state, threshold=balanced) for state, balanced in self._path(record)), progress
+        )
+        if early is not None:
+            return early
         return record.result(Status.CONVERGED, record.told())
 
     def _path(self, record: DurometerRecord) -> Iterator[tuple[ContactEquilibrium, bool]]:

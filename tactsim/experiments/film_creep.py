@@ -23,6 +23,7 @@ from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.composite import AnyComposite
 from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import Area, Force, FrozenModel, Time
 
 PositiveForce = Annotated[Force, Field(gt=0)]
@@ -144,7 +145,7 @@ def _told(fit: CreepFit) -> dict[str, float]:
     values: dict[str, float] = {"force": fit.force}
     for k, name in enumerate(COEFFICIENTS):
         values |= {name: float(fit.coefficients[k]), f"{name}_half_width": float(fit.half_widths[k])}
-    return values | {"strain_rms_error": float(np.sqrt(np.mean(fit.residuals**2)))}
+    return values | {"strain_rms_error": root_mean_square(fit.residuals)}
 
 
 def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:

@@ -8,14 +8,13 @@ from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.stats import linregress
 
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
-from tactsim.sensors.calibration import LinearCalibration
 from tactsim.sensors.film import HOLM, Film
+from tactsim.sensors.film_calibration import least_squares_line
 from tactsim.sensors.film_report import film_assumptions, film_quantities, film_warnings
-from tactsim.units import Force, Time
+from tactsim.units import Force, Time, check_increasing
 
 Array = np.ndarray
 LEAST_FORCE, LONGEST = 1e-9, 1e12
@@ -46,9 +45,7 @@ class FilmTest(Experiment):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        for name in ("forces", "times"):
-            if any(later <= earlier for earlier, later in itertools.pairwise(getattr(self, name))):
-                raise ValueError(f"{name} must increase")
+        check_increasing(forces=self.forces, times=self.times)
         return self
 
     @classmethod
@@ -92,7 +89,8 @@ class FilmTest(Experiment):
         }
 
     def _line(self, forces: Array, read: Array) -> dict[str, Quantity]:
-        fit = linregress(forces, read)
+        line = least_squares_line(forces, read)
+        errors = line.force(read) - forces
         found = {
             "reading_resistance": Quantity((1 / read).tolist(), "ohm", "resistance at the reading time, for each force"),
             "reading_film_resistance": Quantity(
@@ -100,14 +98,12 @@ class FilmTest(Experiment):
                 "ohm",
                 "the same without the contacts at the electrodes",
             ),
-            "line_slope": Quantity(float(fit.slope), "S/N", "m of the least-squares line C = m F + n at the reading time"),
-            "line_intercept": Quantity(float(fit.intercept), "S", "n of that line"),
+            "line_slope": Quantity(line.slope, "S/N", "m of the least-squares line C = m F + n at the reading time"),
+            "line_intercept": Quantity(line.intercept, "S", "n of that line"),
         }
-        if fit.slope > 0:
-            errors = LinearCalibration(slope=fit.slope, intercept=fit.intercept).force(read) - forces
-            for sign, error in (("positive", errors.max()), ("negative", errors.min())):
-                words = f"largest {sign} error of the force that the line reads, over the largest force"
-                found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
+        for sign, error in (("positive", errors.max()), ("negative", errors.min())):
+            words = f"largest {sign} error of the force that the line reads, over the largest force"
+            found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
         return found
 
     def _details(self, forces: Array) -> dict[str, object]:

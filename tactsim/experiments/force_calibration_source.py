@@ -97,9 +97,6 @@ class MeasuredCalibration(FrozenModel):
             If it does not hold one finite force and one voltage of every sensor per row.
         """
         names = ["voltage"] if self.sensors == 1 else [f"voltage {number}" for number in range(1, self.sensors + 1)]
-        columns = read_columns(self.path, {"force": "N", **dict.fromkeys(names, "V")})
-        missing = [name for name in ("force", *names) if name not in columns]
-        if missing:
-            raise InvalidQuantity(f"{self.path}: no column {', '.join(missing)}; allowed: force [N], {' [V], '.join(names)} [V]")
+        columns = read_columns(self.path, {"force": "N", **dict.fromkeys(names, "V")}, complete=True)
         voltage = np.stack([columns[name] for name in names], axis=1)
         return columns["force"], voltage, chain.converter.at_end(voltage)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import cached_property
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -142,17 +143,15 @@ class Record(FrozenModel):
     @property
     def duration(self) -> float:
         """Length in s."""
-        return float(self._columns()[0][-1])
+        return float(self._columns[0][-1])
 
     def sampled(self, time: Array) -> Array:
         """Force in N at times in s."""
-        return np.interp(time, *self._columns())
+        return np.interp(time, *self._columns)
 
+    @cached_property
     def _columns(self) -> tuple[Array, Array]:
-        columns = read_columns(self.path, {"time": "s", "force": "N"})
-        missing = {"time", "force"} - set(columns)
-        if missing:
-            raise InvalidQuantity(f"{self.path}: no column {', '.join(sorted(missing))}; needed: time [s], force [N]")
+        columns = read_columns(self.path, {"time": "s", "force": "N"}, complete=True)
         try:
             times = checked_times(columns["time"])
             return times - times[0], checked_forces(columns["force"], len(times), HOLM)

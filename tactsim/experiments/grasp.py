@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from typing import ClassVar, Literal, Self
 
-from tactsim.errors import ConvergenceError
 from tactsim.experiments.block_source import StructuredSource
+from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.grasp_path import grasp_path
 from tactsim.experiments.grasp_report import GraspRecord
 from tactsim.experiments.grasp_setup import Block, GraspSetup
@@ -43,11 +43,7 @@ class Grasp(GraspSetup, Experiment):
         model = self.model(sourced)
         path = grasp_path(self, model)
         record = GraspRecord(self, model, sourced, path, begin)
-        try:
-            for state, _ in path.states():
-                progress(record.accept(state))
-        except ConvergenceError as error:
-            return record.result(Status.FAILED, f"stopped converging: {error}")
-        except KeyboardInterrupt:
-            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        early = ended_early(record, (record.accept(state) for state, _ in path.states()), progress)
+        if early is not None:
+            return early
         return record.result(Status.CONVERGED, "end of the history")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import ClassVar, Literal, Self
 
-from tactsim.errors import ConvergenceError
+from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.indentation_path import indentation_path
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.indentation_setup import IndentationSetup
@@ -32,13 +32,10 @@ class Indentation(IndentationSetup, Experiment):
         begin = time.perf_counter()
         model = self.model()
         record = IndentationRecord(self, model, begin)
-        try:
-            for state, event in indentation_path(self, model, record):
-                progress(record.accept(state, threshold=event))
-        except ConvergenceError as error:
-            return record.result(Status.FAILED, f"stopped converging: {error}")
-        except KeyboardInterrupt:
-            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        states = indentation_path(self, model, record)
+        early = ended_early(record, (record.accept(state, threshold=event) for state, event in states), progress)
+        if early is not None:
+            return early
         if self.stop == "threshold" and not record.has_threshold:
             reached = format_quantity(self.displacement, "m")
             return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")

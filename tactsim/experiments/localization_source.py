@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 
 from tactsim.errors import InputError
 from tactsim.localization.interface import Readings
+from tactsim.localization.readings import JAWS as SIDES
 from tactsim.mesh.any_inclusion import AnyInclusion
 from tactsim.mesh.inclusions.tube import Tube, extended
 from tactsim.mesh.solid import Inclusion
@@ -20,7 +21,6 @@ from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
 
 Array = np.ndarray
-SIDES = ("upper", "lower")
 Source = Literal["taxel_force", "read_force"]
 """Forces of the solution, or those read through film, electronics and calibration."""
 SAME_CLOSING = 1e-3

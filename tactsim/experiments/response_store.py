@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -13,13 +12,14 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import ValidationError
 
-from tactsim import __version__
+from tactsim.code_identity import code_identity
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.lump_sensitivity import CELLS, RADII, SPACING, lump_response
+from tactsim.experiments.lump_sensitivity import lump_response
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results.reading import read_result
 from tactsim.results.storage import replace_file
+from tactsim.user_cache import user_cache
 
 Array = np.ndarray
 
@@ -42,8 +42,8 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
         If the plain tissue cannot be grasped.
     """
     setup = _plain(read_result(folder, fields=False).provenance, folder)
-    text = json.dumps([setup.model_dump(mode="json", exclude={"mesh", "readout"}), CELLS, RADII.tolist(), SPACING, __version__])
-    place = (cache or _cache_folder()) / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.npz"
+    text = json.dumps([setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity()])
+    place = (cache or user_cache("responses")) / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.npz"
     found = _read(place)
     if found is None:
         found = lump_response(setup)
@@ -60,12 +60,6 @@ def _plain(provenance: dict[str, Any], folder: str) -> Grasp:
         return Grasp.model_validate(experiment).model_copy(update={"inclusions": ()})
     except ValidationError as error:
         raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
-
-
-def _cache_folder() -> Path:
-    """The user's folder of responses, which can be computed again."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
-    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "responses"
 
 
 def _read(place: Path) -> LumpResponse | None:

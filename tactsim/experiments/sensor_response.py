@@ -17,7 +17,7 @@ from tactsim.sensors.film import Film
 from tactsim.sensors.film_report import film_assumptions, film_warnings
 from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_square
 from tactsim.sensors.signal_chain import Recording, SignalChain
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, check_increasing, format_quantity
 
 Array = np.ndarray
 MOST_SAMPLES = 100_000
@@ -58,8 +58,7 @@ class SensorResponse(Experiment):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        if any(high <= low for low, high in zip(self.ranges, self.ranges[1:], strict=False)):
-            raise ValueError("ranges must increase")
+        check_increasing(ranges=self.ranges)
         return self
 
     @classmethod
@@ -85,7 +84,7 @@ class SensorResponse(Experiment):
             kind=self.kind,
             status=Status.CONVERGED,
             reason="end of the record",
-            quantities=self._quantities(times, force, recording, {"read": read, "raw": raw, "model": model}),
+            quantities=self._quantities(force, conductance, recording, {"read": read, "raw": raw, "model": model}),
             assumptions=(*film_assumptions(self.film), "one straight line as calibration, without regard to history"),
             warnings=self._warnings(force, recording),
             timing={"total": time.perf_counter() - begin},
@@ -118,8 +117,7 @@ class SensorResponse(Experiment):
 
     def _linear(self, voltage: Array) -> Array:
         """Force in N by the straight line; a saturated voltage at the supply reads as the last one below it."""
-        below = np.nextafter(self.chain.supply, 0)
-        return self.calibration.force(self.chain.conductance(np.minimum(voltage, below)))
+        return self.calibration.force(self.chain.read_conductance(voltage))
 
     def _modelled(self, times: Array, recording: Recording) -> Array:
         """Force in N by the inverse of the film's model from unfiltered samples, up to the first saturated one."""
@@ -131,20 +129,18 @@ class SensorResponse(Experiment):
             found[good:] = found[good - 1]
         return found
 
-    def _inversion(self, times: Array, force: Array, model: Array, saturated: Array) -> float | None:
-        """Largest error of the model's force, in steps of the converter at that force; None without a sample to judge by.
-
-        Samples from the first saturated one on do not count.
-        """
-        good = ~np.logical_or.accumulate(saturated)
-        slope = self.film.sensitivity(times, force)
-        step = self.chain.conductance_step(self.film.conductance(times, force)) / slope
+    def _inversion(self, times: Array, force: Array, conductance: Array, error: Array, good: Array) -> float | None:
+        """Largest error of the model's force, in steps of the converter at that force, among ``good`` samples; None if none."""
+        step = self.chain.conductance_step(conductance) / self.film.sensitivity(times, force)
         loaded = good & (force > 0)
-        return float((np.abs(model - force)[loaded] / step[loaded]).max()) if loaded.any() else None
+        return float((np.abs(error)[loaded] / step[loaded]).max()) if loaded.any() else None
 
-    def _quantities(self, times: Array, force: Array, recording: Recording, readings: dict[str, Array]) -> dict[str, Quantity]:
+    def _quantities(
+        self, force: Array, conductance: Array, recording: Recording, readings: dict[str, Array]
+    ) -> dict[str, Quantity]:
         read, raw, model = readings["read"], readings["raw"], readings["model"]
-        inversion = self._inversion(times, force, model, recording.saturated)
+        good = ~np.logical_or.accumulate(recording.saturated)
+        inversion = self._inversion(recording.time, force, conductance, model - force, good)
         found = {
             "rms_error": Quantity(root_mean_square(read - force), "N", "root mean square of read minus applied force, filtered"),
             "rms_error_unfiltered": Quantity(root_mean_square(raw - force), "N", "the same without the low pass"),
@@ -159,7 +155,7 @@ class SensorResponse(Experiment):
         if inversion is not None:
             words = "largest error of the force found by the inverse of the film, in steps of the converter there"
             found["inversion_steps"] = Quantity(inversion, "1", f"{words}; up to the first saturated sample")
-        return found | self._by_range(force, raw, model, ~np.logical_or.accumulate(recording.saturated))
+        return found | self._by_range(force, raw, model, good)
 
     def _by_range(self, force: Array, raw: Array, model: Array, good: Array) -> dict[str, Quantity]:
         """Errors by range of force; those of the inverse from the ``good`` samples, before the first saturated one."""

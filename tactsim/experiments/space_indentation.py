@@ -12,6 +12,7 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.contact.punch import Punch
 from tactsim.contact.tilted import Tilted
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.indentation_path import EVENT_TOLERANCE, PAST_PEAK, SWITCH_LENGTH
 from tactsim.experiments.space_indentation_model import SpaceIndentationModel
@@ -43,13 +44,10 @@ class SpaceIndentation(SpaceIndentationSetup, Experiment):
         begin = time.perf_counter()
         model = self.space_model()
         record = SpaceIndentationRecord(self, model, begin)
-        try:
-            for state, event in space_indentation_path(self, model, record):
-                progress(record.accept(state, threshold=event))
-        except ConvergenceError as error:
-            return record.result(Status.FAILED, f"stopped converging: {error}")
-        except KeyboardInterrupt:
-            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        states = space_indentation_path(self, model, record)
+        early = ended_early(record, (record.accept(state, threshold=event) for state, event in states), progress)
+        if early is not None:
+            return early
         if self.stop == "threshold" and not record.has_threshold:
             reached = format_quantity(self.displacement, "m")
             return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")

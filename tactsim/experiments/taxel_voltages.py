@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.experiments.grasp_model import SIDES
 from tactsim.results.result import Quantity
 from tactsim.sensors.film_report import film_assumptions, film_warnings
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
+from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import format_quantity
 
 Array = np.ndarray
-SIDES = ("upper", "lower")
 AT_END = "at the end; [row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
 OVER_TIME = "at each of readout_time, [time][row][column]"
 
@@ -32,7 +33,7 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
         }
     error = reading.force - reading.applied
     words = "read minus applied force, over all taxels and times"
-    found["read_force_rms_error"] = Quantity(float(np.sqrt(np.mean(error**2))), "N", f"root mean square of {words}")
+    found["read_force_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
     found["read_force_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
     return found
 
@@ -57,8 +58,7 @@ def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
 
 def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
     """What a user must know of the readings."""
-    film = readout.film if readout.film.active_area else readout.film.model_copy(update={"active_area": area})
-    told = list(film_warnings(film, float(reading.applied.max())))
+    told = list(film_warnings(readout.film_of(area), float(reading.applied.max())))
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")
         told.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from tactsim.analytic.histories import History, Segment
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.experiments.closed_form import check_closed_form
 from tactsim.experiments.contact_curve import Approach, ContactCurve, SensorShape
 from tactsim.experiments.indentation import Indentation
 from tactsim.identification.columns import read_columns
@@ -67,11 +68,7 @@ class ClosedFormSource(FrozenModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        if self.inner_radius > 0.99 * self.outer_radius:
-            inner, outer = format_quantity(self.inner_radius, "m"), format_quantity(self.outer_radius, "m")
-            raise ValueError(f"inner_radius {inner} must be at most 0.99 of the outer_radius {outer}")
-        if self.material.bulk_modulus is not None:
-            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
+        check_closed_form(self.inner_radius, self.outer_radius, self.material)
         if self.thickness is not None and self.recess >= self.thickness:
             raise ValueError("the recess must be smaller than the thickness of the tissue (thesis, end of 3.1.1)")
         return self

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -21,7 +20,7 @@ from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_sensor import ThresholdSensor
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
-from tactsim.units import Frequency, Speed, Time, Voltage, format_quantity
+from tactsim.units import Frequency, Speed, Time, Voltage, check_increasing, format_quantity
 
 MOST_SAMPLES = 500_000
 """Longest recording of one approach, in samples."""
@@ -60,10 +59,7 @@ class ThresholdTrial(Experiment):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        for name in ("speeds", "noises", "cutoffs"):
-            values = getattr(self, name)
-            if any(later <= earlier for earlier, later in itertools.pairwise(values)):
-                raise ValueError(f"{name} must increase")
+        check_increasing(speeds=self.speeds, noises=self.noises, cutoffs=self.cutoffs)
         if self.sensor.chain.low_pass is None:
             raise ValueError("the chain has no low pass whose cut-off could vary; set sensor.chain.low_pass")
         for low_pass in self.low_passes:

@@ -6,7 +6,7 @@ import time
 from typing import ClassVar, Literal, Self
 
 from tactsim.contact.coulomb import Coulomb
-from tactsim.errors import ConvergenceError
+from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.loading import DisplacementLoading
 from tactsim.experiments.specimen import Specimen
 from tactsim.experiments.timed_indentation_path import TimedIndentationPath
@@ -45,13 +45,9 @@ class TimedIndentation(TimedIndentationSetup, Experiment):
         if self.stop == "touch":
             recess = float(self.recess or 0.0)
             event = TimeEvent[TimedState](lambda state: record.rise(state)[0] - recess)
-        try:
-            for state, touched in path.states(event):
-                progress(record.accept(state, touched=touched))
-        except ConvergenceError as error:
-            return record.result(Status.FAILED, f"stopped converging: {error}")
-        except KeyboardInterrupt:
-            return record.result(Status.INTERRUPTED, "interrupted; the accepted steps are kept, the run is incomplete")
+        early = ended_early(record, (record.accept(state, touched=touched) for state, touched in path.states(event)), progress)
+        if early is not None:
+            return early
         if self.stop == "touch" and not record.touched:
             return record.result(Status.FAILED, "the tissue did not touch the inner sensor within the history")
         return record.result(Status.CONVERGED, "touched the inner sensor" if record.touched else "end of the history")

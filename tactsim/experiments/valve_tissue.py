@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
@@ -13,7 +12,7 @@ from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.experiments.contact_curve import Approach
 from tactsim.interfaces import Array
 from tactsim.sensors.sensor_ring import SensorRing
-from tactsim.units import FrozenModel, Length, Pressure
+from tactsim.units import FrozenModel, Length, Pressure, check_increasing
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 
@@ -71,8 +70,7 @@ class ValveSurface(FrozenModel):
     def _matching(self) -> Self:
         if len(self.borders) != len(self.tissues) - 1:
             raise ValueError(f"{len(self.tissues)} tissues need {len(self.tissues) - 1} borders, not {len(self.borders)}")
-        if any(later <= earlier for earlier, later in itertools.pairwise(self.borders)):
-            raise ValueError("borders must increase")
+        check_increasing(borders=self.borders)
         names = [tissue.name for tissue in self.tissues]
         if len(set(names)) < len(names):
             raise ValueError("each tissue needs a name of its own")

@@ -16,7 +16,7 @@ from tactsim.units import parse_quantity
 _HEADER = re.compile(r"(?P<name>[^\[\]()]+?)\s*(?:[\[(](?P<unit>[^\[\]()]*)[\])])?")
 
 
-def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
+def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = False) -> dict[str, Array]:
     """Columns in SI, by name, of a CSV file with a header such as ``frequency [Hz], storage modulus [kPa]``.
 
     Parameters
@@ -25,14 +25,16 @@ def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
         File in UTF-8; blank lines and lines that begin with ``#`` are skipped.
     units
         Every column name that may occur (lower case, words apart) and the SI unit it is returned in.
+    complete
+        Whether every one of them must stand there.
 
     Raises
     ------
     StorageError
         If the file cannot be read.
     InvalidQuantity
-        If a column is unknown or repeated, has no unit or a wrong one, or a row is not one finite number per column; with file
-        and line.
+        If a column is unknown, repeated or missing, has no unit or a wrong one, or a row is not one finite number per
+        column; with file and line.
     """
     path = Path(path)
     rows = data_lines(path)
@@ -41,6 +43,10 @@ def read_columns(path: str | Path, units: dict[str, str]) -> dict[str, Array]:
     for name in names:
         if names.count(name) > 1:
             raise InvalidQuantity(f"{path}: column {name!r} stands there {names.count(name)} times; allowed: once")
+    missing = [name for name in units if name not in names] if complete else []
+    if missing:
+        allowed = ", ".join(f"{name} [{unit}]" for name, unit in units.items())
+        raise InvalidQuantity(f"{path}: no column {', '.join(missing)}; allowed: {allowed}")
     values = np.array([_numbers(f"{path}:{number}", line, names) for number, line in rows[1:]]).reshape(-1, len(names))
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
 

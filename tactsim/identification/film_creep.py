@@ -141,10 +141,7 @@ def read_creep(path: str | Path) -> list[CreepTest]:
     InvalidQuantity
         If a column is missing or a row is wrong, with file and line.
     """
-    columns = read_columns(path, {"time": "s", "force": "N", "strain": "1"})
-    missing = {"time", "force", "strain"} - set(columns)
-    if missing:
-        raise InvalidQuantity(f"{path}: no column {', '.join(sorted(missing))}; needed: time [s], force [N], strain [1]")
+    columns = read_columns(path, {"time": "s", "force": "N", "strain": "1"}, complete=True)
     chosen = [(force, columns["force"] == force) for force in np.unique(columns["force"])]
     return [CreepTest(float(force), columns["time"][rows], columns["strain"][rows]) for force, rows in chosen]
 

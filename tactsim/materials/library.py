@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tactsim.analytic.atrial import atrial_shear_compliance
-from tactsim.errors import UnknownName
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.viscoelasticity import neo_hookean_of
+from tactsim.registry import shipped
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,8 @@ def named_material(name: str) -> MaterialSet:
     UnknownName
         With the nearest name.
     """
-    if name not in LIBRARY:
-        raise UnknownName("material set", name, LIBRARY)
-    return LIBRARY[name]
+    found: MaterialSet = shipped("material set", name, LIBRARY)
+    return found
 
 
 B1A_PRINTED = MaterialSet(

@@ -29,6 +29,7 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.shipped import shipped_folders
 from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
+from tactsim.user_cache import user_cache
 
 Array = np.ndarray
 _DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, RuntimeError)
@@ -95,8 +96,7 @@ def stored_block_mesh(
 
 def cache_folder() -> Path:
     """The user's folder of meshes, which can be made again."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
-    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "meshes"
+    return user_cache("meshes")
 
 
 def content_hash(mesh: QuadraticMesh) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tactsim.errors import UnknownName
+from tactsim.registry import shipped
 from tactsim.sensors.composite import Composite
 from tactsim.sensors.tunnelling import contact_coefficient
 
@@ -49,6 +49,5 @@ def named_composite(name: str) -> Composite:
     UnknownName
         With the nearest name.
     """
-    if name not in LIBRARY:
-        raise UnknownName("composite", name, LIBRARY)
-    return LIBRARY[name]
+    found: Composite = shipped("composite", name, LIBRARY)
+    return found

@@ -198,9 +198,7 @@ class Film(Sensor):
             slope = np.where(loaded, found.imag / COMPLEX_STEP, 1.0)
             change = np.where(loaded, np.clip((wanted - found.real) / slope, -2.0, 2.0), 0.0)
             force = force * np.exp(change)
-            if np.any(force > 10 * HOLM):
-                break
-            if np.all(np.abs(change) <= INVERSION):
+            if np.any(force > 10 * HOLM) or np.all(np.abs(change) <= INVERSION):
                 break
         else:
             raise ConvergenceError(

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from tactsim.errors import InvalidQuantity
-from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
+from tactsim.sensors.calibration import LinearCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.film import HOLM, Film
-from tactsim.sensors.film_calibration import film_line
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.units import Force, FrozenModel
+from tactsim.sensors.film import Film
+from tactsim.sensors.force_electronics import ForceElectronics
 
 Array = np.ndarray
 MOST_NUMBERS = 2_000_000
@@ -41,34 +38,20 @@ class MatrixReading:
     """Largest tension in N that was left out; 0 if no taxel was pulled."""
 
 
-class MatrixReadout(FrozenModel):
-    """Sensors of one kind and their electronics.
+class MatrixReadout(ForceElectronics):
+    """Sensors of one kind and their electronics; without an active area of its own, the film has that of the taxel.
 
     Source: thesis, chapter 2 and sections 6.1 to 6.3: 3 x 3 sensors per jaw, low pass of 40 Hz.
     """
 
-    film: Film = Film()
-    """Film of each taxel; without an active area of its own, it has that of the taxel."""
-    chain: SignalChain = SignalChain(sampling_rate=200.0, low_pass=LowPass(cutoff=40.0))
-    """Electronics of each channel."""
-    calibration: AnyCalibration | None = None
-    """From conductance to force; null is the line through the film's own conductances at the ``calibration_forces``."""
-    calibration_forces: tuple[Annotated[Force, Field(ge=0)], Annotated[Force, Field(ge=1e-9, le=HOLM)]] = (0.0, 2.0)
-    """Range of the constant forces of that calibration, read after 1 s."""
     scatter: ChannelScatter | None = ChannelScatter()
     """How channels differ; null makes them equal."""
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 
-    @model_validator(mode="after")
-    def _rising(self) -> MatrixReadout:
-        if self.calibration_forces[0] >= self.calibration_forces[1]:
-            raise ValueError("calibration_forces must increase")
-        return self
-
     def line(self, area: float) -> LinearCalibration:
         """The calibration of a taxel of an area in m^2."""
-        return self.calibration or film_line(self._film(area), self.calibration_forces)
+        return self.line_of(self.film_of(area))
 
     def read(self, time: Array, force: Array, area: float) -> MatrixReading:
         """Readings of forces (n, *channels) in N at times (n,) in s > 0, which begin with no force at 0 s.
@@ -90,24 +73,22 @@ class MatrixReadout(FrozenModel):
             raise InvalidQuantity("forces must begin at 0 s or later, with at least one sample")
         if time[0] > 0:
             time, force = np.concatenate([[0.0], time]), np.concatenate([np.zeros_like(force[:1]), force])
-        film, line = self._film(area), self.line(area)
         numbers = (1 + float(time[-1] - time[0]) * self.chain.sampling_rate) * force[0].size
         if numbers > MOST_NUMBERS:
             raise InvalidQuantity(f"a reading of {numbers:.3g} numbers; allowed: {MOST_NUMBERS}; lower sampling_rate")
-        times, applied = self.chain.sampled(time, np.maximum(force, 0.0))
-        gains = 1.0 if self.scatter is None else self.scatter.gains(applied.shape[1:], line)
-        recording = self.chain.acquire(gains * film.conductance(times, applied), np.random.default_rng(self.seed))
-        below = np.nextafter(self.chain.supply, 0)
-        conductance = self.chain.conductance(np.minimum(recording.filtered, below))
+        gains = 1.0 if self.scatter is None else self.scatter.gains(force.shape[1:], self.line(area))
+        found = self.sensed(time, force, np.random.default_rng(self.seed), film=self.film_of(area), gains=gains)
+        recording = found.recording
         return MatrixReading(
-            time=times,
-            applied=applied,
+            time=found.time,
+            applied=found.applied,
             voltage=recording.voltage,
             filtered=recording.filtered,
-            force=line.force(conductance),
-            saturated=recording.saturated | (recording.filtered > below),
+            force=found.force,
+            saturated=recording.saturated | (recording.filtered > self.chain.largest_voltage),
             strongest_pull=float(max(0.0, -force.min(initial=0.0))),
         )
 
-    def _film(self, area: float) -> Film:
+    def film_of(self, area: float) -> Film:
+        """The film of a taxel of an area in m^2."""
         return self.film if self.film.active_area else self.film.model_copy(update={"active_area": area})

@@ -130,6 +130,15 @@ class SignalChain(FrozenModel):
         """Conductance in S for voltages in V of any shape, the inverse of `voltage`; errors of the buffer remain in it."""
         return divider_conductance(voltage, supply=self.supply, load=self.load_resistor)
 
+    def read_conductance(self, voltage: Array) -> Array:
+        """Conductance in S for samples in V; one at or above the supply reads as the last number below it."""
+        return self.conductance(np.minimum(voltage, self.largest_voltage))
+
+    @property
+    def largest_voltage(self) -> float:
+        """Last number in V below the supply: a finite conductance."""
+        return float(np.nextafter(self.supply, 0))
+
     def conductance_step(self, conductance: Array) -> Array:
         """Change of the conductance in S that one step of the converter stands for, at a conductance in S."""
         return self.converter.step / divider_slope(conductance, supply=self.supply, load=self.load_resistor)

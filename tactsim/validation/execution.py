@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import multiprocessing
-import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -13,11 +11,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tactsim import __version__
 from tactsim.case import load_case
+from tactsim.code_identity import code_identity
 from tactsim.dataset.child_environment import child_environment
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.results.storage import read_text, replace_file
+from tactsim.user_cache import user_cache
 from tactsim.validation.study import RunOutcome, Study
 
 ONE_THREAD = dict.fromkeys(("NUMBA_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
@@ -78,7 +77,7 @@ class StudyRunner:
                 pool.shutdown(wait=True, cancel_futures=True)
 
     def _place(self, case_id: str) -> Path:
-        return (self.cache or cache_folder()) / f"{case_id}-{__version__}-{code_identity()}.json"
+        return (self.cache or user_cache("validation")) / f"{case_id}-{code_identity()}.json"
 
     def _stored(self, case_id: str) -> RunOutcome | None:
         """What the cache holds, None if nothing that can be read."""
@@ -124,22 +123,6 @@ def simulated(task: Task) -> RunOutcome:
         disc_share=_disc_share(result.details.get("body", {})),
         seconds=result.timing["total"],
     )
-
-
-def cache_folder() -> Path:
-    """The user's folder for what can be computed again."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
-    return (Path(base) if base else Path.home() / ".cache") / "tactsim" / "validation"
-
-
-def code_identity() -> str:
-    """Eight hexadecimal digits that change with the code of the simulations: a cached result never outlives its solver."""
-    root = Path(__file__).parents[1]
-    rooms = ("analytic", "case", "contact", "experiments", "fem", "identification", "materials", "mesh", "sensors")
-    digest = hashlib.sha256()
-    for path in sorted(path for room in rooms for path in (root / room).rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:8]
 
 
 def _disc_share(body: dict[str, float]) -> float:

@@ -17,7 +17,8 @@ import pytest
 import xarray
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
 
-from tactsim.dataset import code_identity, running
+from tactsim import code_identity
+from tactsim.dataset import running
 from tactsim.dataset.checking import check
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers

@@ -1,4 +1,4 @@
-"""Which code computed a sample: the version of tactsim and a hash of its source."""
+"""Which code computed something that is kept: the version of tactsim and a hash of its source."""
 
 from __future__ import annotations
 
