@@ -53,6 +53,15 @@ def check_increasing(**lists: Sequence[float]) -> None:
             raise ValueError(f"{name} must increase")
 
 
+@lru_cache(maxsize=1024)
+def _factor_to(unit: str, given_unit: str) -> float:
+    """How many ``unit`` one ``given_unit`` is."""
+    zero, one = (float(_registry().Quantity(value, given_unit).to(unit).magnitude) for value in (0.0, 1.0))
+    if zero:
+        raise ValueError(f"{given_unit} does not begin at zero")
+    return one
+
+
 def parse_quantity(text: str, unit: str) -> float:
     """The value of ``text`` ("0.8 mm") in ``unit`` ("m").
 
@@ -75,7 +84,7 @@ def parse_quantity(text: str, unit: str) -> float:
     if not _UNIT.fullmatch(given_unit):
         raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}")
     try:
-        converted = float(_registry().Quantity(value, given_unit).to(unit).magnitude)
+        converted = value * _factor_to(unit, given_unit)
     except pint.DimensionalityError:
         raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected}") from None
     except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):

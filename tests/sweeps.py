@@ -106,17 +106,28 @@ def assert_same(one: Path, other: Path) -> None:
 
 
 def main() -> None:
-    """``python sweeps.py FILE STORE``: goes on with a store in this process, folding the journal often."""
+    """``python sweeps.py FILE STORE``: for every line that it reads, a fresh process that goes on with a store, folding often.
+
+    Each tells its number and then whether it begins; the last line is the exit code of the last.
+    """
+    import os
     import sys
 
-    from tactsim.dataset import running
+    from tactsim.dataset import journal, running, store
 
     running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
+    journal.sync = store.sync = lambda path: None  # a kill leaves what the system holds
     sweep, place = load_sweep(sys.argv[1]), Path(sys.argv[2])
     layout_of(sweep)
-    sys.stdout.write("begins\n")
-    sys.stdout.flush()
-    run_sweep(sweep, place, resume=(place / "zarr.json").exists())
+    for _ in sys.stdin:
+        child = os.fork()
+        if not child:
+            sys.stdout.write(f"{os.getpid()}\n")
+            sys.stdout.flush()
+            run_sweep(sweep, place, resume=(place / "zarr.json").exists())
+            os._exit(0)
+        sys.stdout.write(f"{os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])}\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -5,22 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from pydantic import BaseModel
+
 from tactsim.case.model import any_experiment, case_class
 from tactsim.units import format_quantity
+
+DRAFT = "http://json-schema.org/draft-07/schema#"
 
 
 def case_json_schema() -> dict[str, Any]:
     """JSON Schema (draft 7, which editors know) of a case file with every registered experiment; quantities are text."""
-    schema = _readable(case_class(any_experiment()).model_json_schema(by_alias=True, mode="validation"))
+    schema = described(case_class(any_experiment()))
+    return {"$schema": DRAFT, **schema, "title": "tactsim case"}
+
+
+def described(model: type[BaseModel]) -> dict[str, Any]:
+    """JSON Schema of a model: quantities as text, in the words of draft 7, members of unions told apart by their keys."""
+    schema = _readable(model.model_json_schema(by_alias=True, mode="validation"))
     for key, reference in sorted(_told_apart(schema)):
         definition = schema["$defs"][reference.rpartition("/")[2]]
         definition["required"] = list(dict.fromkeys([key, *definition.get("required", ())]))
-    return {"$schema": "http://json-schema.org/draft-07/schema#", **schema, "title": "tactsim case"}
+    return schema
 
 
 def _told_apart(schema: dict[str, Any]) -> set[tuple[str, str]]:
     """Keys that definitions must name, like ``kind``, with references to these: the experiments and the members of unions."""
-    experiment = schema["properties"]["experiment"]
+    experiment = schema["properties"].get("experiment", {})
     return {*_union_members(schema), *([("kind", experiment["$ref"])] if "$ref" in experiment else ())}
 
 

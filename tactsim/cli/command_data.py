@@ -1,20 +1,30 @@
-"""``tactsim data``: checks, describes and exports a data set."""
+"""``tactsim data``: checks, describes and exports a data set, ranks estimators on it and trains one."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
 from tactsim.errors import ValidationError
 
+if TYPE_CHECKING:
+    from tactsim.dataset.ranking_source import JudgedSamples
+    from tactsim.experiments.localization_source import Source
+
 NAME = "data"
-SUMMARY = "check, describe or export a data set"
+SUMMARY = "check, describe or export a data set, rank estimators on it"
 DESCRIPTION = """\
 check reads every sample and finds damaged content (checksums), missing, doubled, constant and
 not finite samples, and specimens that are in two splits; the exit code is 4 if it finds one.
 info prints counts, splits and variables with their units. export writes the samples that are
 done as one HDF5 file, or as a folder with an index (Parquet) and shards (npz).
+
+rank applies every estimator to every grasp that is done and judges it by the truth: errors,
+misses, false alarms, coverage; report.json, report.md and figures go to --out. The reference is
+the tissue without a lump, closed in several steps or in several results. train fits the
+learned estimator (kind: learned) to a part of a store (default: train).
 """
 EXAMPLES = """\
 examples:
@@ -22,20 +32,33 @@ examples:
   tactsim data info lumps.zarr
   tactsim data export lumps.zarr --to lumps.h5
   tactsim data export lumps.zarr --to lumps_shards --split train
+  tactsim data train lumps.zarr --reference results/plain --out lumps_estimator.npz
+  tactsim data rank judged.zarr --reference results/plain --learned lumps_estimator.npz --out ranking
 """
+RANKING = "ranking"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("action", choices=("check", "info", "export"), help="what to do")
+    parser.add_argument("action", choices=("check", "info", "export", "rank", "train"), help="what to do")
     parser.add_argument("store", metavar="STORE", type=Path, help="folder that tactsim sweep wrote")
     parser.add_argument("--to", metavar="PLACE", type=Path, help="export: file ending in .h5, or folder for Parquet and npz")
-    parser.add_argument("--split", metavar="NAME", action="append", help="export: only this part; may be repeated")
+    parser.add_argument("--split", metavar="NAME", action="append", help="only this part; may be repeated")
+    ranking = parser.add_argument_group("rank and train")
+    ranking.add_argument("--reference", metavar="RESULT", action="append", default=[], help="plain grasp; may be repeated")
+    ranking.add_argument(
+        "--out", metavar="PLACE", type=Path, help=f"rank: folder (default {RANKING}); train: file ending in .npz"
+    )
+    ranking.add_argument("--readings", choices=("read_force", "taxel_force"), help="default: read_force if the store has it")
+    ranking.add_argument("--noise", metavar="FORCE", help="added, such as '2 mN' (default: rounding to 0.1 N, read_force: none)")
+    ranking.add_argument("--learned", metavar="FILE", type=Path, help="rank: also the estimator that train wrote")
+    ranking.add_argument("--seed", metavar="N", type=int, default=1, help="of added noise and of training (default 1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
-    return {"check": _check, "info": _info, "export": _export}[arguments.action](arguments)
+    actions = {"check": _check, "info": _info, "export": _export, "rank": _rank, "train": _train}
+    return actions[arguments.action](arguments)
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -65,4 +88,82 @@ def _export(arguments: argparse.Namespace) -> int:
         raise InputError("export: --to is missing; name a file ending in .h5, or a folder for Parquet and npz")
     count = exported(arguments.store, arguments.to, split=arguments.split)
     console.out(f"{count} samples in {arguments.to}")
+    return 0
+
+
+def _rank(arguments: argparse.Namespace) -> int:
+    from tactsim.dataset.ranking import ranking
+    from tactsim.dataset.ranking_report import as_json, as_text, record
+    from tactsim.experiments.response_store import stored_response
+    from tactsim.localization.estimators.learned import LearnedEstimator
+    from tactsim.localization.estimators.model_based import ModelBasedEstimator
+    from tactsim.localization.estimators.thesis import ThesisEstimator
+    from tactsim.localization.interface import Estimator
+
+    samples = _samples(arguments)
+    estimators: dict[str, Estimator] = {
+        "thesis": ThesisEstimator(),
+        "thesis with reference": ThesisEstimator(background="reference"),
+        "model_based": ModelBasedEstimator(),
+    }
+    if arguments.learned is not None:
+        estimators["learned"] = LearnedEstimator.checked(arguments.learned)
+    ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
+    about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed}
+    content, folder = record(ranked, samples, about), arguments.out or Path(RANKING)
+    drawn = _drawn(content)
+    text = as_text(ranked, samples, tuple(drawn))
+    _write(folder, {"report.json": as_json(content), "report.md": text.encode(), **drawn})
+    console.out(text.split("\n## ")[0].rstrip())
+    console.out(f"report in {folder}")
+    return 0
+
+
+def _drawn(content: dict[str, Any]) -> dict[str, bytes]:
+    """File name -> PNG; a figure that cannot be drawn never costs the numbers."""
+    from tactsim.display.estimator_ranking import ranking_figures
+
+    try:
+        return {name: draw() for name, draw in ranking_figures(content).items()}
+    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
+        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {error}")
+        return {}
+
+
+def _write(folder: Path, files: dict[str, bytes]) -> None:
+    from tactsim.results.storage import naming, replace_file
+
+    with naming(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        replace_file(folder / name, content)
+
+
+def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
+    """The samples that are judged or trained on, as the options say."""
+    from tactsim.dataset.ranking_source import judged_samples, stored_experiment
+    from tactsim.errors import InputError
+    from tactsim.units import parse_quantity
+
+    if not arguments.reference:
+        raise InputError(f"{arguments.action}: --reference is missing; give the result of the same grasp without a lump")
+    noise = None if arguments.noise is None else float(parse_quantity(arguments.noise, "N"))
+    if noise is not None and not 0 <= noise < float("inf"):
+        raise InputError(f"--noise {arguments.noise}; allowed: a finite force that is not negative, such as '2 mN'")
+    source: Source = arguments.readings or ("read_force" if stored_experiment(arguments.store).readout else "taxel_force")
+    chosen = arguments.split or split
+    return judged_samples(arguments.store, arguments.reference, split=chosen, source=source, noise=noise)
+
+
+def _train(arguments: argparse.Namespace) -> int:
+    from tactsim.dataset.training import trained
+    from tactsim.errors import InputError
+    from tactsim.experiments.response_store import stored_response
+    from tactsim.results.storage import replace_file
+
+    if arguments.out is None or arguments.out.suffix != ".npz":
+        raise InputError("train: --out is missing; name a file ending in .npz")
+    learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
+    replace_file(arguments.out, learned.content())
+    console.out(f"{learned.told()}; estimator in {arguments.out}")
     return 0

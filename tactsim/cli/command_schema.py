@@ -1,28 +1,32 @@
-"""``tactsim schema``: the JSON Schema of case files."""
+"""``tactsim schema``: the JSON Schema of case files and of sweep files."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from tactsim.cli import console
 
 NAME = "schema"
-SUMMARY = "print the JSON Schema of case files, for editors"
+SUMMARY = "print the JSON Schema of case or sweep files, for editors"
 DESCRIPTION = """\
-Prints the JSON Schema of case files. An editor with a YAML language server completes and checks
-a case file whose first line names the schema:
+Prints the JSON Schema of case files, or with --sweep that of sweep files. An editor with a YAML
+language server completes and checks a file whose first line names its schema:
 
   # yaml-language-server: $schema=case.schema.json
+  # yaml-language-server: $schema=sweep.schema.json
 """
 EXAMPLES = """\
-example:
+examples:
   tactsim schema --out case.schema.json
+  tactsim schema --sweep --out sweep.schema.json
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
+    parser.add_argument("--sweep", action="store_true", help="of sweep files, in which values vary, instead")
     parser.add_argument("--out", metavar="FILE", type=Path, help="write to a file instead")
 
 
@@ -30,12 +34,21 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     import json
 
-    from tactsim.case import case_json_schema
     from tactsim.results.storage import replace_file
 
-    text = json.dumps(case_json_schema(), indent=2)
+    text = json.dumps(_schema(arguments.sweep), indent=2)
     if arguments.out is None:
         console.out(text)
     else:
         replace_file(arguments.out, f"{text}\n".encode())
     return 0
+
+
+def _schema(sweep: bool) -> dict[str, Any]:
+    if sweep:
+        from tactsim.dataset.json_schema import sweep_json_schema
+
+        return sweep_json_schema()
+    from tactsim.case import case_json_schema
+
+    return case_json_schema()

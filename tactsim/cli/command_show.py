@@ -9,32 +9,64 @@ from tactsim.cli import console
 from tactsim.errors import InputError
 
 NAME = "show"
-SUMMARY = "print a stored result or data set, or save its figure"
+SUMMARY = "print a stored result or data set, save its figure, or open the live page"
 DESCRIPTION = """\
 Prints the quantities of a stored result, or the counts and variables of a data set, with their units;
---save draws its main figure.
+--save draws its main figure. --web serves the live page of a grasp or a data set of grasps on this
+machine, under an address with a random token, until Ctrl-C. --live shows frames as they come, too.
 """
 EXAMPLES = """\
 examples:
   tactsim show results/annulus_icf
   tactsim show results/annulus_icf --save annulus.png
   tactsim show lumps.zarr --save taxels.png
+  tactsim show results/grasp_lump_icf --web --reference results/grasp_plain
+  my_sensor | tactsim show --web --live -
+
+frames for --live, one JSON object per line, the description first, here in two lines:
+  {"schema": "tactsim/frames/1", "matrix": {"rows": 3, "columns": 3, "pitch": 0.01, "size": 0.009},
+   "block_size": [0.04, 0.04, 0.02], "title": "right hand"}
+  {"time": 0.033, "taxel_force_upper": [[0.1, 0.2, 0.1], ...], "taxel_force_lower": [[...], ...]}
+lengths in m, forces in N, time in s; [row][column], row 1 nearest the front, column 1 the smallest x;
+null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_upper, saturated_lower.
 """
+WEB_OPTIONS = ("port", "host", "live", "reference", "no_browser")
+"""Options that say something about the page only."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, help="folder that tactsim run or sweep wrote")
+    words = "folder that tactsim run or sweep wrote; may be left out with --live"
+    parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, nargs="?", help=words)
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
+    parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
+    parser.add_argument("--live", metavar="SOURCE", help="frames: a file that grows, - for a pipe, or tcp://127.0.0.1:PORT")
+    parser.add_argument("--reference", metavar="FOLDER", help="result of the same grasp without a lump, for two estimators")
+    parser.add_argument("--port", metavar="N", type=int, help="port of the page; by default any that is free")
+    parser.add_argument("--host", metavar="ADDRESS", help="serve on another address than that of this machine alone")
+    parser.add_argument("--no-browser", action="store_true", help="print the address only")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
+    if arguments.web:
+        from tactsim.cli.live_page import run_page
+
+        return run_page(arguments)
+    given = [f"--{name.replace('_', '-')}" for name in WEB_OPTIONS if getattr(arguments, name) not in (None, False)]
+    if given:
+        raise InputError(f"{', '.join(given)}: for the live page only; add --web")
+    if arguments.result is None:
+        raise InputError("RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE")
+    if (arguments.result / "zarr.json").is_file():
+        return _show_data_set(arguments)
+    return _show_result(arguments)
+
+
+def _show_result(arguments: argparse.Namespace) -> int:
     from tactsim.cli.report import result_report
     from tactsim.results import read_result
 
-    if (arguments.result / "zarr.json").is_file():
-        return _show_data_set(arguments)
     folder = arguments.result.parent if arguments.result.name == "result.json" else arguments.result
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")

@@ -67,12 +67,12 @@ class ContactTraction:
         """The state that an accepted step leaves behind."""
         return ContactState(self.pressure, self.tangential, self.points, self.normal)
 
-    def elastic_slip(self, state: ContactState, law: ContactLaw) -> Array:
+    def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
         """Way (n,) in m that points moved along the body since a state although friction holds them."""
         travel = self.points - state.points
         along = np.einsum("in,in->n", self.normal, travel)
         held = (self.pressure > 0) & (
-            np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * law.traction_limit(self.pressure)
+            np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * pair.traction_limit(self.pressure)
         )
         return np.where(held, np.linalg.norm(travel - along * self.normal, axis=0), 0.0)
 
@@ -102,10 +102,15 @@ class ContactPair:
     penalty: Array | float = 1.0
     tangential_penalty: Array | float = 1.0
     switch_stiffness: float = 1.0
+    grip: Array | float = 1.0
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
         """The same pair, regularised otherwise (all in Pa/m)."""
         return replace(self, penalty=penalty, tangential_penalty=tangential_penalty, switch_stiffness=switch_stiffness)
+
+    def traction_limit(self, pressure: Array) -> Array:
+        """Largest tangential traction (n,) in Pa under pressures (n,) in Pa."""
+        return np.where(self.grip == 0, 0.0, self.law.traction_limit(pressure))
 
     def iterate(self, state: ContactState) -> ContactIterate:
         """Where Newton starts: the forces of the last accepted step."""
@@ -116,7 +121,7 @@ class ContactPair:
         gap, normal, hessian = self.body.signed_distance(points)
         pressure = np.maximum(0.0, state.multiplier - self.penalty * gap)
         trial, _ = self._elastic_trial(points, normal, hessian, state)
-        limit = np.where(pressure > 0, self.law.traction_limit(pressure), 0.0)
+        limit = np.where(pressure > 0, self.traction_limit(pressure), 0.0)
         size = np.linalg.norm(trial, axis=0)
         scale = np.where(size > limit, limit / np.where(size > 0, size, 1.0), 1.0)
         none = np.zeros((len(points), *points.shape))
@@ -136,7 +141,7 @@ class ContactPair:
         slope = np.where(closed, -self.penalty, 0.0) * normal
         trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
         decider, decider_slope = self._decider(iterate.tangential, normal, hessian, (trial, trial_slope))
-        limit = self.law.traction_limit(weight)
+        limit = self.traction_limit(weight)
         slips = closed & (np.linalg.norm(decider, axis=0) > limit)
         sticks = closed & ~slips
         forward = np.einsum("in,in->n", decider, trial) > 0
@@ -146,7 +151,7 @@ class ContactPair:
         across = np.eye(len(points))[:, :, None] - direction[:, None] * direction[None, :]
         spread = np.where(slips, limit, 0.0) / np.where(slips, size, 1.0)
         tangential_slope = spread * np.einsum("ijn,jkn->ikn", across, decider_slope) + np.where(sticks, trial_slope, 0.0)
-        limit_slope = np.where(slips, self.law.traction_limit_slope(weight), 0.0)
+        limit_slope = np.where(slips, self.grip * self.law.traction_limit_slope(weight), 0.0)
         coupling = limit_slope * direction[:, None] * slope[None, :]
         at_limit = np.where(slips, limit, 0.0) + limit_slope * (pressure - weight)
         tangential = np.where(slips, at_limit * direction, np.where(sticks, trial, 0.0))

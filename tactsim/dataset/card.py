@@ -37,7 +37,7 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
         *_how(store, sweep),
         *_counts(store),
         *_figures(store.path),
-        *_use(),
+        *_use(layout),
         *_limits(told["limits"]),
     ]
     tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
@@ -75,18 +75,39 @@ def _figures(path: Path) -> list[str]:
     return ["## Figures", *(f"![{figure.stem}]({FIGURES}/{figure.name})" for figure in drawn), ""] if drawn else []
 
 
-def _use() -> list[str]:
+def _use(layout: Layout) -> list[str]:
+    readings, labels = (_names(layout, role) for role in ("reading", "label"))
+    chosen = [name for name in ("read_force", "force") if name in readings] or readings[:1]
+    inputs, targets = json.dumps(chosen[:1]), json.dumps(labels[:1] or readings[-1:])
     return [
         "## Reading",
+        "With xarray alone:",
         "```python",
         "import xarray",
         'data = xarray.open_zarr("STORE")',
         "done = data.isel(sample=(data.status == 1).values)  # 0 pending, 1 done, 2 failed",
         "```",
+        "In a notebook with tactsim, one part of the samples that are done:",
+        "```python",
+        "from tactsim.dataset import load",
+        'train, test = load("STORE", split="train"), load("STORE", split="test")',
+        "train",
+        "```",
+        "As PyTorch's loaders take it:",
+        "```python",
+        "from torch.utils.data import DataLoader",
+        "from tactsim.dataset import TorchSamples",
+        f'samples = TorchSamples("STORE", inputs={inputs}, targets={targets}, split="train")',
+        "loader = DataLoader(samples, batch_size=64, shuffle=True, num_workers=8)",
+        "```",
         "Split by `split` (numbers: attribute flag_meanings), never by sample: samples may share a specimen.",
         "Variables without noise say so; voltage and read_force have it.",
         "",
     ]
+
+
+def _names(layout: Layout, role: str) -> list[str]:
+    return [variable.name for variable in layout.variables if variable.role == role and variable.dtype != "str"]
 
 
 def _limits(own: str) -> list[str]:

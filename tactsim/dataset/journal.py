@@ -8,7 +8,7 @@ import struct
 from collections.abc import Iterator
 from pathlib import Path
 
-from tactsim.results.storage import naming
+from tactsim.results.storage import naming, sync
 
 HEAD = struct.Struct("<8sQ32s")
 MARK = b"tactsim\n"
@@ -50,6 +50,8 @@ class Journal:
                 file.write(HEAD.pack(MARK, len(content), hashlib.sha256(content).digest()) + content)
                 file.flush()
                 os.fsync(file.fileno())
+                if not end:
+                    sync(self.path.parent)
             except OSError:
                 os.truncate(self.path, end)
                 raise

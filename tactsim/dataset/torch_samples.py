@@ -43,18 +43,25 @@ class TorchSamples:
         return len(self.numbers)
 
     def __getitem__(self, index: int) -> Any:
-        number = int(self.numbers[index])
-        inputs, targets = ({name: self._tensor(name, number) for name in names} for names in (self.inputs, self.targets))
-        return self.transform(inputs, targets) if self.transform else (inputs, targets)
+        return self.__getitems__([index])[0]
+
+    def __getitems__(self, indices: Sequence[int]) -> list[Any]:
+        """Several samples by one reading of each chunk, which PyTorch's loaders ask for."""
+        values = {name: self._tensors(name, self.numbers[list(indices)]) for name in (*self.inputs, *self.targets)}
+        samples = []
+        for row in range(len(indices)):
+            inputs, targets = ({name: values[name][row] for name in names} for names in (self.inputs, self.targets))
+            samples.append(self.transform(inputs, targets) if self.transform else (inputs, targets))
+        return samples
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_opened": None}
 
-    def _tensor(self, name: str, number: int) -> Any:
+    def _tensors(self, name: str, numbers: np.ndarray) -> Any:
         import torch
 
-        value = np.asarray(self._arrays()[name][number])
-        return torch.from_numpy(np.array(value, dtype=np.float32 if value.dtype.kind == "f" else np.int64))
+        values = np.asarray(self._arrays()[name].oindex[numbers])
+        return torch.from_numpy(np.array(values, dtype=np.float32 if values.dtype.kind == "f" else np.int64))
 
     def _arrays(self) -> dict[str, Any]:
         """The arrays of this process."""

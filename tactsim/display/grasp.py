@@ -15,7 +15,7 @@ from tactsim.display.grasp_parts import grasp_of
 from tactsim.display.grasp_section import draw_section
 from tactsim.display.grasp_view import VIEW, grasp_view
 from tactsim.display.localization_parts import has_views
-from tactsim.display.localization_views import VIEWS, views_figure
+from tactsim.display.localization_views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.display.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
 from tactsim.results import Result, Status
@@ -45,6 +45,7 @@ class GraspFigures(ResultFigures):
             drawings["grasp_history.png"] = lambda: png(history_figure(result))
         if has_views(result):
             drawings[VIEWS] = lambda: png(views_figure(moment))
+            drawings[VIEWS_PRESSURE] = lambda: png(views_figure(moment, "pressure"))
         if has_voltages(result):
             drawings[VOLTAGES] = lambda: png(voltages_figure(result))
         if result.frames:

@@ -59,7 +59,7 @@ def view_figure(result: Result) -> Figure:
     """The rendered scene from above and from below, with names, axes and the scale of the bars."""
     grasp, frame = grasp_of(result), result.frames[-1]
     surfaces = scene(frame, grasp)
-    cameras = [_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
+    cameras = [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
     images = pictures(surfaces, cameras)
     with styled():
         figure = new_figure(12.0, 5.8)
@@ -69,7 +69,7 @@ def view_figure(result: Result) -> Figure:
             axis.imshow(imread(io.BytesIO(image)), interpolation="lanczos")
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
-            _annotate(axis, grasp, camera)
+            annotate(axis, grasp, camera)
         _tell(axes[1], result)
         factor, unit = scale_of(grasp.largest_pressure, "Pa")
         norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
@@ -92,7 +92,7 @@ def scene(frame: FieldFrame, grasp: Grasp) -> list[Surface]:
         mine = (between == number).any(axis=1)
         surfaces.append(_surface(nodes, triangles[mine], INCLUSION_COLOUR, smooth=True))
     for side in SIDES:
-        surfaces += _jaw(grasp, side)
+        surfaces += jaw_surfaces(grasp, side)
     return surfaces
 
 
@@ -101,7 +101,7 @@ def _surface(nodes: Array, triangles: Array, colour: str, **style: Any) -> Surfa
     return Surface(nodes[used], numbers.reshape(-1, 3), colour, **style)
 
 
-def _jaw(grasp: Grasp, side: str) -> list[Surface]:
+def jaw_surfaces(grasp: Grasp, side: str) -> list[Surface]:
     """The plate, and on its back the bars in the colours of their pressure."""
     jaw, layout, height = grasp.jaws[side], grasp.layout, float(grasp.size[2])
     back = PLATE * height
@@ -125,7 +125,7 @@ def _placed(grasp: Grasp, side: str, own: Array) -> Array:
     return own @ grasp.jaws[side].rotation.T + grasp.places[side]
 
 
-def _camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
+def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
     """A camera that sees everything, with a margin."""
     points = np.concatenate([surface.points for surface in surfaces])
     trial = Camera((0.0, 0.0, 0.0), direction, 1.0, PIXELS)
@@ -136,7 +136,7 @@ def _camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> C
     return Camera((float(middle[0]), float(middle[1]), float(middle[2])), direction, half, PIXELS)
 
 
-def _annotate(axis: Axes, grasp: Grasp, camera: Camera) -> None:
+def annotate(axis: Axes, grasp: Grasp, camera: Camera) -> None:
     """The directions of the axes with a length, and the jaws' names."""
     length = ARROW * float(grasp.size.max())
     corner = np.array([0.06, 0.93]) * camera.pixels

@@ -1,4 +1,4 @@
-"""The figure of a localization: the three views with the true and the estimated inclusions."""
+"""The figures of a localization: the three views and the view in space, with the true and the estimated inclusions."""
 
 from __future__ import annotations
 
@@ -6,16 +6,23 @@ from typing import Literal
 
 from tactsim.display.canvas import png
 from tactsim.display.localization_parts import has_views
-from tactsim.display.localization_views import VIEWS, views_figure
+from tactsim.display.localization_space import SPACE, space_view
+from tactsim.display.localization_views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 
 class LocalizationFigures(ResultFigures):
-    """One figure."""
+    """Views in force and in pressure, and in space."""
 
     kind: Literal["localization"] = "localization"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``views.png``."""
-        return {VIEWS: lambda: png(views_figure(result))} if has_views(result) else {}
+        """``views.png``, ``views_pressure.png`` and ``space.png``; the last needs a renderer."""
+        if not has_views(result):
+            return {}
+        drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(result))}
+        drawings[VIEWS_PRESSURE] = lambda: png(views_figure(result, "pressure"))
+        if "jaws" in result.details:
+            drawings[SPACE] = lambda: space_view(result)
+        return drawings

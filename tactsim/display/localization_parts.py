@@ -12,13 +12,16 @@ from pydantic import TypeAdapter
 from tactsim.display.grasp_parts import SIDES
 from tactsim.errors import TactsimError
 from tactsim.mesh.any_inclusion import AnyInclusion
-from tactsim.mesh.solid import Solid
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.solid import Inclusion, Solid
 from tactsim.results import Result
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
 SAMPLES = 40
 """Points along each side of an inclusion's bounds from which its outline in a view is traced."""
+NO_LINE = [[np.nan] * 3] * 2
 NEEDED = ("block_size", "matrix")
 
 
@@ -37,6 +40,7 @@ class ViewedGrasp:
     true : bodies of the true inclusions
     estimates : (n, 3) of estimated centres in m
     radii : (n,) of estimated radii in m, NaN where there is none
+    lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
     """
 
     signal: Array
@@ -48,6 +52,7 @@ class ViewedGrasp:
     true: tuple[Solid, ...]
     estimates: Array
     radii: Array
+    lines: Array
 
     def borders(self, along: str) -> Array:
         """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels."""
@@ -83,6 +88,7 @@ def viewed(result: Result) -> ViewedGrasp:
         tuple(_bodies(details, size)),
         np.array([found["center"] for found in estimates], dtype=float).reshape(-1, 3),
         np.array([np.nan if found["radius"] is None else found["radius"] for found in estimates], dtype=float),
+        np.array([found.get("line") or NO_LINE for found in estimates], dtype=float).reshape(-1, 2, 3),
     )
 
 
@@ -99,6 +105,20 @@ def _bodies(details: dict[str, Any], size: Array) -> Iterator[Solid]:
             yield adapter.validate_python(shape).solids(size)[0]
         except (TactsimError, OSError):
             continue
+
+
+def estimated_bodies(grasp: ViewedGrasp, unknown: float | None = None) -> Iterator[Solid]:
+    """Balls and tubes as estimated; one of unknown radius is a ball of the radius ``unknown`` in m, or left out."""
+    for center, radius, line in zip(grasp.estimates, grasp.radii, grasp.lines, strict=True):
+        size = float(radius) if np.isfinite(radius) else unknown
+        if size is None:
+            continue
+        x, y, z = map(float, center)
+        body: Inclusion = Sphere(center=(x, y, z), radius=size)
+        if np.isfinite(line).all():
+            first, last = (tuple(map(float, end)) for end in line)
+            body = Tube(centre_line=(first, last), inner_radius=size / 2, wall=size / 2)
+        yield body.solids(grasp.size)[0]
 
 
 def outline(body: Solid, size: Array, away: int) -> tuple[Array, Array, Array]:

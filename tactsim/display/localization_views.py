@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -12,16 +12,18 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.display.canvas import despined, new_figure, scale_of, styled
-from tactsim.display.localization_parts import SIDES, ViewedGrasp, outline, viewed
+from tactsim.display.localization_parts import SIDES, ViewedGrasp, estimated_bodies, outline, viewed
 from tactsim.localization.views import SHAPE, views
 from tactsim.results import Result
 
 Array = np.ndarray
-VIEWS = "views.png"
+VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
+Shown = Literal["force", "pressure"]
+"""Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""
 COLOURS = "cividis"
 """Made to look alike with and without colour blindness (Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239)."""
 JAW = 1.2
@@ -44,37 +46,49 @@ class View:
     image : (M, N) in N, row 0 at the top
     away : axis along which it looks
     horizontal, vertical : axes of the picture
+    summed : number of taxels whose forces are added
     """
 
     image: Array
     away: int
     horizontal: int
     vertical: int
-    title: str
+    summed: int
+    what: str
+
+    def scale(self, grasp: ViewedGrasp, shown: Shown) -> tuple[float, str]:
+        """Factor from a sum in N to what is shown, and its unit."""
+        over = 1.0 if shown == "force" else 1 / (self.summed * grasp.layout.area)
+        factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "N" if shown == "force" else "Pa")
+        return over * factor, unit
 
 
-def views_figure(result: Result) -> Figure:
-    """The top view above the front view, the left view beside it; every picture has its colour scale."""
+def views_figure(result: Result, shown: Shown = "force") -> Figure:
+    """The top view above the front view, the left view beside it; every picture has its colour scale.
+
+    The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
+    L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
+    """
     grasp = viewed(result)
-    found = views(grasp.signal, SHAPE)
-    front = View(found.front, 1, 0, 2, "Front view: sums over the rows")
-    left = View(found.left, 0, 1, 2, "Left view: sums over the columns")
-    top = View(found.top, 2, 0, 1, "Top view: sums of both jaws")
+    found, layout = views(grasp.signal, SHAPE), grasp.layout
+    front = View(found.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
+    left = View(found.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
+    top = View(found.top, 2, 0, 1, len(SIDES), "Top view: {} of both jaws")
     x, y, z = 1e3 * grasp.size
     with styled():
         figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
         axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
         for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
-            _draw(axis, view, grasp)
+            _draw(axis, view, grasp, shown)
         axes[1, 0].invert_xaxis()
-        _legend(axes[0, 0], grasp, result)
+        _legend(axes[0, 0], grasp, result, shown)
         title = str(result.details.get("title") or "") or "Three views of the grasp"
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 
-def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
-    factor, unit = scale_of(max(float(view.image.max()), 1e-12), "N")
+def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
+    factor, unit = view.scale(grasp, shown)
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
     axis.imshow(factor * view.image, cmap=COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1)
@@ -97,11 +111,11 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     axis.set(
         xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
     )
-    axis.set_title(view.title, loc="left")
+    axis.set_title(view.what.format("sums" if shown == "force" else "means"), loc="left")
     despined(axis)
     location = "bottom" if view.away != 2 else "right"
     bar = axis.figure.colorbar(ScalarMappable(norm, COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85)
-    bar.set_label(f"{grasp.meaning} in {unit}")
+    bar.set_label(f"{grasp.meaning.replace('force', shown)} in {unit}")
     bar.outline.set_linewidth(0.5)
 
 
@@ -156,19 +170,22 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
 
 def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     rim = [withStroke(linewidth=3.4, foreground="w")]
-    for center, radius in zip(1e3 * grasp.estimates, 1e3 * grasp.radii, strict=True):
+    for body in estimated_bodies(grasp):
+        first, second, distance = outline(body, grasp.size, view.away)
+        axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
+        axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
+    for center in 1e3 * grasp.estimates:
         place = center[view.horizontal], center[view.vertical]
         axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
-        if np.isfinite(radius):
-            axis.add_patch(Circle(place, radius, fill=False, edgecolor=ESTIMATE, linewidth=1.4, zorder=8, path_effects=rim))
 
 
-def _legend(axis: Axes, grasp: ViewedGrasp, result: Result) -> None:
+def _legend(axis: Axes, grasp: ViewedGrasp, result: Result, shown: Shown) -> None:
     """What the lines mean, and what was found."""
     axis.axis("off")
+    added = "sums" if shown == "force" else "means"
     handles: list[Any] = [
         Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block"),
-        Line2D([], [], color=INK, linewidth=0.6, label="taxels, their sums in colour on the jaws"),
+        Line2D([], [], color=INK, linewidth=0.6, label=f"taxels, their {added} in colour on the jaws"),
     ]
     if not grasp.valid.all():
         handles.append(Rectangle((0, 0), 1, 1, fill=False, edgecolor=INK, linewidth=0.5, hatch="xxx", label="dead or saturated"))
@@ -193,7 +210,8 @@ def _findings(grasp: ViewedGrasp, result: Result) -> list[str]:
     if not quantities["present"].value:
         return ["Nothing there."]
     places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in grasp.estimates]
-    told = [f"Estimated at {place}" for place in places]
+    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    told += [f"Estimated at {place}" for place in places]
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
         told.append(f"Off by {lateral:.1f} mm in plan, {depth:+.1f} mm in height")

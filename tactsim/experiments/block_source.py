@@ -13,10 +13,11 @@ from pydantic import Field
 from tactsim.errors import InputError
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
+from tactsim.mesh.graded_block import graded_block
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
-from tactsim.mesh.solid import Inclusion
+from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.mesh.structured_block import morphed_block, structured_block
 from tactsim.units import FrozenModel, format_quantity
 
@@ -24,6 +25,8 @@ Array = np.ndarray
 Size = tuple[float, float, float]
 FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
+GAP_SHARE = 0.1
+"""Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,33 @@ class LayersSource(BlockMeshSettings):
         settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
         block = morphed_block(size, inclusions[0], settings)
         return SourcedBlock(block, content_hash(block.mesh), "built in layers")
+
+
+class GradedSource(BlockMeshSettings):
+    """Few cells, thin at the faces and rounded around at most one sphere or ellipsoid: the fastest for its accuracy."""
+
+    kind: Literal["graded"]
+    size: Positive = 6e-3
+    """Edge length far from the inclusion and the faces."""
+    inclusion_size: Positive = 5e-3
+    """Edge length at the inclusion, at most."""
+    edge_size: Positive | None = 1.6e-3
+    """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 0.7
+    """Growth of the edge length per distance from the faces."""
+
+    @property
+    def least_gap(self) -> float:
+        """Least distance in m between the inclusion and the faces."""
+        return GAP_SHARE * self.inclusion_size
+
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+        """The mesh of a block of this size in m around its only inclusion, if any."""
+        if len(inclusions) > 1:
+            raise InputError(f"mesh.kind: graded serves one inclusion or none, not {len(inclusions)}; take kind: tetrahedra")
+        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
+        block = graded_block(size, inclusions[0] if inclusions else None, settings)
+        return SourcedBlock(block, content_hash(block.mesh), "graded cells")
 
 
 class StructuredSource(FrozenModel):
@@ -132,4 +162,6 @@ def _tag(name: str) -> int | str:
     return int(name) if name.lstrip("-").isdigit() else name
 
 
-AnyBlockSource = Annotated[TetrahedraSource | LayersSource | StructuredSource | FileSource, Field(discriminator="kind")]
+AnyBlockSource = Annotated[
+    TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
+]

@@ -73,7 +73,7 @@ def contact_equilibrium(
         displacements = [contact.surface.points.interpolate(u) for contact in contacts]
         results = [contact.at(displacement) for contact, displacement in zip(contacts, displacements, strict=True)]
         deepest = max(float(-result.gap.min()) for result in results)
-        slips = [r.elastic_slip(contact.state, contact.pair.law) for r, contact in zip(results, contacts, strict=True)]
+        slips = [r.elastic_slip(contact.state, contact.pair) for r, contact in zip(results, contacts, strict=True)]
         within = regularisation.holds(deepest, max(float(slip.max()) for slip in slips))
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
         if within and coarse:

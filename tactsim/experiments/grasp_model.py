@@ -20,6 +20,7 @@ from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import FACES
 from tactsim.sensors.taxel_forces import TaxelForces, taxel_forces
 from tactsim.sensors.taxel_layout import TaxelLayout
 
@@ -41,7 +42,8 @@ class GraspModel:
     ----------
     mesh : tetrahedra
     materials : one per region of the mesh
-    facets : facets (F, 6) by name; "upper" and "lower" are those that the jaws may touch
+    facets : facets (F, 6) by name; a jaw may touch those of "upper" or "lower", and those of the other faces, as far as they are
+        given, in its half of the block: free faces bulge out beside the jaws and roll onto them
     jaws : the upper and the lower jaw
     offsets : (2, 2) places of the middles of their faces in x and y, in m
     """
@@ -58,7 +60,8 @@ class GraspModel:
         self.mesh, self.jaws, self.facets = mesh, dict(zip(SIDES, jaws, strict=True)), facets
         self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
         self.body = Body(self.space, materials, mesh.regions)
-        points = {side: self.space.surface_points(facets[side]) for side in SIDES}
+        self.touchable = touchable_facets(mesh.nodes, facets)
+        points = {side: self.space.surface_points(self.touchable[side]) for side in SIDES}
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}
         self.references = {side: points[side].interpolate(mesh.nodes) for side in SIDES}
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(SIDES, offsets, strict=True)}
@@ -74,7 +77,7 @@ class GraspModel:
             If it passes beside the block.
         """
         direction, size = CLOSING[side], float(np.ptp(self.mesh.nodes, axis=0).max())
-        samples = np.hstack([self.mesh.nodes[np.unique(self.facets[side])].T, self.references[side]])
+        samples = np.hstack([self.mesh.nodes[np.unique(self.touchable[side])].T, self.references[side]])
         begin = np.array([*self.offsets[side], self.mesh.nodes[:, 2].mean()]) - 2 * size * direction
         travel = 0.0
         for _ in range(MOST_APPROACHES):
@@ -89,12 +92,22 @@ class GraspModel:
         """The undeformed block between jaws that just touch it."""
         contacts = tuple(
             PosedContact.apart(
-                self.surfaces[side], self.references[side], ContactPair(self.jaws[side], law), self.touching_place(side)
+                self.surfaces[side],
+                self.references[side],
+                ContactPair(self.jaws[side], law, grip=self._grip(side)),
+                self.touching_place(side),
             )
             for side in SIDES
         )
         unknowns = np.zeros(self.space.size)
         return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+
+    def _grip(self, side: str) -> Array:
+        """One at the surface points (n,) of the face under a jaw, zero at those beside it, which roll onto it."""
+        count = len(FACET_POINTS)
+        grip = np.zeros(len(self.touchable[side]) * count)
+        grip[: len(self.facets[side]) * count] = 1.0
+        return grip
 
     def equilibrium(
         self,
@@ -135,7 +148,7 @@ class GraspModel:
         count = len(FACET_POINTS)
         forces = (traction * surface.points.weights).reshape(3, -1, count)
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0]
-        facets = self.facets[side]
+        facets = self.touchable[side]
         place = state.contacts[SIDES.index(side)].place
         faces = jaw.face_coordinates(deformed[facets.ravel()].T - place[:, None])
         return taxel_forces(layout, faces.T.reshape(-1, 6, 2), forces, FACET_POINTS)
@@ -144,6 +157,16 @@ class GraspModel:
         """Traction (3, n) in Pa on the tissue at the surface points, that of the accepted state."""
         contact = state.contacts[SIDES.index(side)].state
         return contact.pressure * contact.normals + contact.tangential
+
+
+def touchable_facets(nodes: Array, facets: Mapping[str, Array]) -> dict[str, Array]:
+    """Facets (F, 6) of a block that each jaw may touch, given nodes (n, 3) in m and facets by the names of their faces."""
+    beside = np.concatenate([facets["upper"][:0], *(facets[name] for name, axis, _ in FACES if axis != 2 and name in facets)])
+    higher = nodes[beside[:, :3], 2].mean(axis=1) > nodes[:, 2].mean()
+    return {
+        "upper": np.concatenate([facets["upper"], beside[higher]]),
+        "lower": np.concatenate([facets["lower"], beside[~higher]]),
+    }
 
 
 def _facet_points() -> Array:

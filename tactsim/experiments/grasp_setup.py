@@ -208,8 +208,11 @@ class GraspSetup(FrozenModel):
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
             if hollow and self.mesh.kind == "structured":
                 raise ValueError(f"mesh.kind: structured cannot follow the wall of {name}; take kind: tetrahedra")
-        if self.mesh.kind == "layers" and (len(self.shapes) != 1 or self.shapes[0].kind not in ("sphere", "ellipsoid")):
+        round_ones = all(shape.kind in ("sphere", "ellipsoid") for shape in self.shapes)
+        if self.mesh.kind == "layers" and not (round_ones and len(self.shapes) == 1):
             raise ValueError("mesh.kind: layers serves exactly one sphere or ellipsoid; take kind: tetrahedra")
+        if self.mesh.kind == "graded" and not (round_ones and len(self.shapes) <= 1):
+            raise ValueError("mesh.kind: graded serves at most one inclusion, a sphere or an ellipsoid; take kind: tetrahedra")
         return self
 
     @model_validator(mode="after")

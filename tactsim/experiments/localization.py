@@ -94,7 +94,8 @@ class Localization(Experiment):
             details={name: stored.details[name] for name in KEPT if name in stored.details}
             | {
                 "estimates": [
-                    {"kind": found.kind, "center": list(found.center), "radius": found.radius} for found in estimate.inclusions
+                    {"kind": found.kind, "center": list(found.center), "radius": found.radius, "line": found.line}
+                    for found in estimate.inclusions
                 ],
                 "estimator": self.estimator.kind,
                 "valid": None if readings.valid is None else readings.valid.tolist(),
@@ -145,6 +146,9 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
     found = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
     if estimate.probability is not None:
         found["probability"] = Quantity(estimate.probability, "1", "that anything is there")
+    if estimate.classes is not None:
+        names = ", ".join(estimate.classes)
+        found["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")
     if not estimate.inclusions:
         return found
     first = estimate.inclusions[0]

@@ -110,7 +110,7 @@ class _Adjoint:
 
     def indicators(self, side: str, place: Array, layout: TaxelLayout) -> list[Array]:
         """For each taxel, by rows, the nodal values (nodes of the face,) that come nearest to one on it and zero beside it."""
-        surface = self.model.surfaces[side].points
+        surface = self.model.space.surface_points(self.model.facets[side])
         nodes = self.nodes[side]
         number = np.searchsorted(nodes, surface.nodes)
         products = surface.weights[:, None, None] * surface.values[:, :, None] * surface.values[:, None, :]

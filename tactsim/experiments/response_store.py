@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -15,6 +16,7 @@ from pydantic import ValidationError
 from tactsim.code_identity import code_identity
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp_setup import GraspSetup
 from tactsim.experiments.lump_sensitivity import lump_response
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results.reading import read_result
@@ -42,11 +44,18 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
         If the plain tissue cannot be grasped.
     """
     setup = _plain(read_result(folder, fields=False).provenance, folder)
-    text = json.dumps([setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity()])
-    place = (cache or user_cache("responses")) / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.npz"
+    return kept_response(setup, lambda: lump_response(setup), cache=cache)
+
+
+def kept_response(
+    setup: GraspSetup, compute: Callable[[], LumpResponse], *, how: str = "", cache: Path | None = None
+) -> LumpResponse:
+    """The response of a grasp as it was kept, or else computed now; ``how`` tells ways to compute it apart."""
+    told = [setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity(), *([how] if how else [])]
+    place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]}.npz"
     found = _read(place)
     if found is None:
-        found = lump_response(setup)
+        found = compute()
         _keep(found, place)
     return found
 

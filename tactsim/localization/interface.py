@@ -12,6 +12,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Kind
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.readings import JAWS, checked_readings
+from tactsim.localization.region import Region
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
 
@@ -99,6 +100,8 @@ class EstimatedInclusion:
     radius : in m; None if not estimated
     contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
     covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
+    region : where its centre lies with a stated probability; None if not estimated
+    line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
     """
 
     kind: str
@@ -106,6 +109,8 @@ class EstimatedInclusion:
     radius: float | None = None
     contrast: float | None = None
     covariance: Array | None = None
+    region: Region | None = None
+    line: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __post_init__(self) -> None:
         if not np.isfinite(self.center).all():
@@ -129,14 +134,18 @@ class Estimate:
     inclusions : the strongest first; empty exactly if nothing is there
     reason : why, in words for a user
     probability : that anything is there, from 0 to 1; None if the estimator does not tell
+    classes : probability of each class by its name, adding up to 1; None if the estimator does not tell classes apart
     """
 
     present: bool
     inclusions: tuple[EstimatedInclusion, ...]
     reason: str
     probability: float | None = None
+    classes: dict[str, float] | None = None
 
     def __post_init__(self) -> None:
+        if self.classes is not None and not np.isclose(sum(self.classes.values()), 1.0, rtol=0, atol=1e-6):
+            raise InvalidQuantity(f"the probabilities of the classes add up to {sum(self.classes.values()):g}; needed: 1")
         if self.present != bool(self.inclusions):
             raise InvalidQuantity(f"present is {self.present} with {len(self.inclusions)} inclusions; these must agree")
         if self.probability is not None and not 0 <= self.probability <= 1:

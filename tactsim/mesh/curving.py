@@ -38,6 +38,7 @@ def fitted(
     key: str,
     started: float,
     slide: bool = True,
+    smooth: bool = True,
 ) -> BlockMesh:
     """The block mesh made of labelled tetrahedra, nodes moved onto the surfaces.
 
@@ -46,6 +47,7 @@ def fitted(
     corners, simplices, labels : (n, 3) in m, (E, 4), (E,) as in ``labelling``
     started : what ``time.perf_counter`` gave when meshing began
     slide : whether nodes may move along curved surfaces for better shapes
+    smooth : whether nodes may move for better shapes at all
 
     Raises
     ------
@@ -62,7 +64,8 @@ def fitted(
         constraints = constraints.holding_edges(corners, walls.triangles, walls.patch)
     else:
         constraints = replace(constraints, held=np.asarray(constraints.on[:, len(FACES) :].any(axis=1)))
-    corners = smoothed(corners, simplices, constraints.directions, constraints.restored)
+    if smooth:
+        corners = smoothed(corners, simplices, constraints.directions, constraints.restored)
     ratios = mean_ratio(corners, simplices)
     if ratios.min() < LEAST_QUALITY:
         raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios.min():.2g}; allowed: {LEAST_QUALITY}")

@@ -25,7 +25,7 @@ LEAST_AROUND = 4
 """Cells along a quarter of a circle around the lump, at least; always even, so that a middle plane cuts no cell."""
 _KUHN = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]])
 """Six tetrahedra of a cell whose corners are numbered by x + 2 y + 4 z; equal diagonals on opposite sides."""
-_SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 """Sides of such a cell, each around its edge, outward."""
 
 
@@ -58,7 +58,7 @@ def structured_block(
             raise InputError(f"the lines along axis {axis} must ascend from 0 to {extent[axis]:g} m in {cells[axis]} steps")
     check_inclusions(extent, inclusions, 0.0)
     corners = np.stack(np.meshgrid(*spaced, indexing="ij"), axis=-1).reshape(-1, 3)
-    simplices = _grid(cells)[:, _KUHN].reshape(-1, 4)
+    simplices = grid(cells)[:, _KUHN].reshape(-1, 4)
     surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
     labels = surfaces.labels(corners[simplices].mean(axis=1))
     mesh = quadratic_mesh(corners, simplices[labels >= 0], labels[labels >= 0])
@@ -91,15 +91,15 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     within = max(1, round((1 - CORE) * radius / cell))
     beyond = outer_steps(max(cell, float(extent.mean()) / 2 - radius) / 2, cell, settings)
     logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, around + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    core = _grid((around,) * 3)
-    shell, quads = _skin(core, len(logical), logical)
+    core = grid((around,) * 3)
+    shell, quads = skin(core, logical)
     stretch = solid.turn * solid.semi_axes @ solid.turn.T  # symmetric: maps the ball onto the lump without a twist
-    inner = solid.center + _blown(logical) @ stretch
-    skin = solid.center + _directions(logical[shell]) @ stretch
+    inner = solid.center + blown(logical) @ stretch
+    wall = solid.center + directions(logical[shell]) @ stretch
     outer = (logical[shell] + 1) / 2 * extent
-    layers = [inner[shell] + share * (skin - inner[shell]) for share in np.arange(1, within + 1) / within]
-    layers += [skin + share * (outer - skin) for share in beyond]
-    corners, hexahedra, depth = _stacked(inner, shell, quads, core, layers)
+    layers = [inner[shell] + share * (wall - inner[shell]) for share in np.arange(1, within + 1) / within]
+    layers += [wall + share * (outer - wall) for share in beyond]
+    corners, hexahedra, depth = stacked(inner, shell, quads, core, layers)
     simplices, corners = _twelfths(hexahedra, corners, _mirrored_order(logical, shell, len(layers)))
     labels = np.repeat((depth < within).astype(np.int64), 12)
     key = f"morphed-{mesh_key(size, [inclusion], settings)}"
@@ -114,35 +114,35 @@ def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Ar
     return np.cumsum(steps) / np.sum(steps)
 
 
-def _grid(cells: Sequence[int]) -> Array:
+def grid(cells: Sequence[int]) -> Array:
     """Corners (H, 8) of the cells of a grid, numbered by x + 2 y + 4 z in each."""
     index = np.arange(np.prod(np.add(cells, 1))).reshape(np.add(cells, 1))
     parts = [index[i : cells[0] + i, j : cells[1] + j, k : cells[2] + k].ravel() for k in (0, 1) for j in (0, 1) for i in (0, 1)]
     return np.stack(parts, axis=1)
 
 
-def _directions(logical: Array) -> Array:
+def directions(logical: Array) -> Array:
     """Unit vectors (n, 3) towards points of the cube [-1, 1]^3, evenly spread in angle."""
     spread = np.tan(np.pi / 4 * logical)
     return spread / np.maximum(np.linalg.norm(spread, axis=1, keepdims=True), 1e-300)
 
 
-def _blown(logical: Array) -> Array:
+def blown(logical: Array) -> Array:
     """Points (n, 3) of the cube [-1, 1]^3 in the core of the unit ball."""
     spread = np.tan(np.pi / 4 * logical)
     reach = np.abs(spread).max(axis=1, keepdims=True)
-    return CORE * ((1 - ROUNDNESS * reach) * spread + ROUNDNESS * reach**2 * _directions(logical))
+    return CORE * ((1 - ROUNDNESS * reach) * spread + ROUNDNESS * reach**2 * directions(logical))
 
 
-def _skin(core: Array, count: int, logical: Array) -> tuple[Array, Array]:
+def skin(core: Array, logical: Array) -> tuple[Array, Array]:
     """Nodes (s,) on the surface of a grid of cells, and its quadrilaterals (q, 4) by their place among these, outward."""
-    sides = core[:, _SIDES].reshape(-1, 4)
+    sides = core[:, SIDES].reshape(-1, 4)
     outer = (np.abs(logical[sides].mean(axis=1)) > 1 - 1e-12).any(axis=1)
     shell = np.unique(sides[outer])
     return shell, np.searchsorted(shell, sides[outer])
 
 
-def _stacked(inner: Array, shell: Array, quads: Array, core: Array, layers: Sequence[Array]) -> tuple[Array, Array, Array]:
+def stacked(inner: Array, shell: Array, quads: Array, core: Array, layers: Sequence[Array]) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and depth (H,) of the core (-1) and of the layers around it (0, 1, ...)."""
     numbers = [shell, *(len(inner) + k * len(shell) + np.arange(len(shell)) for k in range(len(layers)))]
     cells = [core]
@@ -165,7 +165,7 @@ def _mirrored_order(logical: Array, shell: Array, layers: int) -> Array:
 
 def _twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
     """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its first place (n,)."""
-    sides = cells[:, _SIDES]
+    sides = cells[:, SIDES]
     first = places[sides].argmin(axis=2)
     turned = np.take_along_axis(sides, (first[:, :, None] + np.arange(4)) % 4, axis=2)
     triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2).reshape(len(cells), 12, 3)

@@ -30,6 +30,17 @@ def write_bytes(path: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
+def sync(path: Path) -> None:
+    """Brings a file's content, or the names in a folder, down to the disk; systems that cannot open a folder do so themselves."""
+    if os.name == "nt" and path.is_dir():
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
 def read_text(path: Path) -> str:
     """The UTF-8 text of a file."""
     with naming(path, "read"):
@@ -43,5 +54,6 @@ def replace_file(path: Path, content: bytes) -> None:
         try:
             write_bytes(waiting, content)
             os.replace(waiting, path)
+            sync(path.parent)
         finally:
             waiting.unlink(missing_ok=True)

@@ -70,3 +70,9 @@ def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(0.25, "1") == "0.25"
     assert format_quantity(math.radians(30), "rad") == "30°"
     assert format_quantity(0.0, "Pa") == "0 Pa"
+
+
+def test_a_unit_that_does_not_begin_at_zero_is_refused() -> None:
+    assert parse_quantity("3 mK", "K") == 0.003
+    with pytest.raises(InvalidQuantity, match="has an unknown unit"):
+        parse_quantity("3 degC", "K")

@@ -12,6 +12,8 @@ from tactsim.contact.penalty import Augmentation
 from tactsim.experiments.grasp_model import GraspModel
 from tactsim.fem.loading import PathFollower, StepControl
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded_block import graded_block
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.sensors.taxel_layout import TaxelLayout
 
@@ -97,3 +99,27 @@ def test_a_force_closes_both_jaws_alike():
 
 def _moved(model, state, contact):
     return contact.surface.points.interpolate(model.space.split(state.unknowns)[0])
+
+
+def beyond_the_jaw(faces, *, size=(20e-3, 20e-3, 10e-3), closing=0.6e-3, tolerance=5e-6):
+    """How far in m free faces of a stuck block reach beyond the upper jaw; ``faces`` may touch the jaws, by name."""
+    block = graded_block(size, None, BlockMeshSettings(size=6e-3, edge_size=0.4e-3, growth=1.0))
+    jaws = [Jaw(side=side, width=0.05, depth=0.05, fillet=1e-3) for side in ("upper", "lower")]
+    touching = {name: block.facets[name] for name in faces}
+    model = GraspModel(block.mesh, [RUBBER], touching, jaws=jaws, offsets=np.tile(np.array(size[:2]) / 2, (2, 1)))
+    state = model.start(
+        Coulomb(friction=0.6), Augmentation(tolerance, RUBBER.shear_modulus, switch_length=1e-3, softness=5 * tolerance)
+    )
+    control = StepControl(first=closing / 4, largest=closing, smallest=1e-3 * closing)
+    *_, (state, _) = PathFollower(model.equilibrium, control).follow(state, closing)
+    free = model.space.surface_points(np.concatenate([block.facets[name] for name in ("left", "right", "front", "back")]))
+    height = free.interpolate(block.mesh.nodes + model.space.split(state.unknowns)[0])[2]
+    return float(height.max()) - (size[2] - closing)
+
+
+def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
+    assert beyond_the_jaw(("upper", "lower", "left", "right", "front", "back")) <= 5e-6
+
+
+def test_without_contact_on_the_free_faces_they_would_pass_the_jaw():
+    assert beyond_the_jaw(("upper", "lower")) > 50e-6

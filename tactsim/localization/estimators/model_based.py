@@ -2,31 +2,48 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
+from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
 from tactsim.errors import InputError
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
 from tactsim.localization.lump_response import LumpResponse
+from tactsim.localization.region import CellRegion
 from tactsim.units import Length
 
 Array = np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """All balls of the table that fit: number (n,) of the centre in the grid, centres (n, 3), radii (n,), signals (n, taxels)."""
+
+    cells: Array
+    centers: Array
+    radii: Array
+    signals: Array
+
+
 class ModelBasedEstimator(Estimator):
     r"""One ball anywhere in the block, or nothing.
 
-    The change d of the taxels' forces from the reference is c s(x, r) plus Gaussian errors, with the response s of a ball at x of
-    radius r. The contrast c has a normal prior and is integrated out; centres and radii are even over the grid of the response:
+    The change d of the taxels' forces from the reference is c s(x, r) plus Gaussian errors of covariance S, with the response s
+    of a ball at x of radius r. The contrast c has a normal prior and is integrated out; centres and radii are even over the grid
+    of the response:
 
-    .. math:: \ln p(d | x, r) = -\frac{1}{2 v} \Bigl(d^2 - \frac{(s \cdot d)^2}{s^2 + v / \sigma_c^2}\Bigr)
-        - \frac{1}{2} \ln\Bigl(1 + \frac{s^2 \sigma_c^2}{v}\Bigr)
+    .. math:: \ln p(d | x, r) = \frac{1}{2} \frac{(s \cdot S^{-1} d)^2}{s \cdot S^{-1} s + \sigma_c^{-2}}
+        - \frac{1}{2} \ln\bigl(1 + \sigma_c^2\, s \cdot S^{-1} s\bigr) + \text{const}
 
-    The variance v is that of both readings and of the forward model, ``model_error`` of the root mean square of d. Mean and
-    covariance are those of the posterior. Nothing is there if that explains d better.
+    .. math:: S = \bigl(2 \sigma^2 + e_m^2 \overline{d^2} + e_b^2 \overline{p^2}\bigr) 1 + b^2 p p^T
+
+    with the noise of both readings, the error of the forward model, and the reference p, which is known to a common factor
+    1 + b and to e_b from taxel to taxel. Mean, covariance and region are those of the posterior. Nothing is there if that
+    explains d better; then S lacks the model's error.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -39,8 +56,12 @@ class ModelBasedEstimator(Estimator):
     """Least distance of the ball from the faces of the block."""
     contrast_spread: Annotated[float, Field(gt=0)] = 5.0
     """Standard deviation of the contrast beforehand; 5/2 is a small rigid ball, large ones act several times more."""
-    model_error: Annotated[float, Field(ge=0, le=1)] = 0.12
+    model_error: Annotated[float, Field(ge=0, le=1)] = 0.15
     """Error of the forward model over the root mean square of the change."""
+    background_scale: Annotated[float, Field(ge=0, le=1)] = 0.02
+    """Error of the whole reference over itself: the closing, stiffness and friction are not known exactly."""
+    background_error: Annotated[float, Field(ge=0, le=1)] = 0.015
+    """Error of the reference from taxel to taxel over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
 
@@ -50,53 +71,74 @@ class ModelBasedEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the covariance of place, radius and contrast."""
-        if readings.difference is None or readings.response is None:
+        """At most one ball, with the covariance of place, radius and contrast, and the region of its centre."""
+        if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
-        change = readings.difference.ravel()
-        noise = 2 * readings.noise**2
-        centers, radii, signals = self._candidates(readings.response, readings.block_size)
-        variance = noise + self.model_error**2 * float(np.mean(change**2))
-        if variance == 0:
+        change, plain = readings.difference.ravel(), np.asarray(readings.reference, dtype=float).ravel()
+        response = readings.response
+        nothing = self._covariance(change * 0, plain, readings.noise)
+        something = self._covariance(change, plain, readings.noise)
+        if something[0, 0] == 0:
             return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0)
-        strength, along = (signals**2).sum(axis=1), signals @ change
-        stiff = strength + variance / self.contrast_spread**2
-        evidence = along**2 / stiff / (2 * variance) - np.log(stiff * self.contrast_spread**2 / variance) / 2
+        found = self._candidates(response, readings.block_size)
+        evidence, contrasts, spread = self._evidence(found.signals, change, something)
         total, weights = logsumexp(evidence) - np.log(len(evidence)), np.exp(evidence - logsumexp(evidence))
-        probability = self._probability(total, change, noise, variance)
-        contrasts, spread = along / stiff, variance / stiff
-        samples = np.column_stack([centers, radii, contrasts])
-        mean = weights @ samples
-        away = samples - mean
-        covariance = (weights[:, None] * away).T @ away
-        covariance[4, 4] += weights @ spread
+        probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
+        mean, covariance = _moments(np.column_stack([found.centers, found.radii, contrasts]), weights, spread)
+        shape = tuple(map(len, response.axes))
+        cells = np.bincount(found.cells, weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
-        found = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance)
-        words = "softer" if mean[4] < 0 else "stiffer"
-        return Estimate(True, (found,), f"a {words} ball with a probability of {probability:.3g}", probability)
+        region = CellRegion(response.axes, cells)
+        ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
+        words = "softer" if contrast < 0 else "stiffer"
+        return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
 
-    def _candidates(self, response: LumpResponse, size: Array) -> tuple[Array, Array, Array]:
-        """Centres (n, 3), radii (n,) and signals (n, taxels) of all balls of the table that fit into the block."""
+    def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
+        """Covariance S (taxels, taxels) in N^2 of the errors of a change of force."""
+        white = 2 * noise**2 + self.model_error**2 * np.mean(change**2) + self.background_error**2 * np.mean(plain**2)
+        return white * np.eye(plain.size) + self.background_scale**2 * np.outer(plain, plain)
+
+    def _evidence(self, signals: Array, change: Array, covariance: Array) -> tuple[Array, Array, Array]:
+        """Logarithmic evidence (n,) over that of no signal, and mean and variance (n,) of the contrast."""
+        root = cholesky(covariance, lower=True)
+        white = solve_triangular(root, np.column_stack([change, signals.T]), lower=True)
+        strength, along = (white[:, 1:] ** 2).sum(axis=0), white[:, 0] @ white[:, 1:]
+        stiff = strength + 1 / self.contrast_spread**2
+        return along**2 / stiff / 2 - np.log(stiff * self.contrast_spread**2) / 2, along / stiff, 1 / stiff
+
+    def _candidates(self, response: LumpResponse, size: Array) -> Candidates:
+        """All balls of the table that fit into the block."""
         chosen = np.flatnonzero((response.radii >= self.radii[0] - 1e-12) & (response.radii <= self.radii[1] + 1e-12))
         if not len(chosen):
             raise InputError(f"no tabulated radius lies between {self.radii[0]:g} and {self.radii[1]:g} m")
         grid = np.stack(np.meshgrid(*response.axes, indexing="ij"), axis=-1).reshape(-1, 3)
         room = np.minimum(grid, size - grid).min(axis=1)
-        parts = []
-        for k in chosen:
-            fits = room >= response.radii[k] + self.gap
-            values = response.values[k].reshape(len(grid), -1)[fits]
-            parts.append((grid[fits], np.full(int(fits.sum()), response.radii[k]), values))
-        centers, radii, signals = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return centers, radii, signals
+        cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
+        signals = [response.values[k].reshape(len(grid), -1)[own] for k, own in zip(chosen, cells, strict=True)]
+        radii = np.repeat(response.radii[chosen], [len(own) for own in cells])
+        every = np.concatenate(cells)
+        return Candidates(every, grid[every], radii, np.concatenate(signals))
 
-    def _probability(self, total: float, change: Array, noise: float, variance: float) -> float:
-        """Of anything being there, from the evidence ``total`` over that of errors of ``variance`` alone."""
-        if noise == 0:
+    def _probability(self, total: float, change: Array, nothing: Array, something: Array) -> float:
+        """Of anything being there, from the evidence ``total`` over that of errors of the covariance ``something`` alone."""
+        if nothing[0, 0] == 0:
             return 1.0
-        power, count = float(change @ change), change.size
-        nothing = -power / (2 * noise) - count / 2 * np.log(noise)
-        something = total - power / (2 * variance) - count / 2 * np.log(variance)
-        return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(nothing - something, -700, 700))))
+        away = _log_density(change, nothing) - _log_density(change, something) - total
+        return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(away, -700, 700))))
+
+
+def _moments(samples: Array, weights: Array, spread: Array) -> tuple[Array, Array]:
+    """Mean (5,) and covariance (5, 5) of weighted samples (n, 5), the last of which has a variance (n,) of its own."""
+    mean = weights @ samples
+    away = samples - mean
+    covariance = (weights[:, None] * away).T @ away
+    covariance[4, 4] += weights @ spread
+    return mean, covariance
+
+
+def _log_density(change: Array, covariance: Array) -> float:
+    """Of a Gaussian of this covariance, without the constant of its dimension."""
+    root = cholesky(covariance, lower=True)
+    return float(-(solve_triangular(root, change, lower=True) ** 2).sum() / 2 - np.log(np.diag(root)).sum())

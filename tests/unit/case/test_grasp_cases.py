@@ -30,12 +30,14 @@ def test_the_figures_of_section_6_have_their_cases():
 
 
 @by_name
-def test_the_mesh_is_shipped(path, monkeypatch, tmp_path):
+def test_the_mesh_is_shipped_or_repeats(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)  # from any folder
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     experiment = load_case(path).experiment
-    assert isinstance(experiment.mesh, TetrahedraSource)
     sourced = experiment.sourced()
+    if not isinstance(experiment.mesh, TetrahedraSource):
+        assert experiment.sourced().content == sourced.content
+        return
     assert sourced.origin == "shipped"
     (entry,) = (entry for entry in entries(ROOT / "meshes") if entry.key == sourced.block.key)
     assert entry.content == sourced.content

@@ -9,6 +9,7 @@ import pytest
 
 from tactsim.case import case_json_schema
 from tactsim.cli import main
+from tactsim.dataset.json_schema import sweep_json_schema
 
 
 def test_the_schema_is_printed_or_written(pretended: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -17,3 +18,10 @@ def test_the_schema_is_printed_or_written(pretended: None, tmp_path: Path, capsy
     assert main(["schema", "--out", str(tmp_path / "s.json")]) == 0
     assert json.loads((tmp_path / "s.json").read_text(encoding="utf-8")) == case_json_schema()
     assert main(["schema", "--out", str(tmp_path / "no" / "s.json")]) == 5
+
+
+def test_the_schema_of_sweeps_is_printed(pretended: None, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema", "--sweep"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told == sweep_json_schema()
+    assert told != case_json_schema()

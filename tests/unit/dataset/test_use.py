@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
@@ -27,16 +28,16 @@ from tactsim.dataset.sweep import sweep_of_text
 from tactsim.errors import InputError, StorageError, UnknownName
 
 
-@pytest.fixture
-def store(tmp_path: Path) -> Path:
-    """A small store to be spoilt."""
-    return small_store(tmp_path)
-
-
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small store that stays as it is."""
     return small_store(tmp_path_factory.mktemp("kept"))
+
+
+@pytest.fixture
+def store(kept: Path, tmp_path: Path) -> Path:
+    """The same to be spoilt."""
+    return Path(shutil.copytree(kept, tmp_path / "small.zarr"))
 
 
 def test_splits_are_apart_and_together_all(kept: Path) -> None:
@@ -182,6 +183,7 @@ def test_torch_samples_need_torch_only_for_a_sample(kept: Path) -> None:
     assert samples.__getstate__()["_opened"] is None
 
 
+@pytest.mark.filterwarnings("ignore:This DataLoader will create 8 worker processes:UserWarning")  # on fewer than eight cores
 def test_torch_loaders_with_eight_workers(kept: Path) -> None:
     torch = pytest.importorskip("torch")
     samples = TorchSamples(kept, inputs=["read_force"], targets=["inner_radius"])

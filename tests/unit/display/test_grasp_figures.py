@@ -232,7 +232,7 @@ def test_history_without_time_is_over_the_closing():
 
 def test_single_step_without_fields_leaves_the_maps():
     alone = made_up(steps=1)
-    assert list(figures_for(alone)) == ["grasp.png", "grasp_maps.png", "views.png"]
+    assert list(figures_for(alone)) == ["grasp.png", "grasp_maps.png", "views.png", "views_pressure.png"]
     assert "time in s" not in told(grasp_figure(alone))
     assert figures_for(replace(alone, steps=())) == {}
 
@@ -243,7 +243,15 @@ def test_failed_run_is_marked():
 
 def test_overview_comes_first_and_the_view_last(frame):
     drawings = figures_for(made_up(frame=frame))
-    names = ["grasp.png", "grasp_maps.png", "grasp_section.png", "grasp_history.png", "views.png", "grasp_view.png"]
+    names = [
+        "grasp.png",
+        "grasp_maps.png",
+        "grasp_section.png",
+        "grasp_history.png",
+        "views.png",
+        "views_pressure.png",
+        "grasp_view.png",
+    ]
     assert list(drawings) == names
     assert drawings["grasp_history.png"]().startswith(b"\x89PNG")
 

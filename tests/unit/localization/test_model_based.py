@@ -13,6 +13,10 @@ SIZE = np.array([40e-3, 40e-3, 20e-3])
 LAYOUT = TaxelLayout()
 RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3])
 NOISE = 1e-4
+BESIDE = 0.2e-3 * np.stack(np.meshgrid([1, -1], [1, -1], [1, -1]), axis=-1).reshape(-1, 3)
+"""To the cells of the grid that meet at a point on their borders."""
+SURE = {"background_error": 0.0, "background_scale": 0.0}
+"""A reference that is known exactly."""
 
 
 def quadrature(count=(80, 80, 40)):
@@ -66,7 +70,7 @@ def test_contrast_of_a_small_ball_has_its_limits():
 
 @pytest.mark.parametrize(("center", "contrast"), [((20e-3, 20e-3, 13e-3), 2.0), ((13e-3, 26e-3, 8e-3), -1.2)])
 def test_a_lump_is_found_within_its_uncertainty(response, center, contrast):
-    estimate = ModelBasedEstimator(model_error=0.01).estimate(readings(response, center, 4e-3, contrast))
+    estimate = ModelBasedEstimator(model_error=0.01, **SURE).estimate(readings(response, center, 4e-3, contrast))
     assert estimate.present
     assert estimate.probability > 0.999
     found = estimate.inclusions[0]
@@ -74,12 +78,16 @@ def test_a_lump_is_found_within_its_uncertainty(response, center, contrast):
     assert np.all(np.abs(np.array(found.center) - center) < 3 * deviations[:3] + 0.5e-3)
     assert np.sign(found.contrast) == np.sign(contrast)
     assert abs(found.center[0] - (center[0] + 6e-3)) > 3 * deviations[0] + 0.5e-3
+    assert any(found.region.contains(np.array(center) + away, 0.99) for away in BESIDE)
+    assert not found.region.contains(np.array(center) + np.array([6e-3, 0, 0]), 0.99)
 
 
 def test_more_noise_widens_the_region(response):
     widths = []
     for noise in (1e-4, 2e-3):
-        found = ModelBasedEstimator(model_error=0.0).estimate(readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 2.0, noise=noise))
+        found = ModelBasedEstimator(model_error=0.0, **SURE).estimate(
+            readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 2.0, noise=noise)
+        )
         widths.append(np.linalg.det(found.inclusions[0].covariance[:3, :3]) ** (1 / 6))
     assert widths[1] > widths[0]
 
@@ -88,6 +96,15 @@ def test_plain_tissue_has_nothing_in_it(response):
     answers = [ModelBasedEstimator().estimate(readings(response, (0, 0, 0), 4e-3, 0.0, seed=seed)) for seed in range(20)]
     assert sum(answer.present for answer in answers) <= 1
     assert all(answer.inclusions == () for answer in answers if not answer.present)
+
+
+def test_an_uncertain_reference_widens_the_region_and_hides_what_it_could_explain(response):
+    told = readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 4.0)
+    sure, unsure = (ModelBasedEstimator(background_error=error, background_scale=0.0).estimate(told) for error in (0.0, 0.005))
+    assert unsure.inclusions[0].region.sizes()[0] > sure.inclusions[0].region.sizes()[0]
+    scaled = Readings(1.05 * told.reference, LAYOUT, SIZE, reference=told.reference, noise=NOISE, response=response)
+    assert not ModelBasedEstimator(background_scale=0.05, background_error=0.001).estimate(scaled).present
+    assert ModelBasedEstimator(**SURE).estimate(scaled).present
 
 
 def test_reference_and_response_are_needed(response):

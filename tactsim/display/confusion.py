@@ -1,0 +1,47 @@
+"""The confusion table: how often each class is taken for which."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from tactsim.display.canvas import new_figure, png, styled
+from tactsim.display.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+DARK = 0.6
+"""Share from which a cell is so dark that its number is white."""
+
+
+class ConfusionFigures(ResultFigures):
+    """One figure."""
+
+    kind: Literal["confusion"] = "confusion"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``confusion.png``, if anything was counted."""
+        return {"confusion.png": lambda: png(confusion_figure(result))} if "confusion" in result.quantities else {}
+
+
+def confusion_figure(result: Result) -> Figure:
+    """Counts in shades of their share of the true class; a true class that does not occur has no row."""
+    counts = np.array(result.quantities["confusion"].value)
+    names = [str(name).replace("_", " ") for name in result.details["classes"]]
+    rows = np.flatnonzero(counts.sum(axis=1))
+    shares = counts[rows] / counts[rows].sum(axis=1, keepdims=True)
+    with styled():
+        figure = new_figure(6.4, 1.9 + 0.62 * len(rows))
+        axis = figure.subplots()
+        axis.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+        for (row, column), share in np.ndenumerate(shares):
+            colour = "w" if share > DARK else "k"
+            axis.text(column, row, str(counts[rows[row], column]), ha="center", va="center", color=colour, fontsize=12)
+        axis.set_xticks(range(len(names)), names)
+        axis.set_yticks(range(len(rows)), [names[k] for k in rows])
+        axis.set(xlabel="estimated", ylabel="true")
+        axis.tick_params(length=0)
+        title = str(result.details.get("title") or "") or "Confusion table"
+        figure.suptitle(f"{title}: {result.reason}", x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+    return figure

@@ -1,0 +1,48 @@
+"""What a page is opened on: a result, a data set, a live feed, and the reference that goes with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tactsim.errors import InputError
+from tactsim.live.estimating import Reference
+from tactsim.live.feed import Feed
+from tactsim.live.recorded import result_recordings
+from tactsim.live.samples import Samples
+from tactsim.live.scene import Recording
+
+LIVE = "live"
+"""Name of the feed among the sources of forces."""
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """Several pages may show the same content; only the feed changes, by itself."""
+
+    recordings: dict[str, Recording]
+    samples: Samples | None = None
+    feed: Feed | None = None
+    reference: Reference | None = None
+
+
+def opened_content(place: Path | None, *, feed: Feed | None = None, reference: str | None = None) -> Content:
+    """The content of a result's folder or a data set, with a feed and a reference if they are given.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to show, or it has no taxels, or a data set has no sample that is done.
+    StorageError
+        If a folder is no result and no data set, or is damaged.
+    """
+    if place is None and feed is None:
+        raise InputError("nothing to show; name the folder of a result or a data set, or --live FILE, - or tcp://127.0.0.1:PORT")
+    given = None if reference is None else Reference.open(reference)
+    if place is not None and (place / "zarr.json").is_file():
+        return Content({}, Samples.open(place), feed, given)
+    return Content({} if place is None else result_recordings(_folder(place)), None, feed, given)
+
+
+def _folder(place: Path) -> Path:
+    return place.parent if place.name == "result.json" else place

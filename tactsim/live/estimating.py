@@ -1,0 +1,193 @@
+"""The choice of estimators, the reference that some of them need, and an estimate in words with its errors."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tactsim.errors import InputError
+from tactsim.experiments.localization_source import stored_grasp, true_places, with_reference
+from tactsim.experiments.response_store import stored_response
+from tactsim.live.recorded import result_recordings
+from tactsim.live.scene import Frame, Recording, Scene
+from tactsim.localization.estimators.model_based import ModelBasedEstimator
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+SAME = 1e-3
+"""Largest relative difference of two closings that count as the same."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An estimator that the page offers."""
+
+    name: str
+    label: str
+    estimator: Estimator
+    needs_reference: bool
+
+
+CHOICES = (
+    Choice("thesis", "Thesis", ThesisEstimator(), False),
+    Choice("thesis_reference", "Thesis, less a reference", ThesisEstimator(background="reference"), True),
+    Choice("model_based", "Model based", ModelBasedEstimator(), True),
+)
+BY_NAME = {choice.name: choice for choice in CHOICES}
+
+
+@dataclass(eq=False)
+class Reference:
+    """The same grasp without a lump, from the folder of its result; its response is computed when it is first asked for."""
+
+    folder: str
+    recording: Recording
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _response: LumpResponse | None = None
+
+    @classmethod
+    def open(cls, folder: str) -> Reference:
+        """The reference in a folder.
+
+        Raises
+        ------
+        InputError
+            If it is not the result of a grasp with taxels.
+        StorageError
+            If there is no result, or it is damaged.
+        """
+        stored_grasp(folder)
+        return cls(folder, result_recordings(folder)["taxel_force"])
+
+    def response(self, closing: float | None) -> LumpResponse:
+        """The fast forward model of the tissue; computed once, which may take half a minute, and kept.
+
+        Raises
+        ------
+        InputError
+            If the jaws have closed by another way in m than the reference at its end, for which the model holds.
+        """
+        last = self.recording.frame(len(self.recording.times) - 1).closing
+        if closing is not None and last is not None and abs(closing - last) > SAME * abs(last):
+            raise InputError(
+                f"the model of the tissue holds for a closing of {format_quantity(last, 'm')}, where the reference ends; "
+                f"here it is {format_quantity(closing, 'm')}: go to that step, or give a reference that ends here"
+            )
+        with self._lock:
+            if self._response is None:
+                self._response = stored_response(self.folder)
+            return self._response
+
+    def frame_for(self, frame: Frame) -> Frame:
+        """What the reference reads at the closing of a frame: at the same time, else anywhere on its way to its closing."""
+        recording, closing = self.recording, frame.closing
+        last = recording.frame(len(recording.times) - 1)
+        if closing is None or recording.closings is None:
+            return last
+        if frame.time is not None:
+            found = recording.at(frame.time)
+            if found.closing is not None and abs(found.closing - closing) <= SAME * abs(closing):
+                return found
+        way = recording.closings
+        rising = len(way) > 1 and bool((np.diff(way) > 0).all()) and way[0] <= closing <= way[-1]
+        return recording.at(float(np.interp(closing, way, recording.times))) if rising else last
+
+
+def frame_readings(scene: Scene, frame: Frame, choice: Choice, reference: Reference | None) -> Readings:
+    """Readings of a frame with what an estimator needs beside its model of the tissue.
+
+    Raises
+    ------
+    InputError
+        If there is no reference, or it is of another grasp.
+    """
+    readings = frame.readings(scene)
+    if not choice.needs_reference:
+        return readings
+    if reference is None:
+        raise InputError(f"{choice.label}: needs the same grasp without a lump; give its result by --reference FOLDER")
+    return with_reference(readings, reference.frame_for(frame).readings(reference.recording.scene))
+
+
+def shown_signal(readings: Readings) -> tuple[Array, str]:
+    """What the views draw, (jaw, row, column) in N, and what it is: the force, or its strongest change from the reference."""
+    if readings.difference is None:
+        return readings.filled, "force"
+    sums = readings.difference.sum(axis=0)
+    softer = bool(-sums.min() > sums.max())
+    return (-1 if softer else 1) * readings.difference, f"force {'below' if softer else 'above'} that of the reference"
+
+
+def estimated(scene: Scene, readings: Readings, choice: Choice, reference: Reference | None) -> dict[str, Any]:
+    """What an estimator finds, as the page shows it.
+
+    Raises
+    ------
+    InputError
+        If the estimator cannot be used here; it says why.
+    ConvergenceError
+        If the response of the tissue cannot be computed.
+    """
+    if choice.estimator.needs_response and reference is not None:
+        readings = replace(readings, response=reference.response(readings.closing))
+    found = choice.estimator.estimate(readings)
+    return {
+        "present": found.present,
+        "words": _words(found),
+        "errors": _errors(scene, found),
+        "inclusions": [
+            {"center": (1e3 * np.array(one.center)).tolist(), "radius": None if one.radius is None else 1e3 * one.radius}
+            for one in found.inclusions
+        ],
+    }
+
+
+def _words(found: Estimate) -> list[str]:
+    reason = found.reason[0].upper() + found.reason[1:]
+    return [reason, *(line for one in found.inclusions for line in (_told(one), *_uncertainty(one)))]
+
+
+def _told(one: EstimatedInclusion) -> str:
+    x, y, z = (1e3 * value for value in one.center)
+    kind = "" if one.kind == "unknown" else f"{one.kind} "
+    size = "" if one.radius is None else f", radius {1e3 * one.radius:.1f} mm"
+    return f"{kind}at ({x:.1f}, {y:.1f}, {z:.1f}) mm{size}".capitalize()
+
+
+def _uncertainty(one: EstimatedInclusion) -> list[str]:
+    if one.covariance is None:
+        return []
+    deviations = np.sqrt(np.diag(one.covariance))
+    x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
+    contrast = "" if one.contrast is None else f"; contrast {one.contrast:.2g} ± {deviations[4]:.1g}"
+    return [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm{contrast} (one standard deviation)"]
+
+
+def _errors(scene: Scene, found: Estimate) -> list[str]:
+    """Errors of the strongest inclusion against the true one nearest to it in plan, where the truth is known."""
+    if scene.inclusions is None:
+        return []
+    if not scene.inclusions:
+        return ["False alarm: there is no inclusion" if found.present else "True: there is no inclusion"]
+    if not found.inclusions:
+        count = len(scene.inclusions)
+        return [f"Missed: there {'is one inclusion' if count == 1 else f'are {count} inclusions'}"]
+    points = np.concatenate([true_places(shape, scene.size) for shape in scene.inclusions])
+    away = np.array(found.inclusions[0].center) - points
+    nearest = int(np.hypot(*away[:, :2].T).argmin())
+    lateral, depth = 1e3 * float(np.hypot(*away[nearest, :2])), 1e3 * float(away[nearest, 2])
+    size = _radius_error(scene, found.inclusions[0])
+    return [f"Off by {lateral:.1f} mm in plan and {depth:+.1f} mm in height{size}"]
+
+
+def _radius_error(scene: Scene, one: EstimatedInclusion) -> str:
+    true = getattr((scene.inclusions or (None,))[0], "radius", None)
+    if one.radius is None or true is None or len(scene.inclusions or ()) != 1:
+        return ""
+    return f", radius off by {1e3 * (one.radius - true):+.1f} mm"

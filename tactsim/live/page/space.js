@@ -1,0 +1,201 @@
+// The view in space: block, two jaws with a bar for every taxel, true inclusions translucent, estimated ones as wire frames.
+import * as THREE from "./vendor/three/three.module.min.js";
+import { OrbitControls } from "./vendor/three/OrbitControls.js";
+
+const PLATE = 0.06, BAR = 0.55, LEAST_BAR = 0.01;        // over the height of the block, as in the stored pictures
+const FROM = [0.55, -1.0, 0.5];                          // from the block to the eye
+const TURN = Math.PI / 12;
+const SLOW = 24;                                         // ms after drawing until the browser draws again, from which it is slow
+
+export class Space {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.world = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(30, 1, 1, 5000);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.ask());
+    this.light = new THREE.DirectionalLight(0xffffff, 1.6);
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 2.2), this.light);
+    this.fixed = new THREE.Group(); this.bodies = new THREE.Group(); this.found = new THREE.Group();
+    this.world.add(this.fixed, this.bodies, this.found);
+    new ResizeObserver(() => this.ask()).observe(canvas);
+  }
+
+  setScene(scene) {
+    const same = this.scene && String(this.scene.size) === String(scene.size);
+    this.scene = scene;
+    for (const group of [this.fixed, this.bodies, this.found]) empty(group);
+    const [x, y, z] = scene.size, box = new THREE.BoxGeometry(x, y, z);
+    const edges = new THREE.LineSegments(new THREE.EdgesGeometry(box), new THREE.LineBasicMaterial({ color: 0x8b949e }));
+    const tissue = new THREE.Mesh(box, glass("#f0b8a0", 0.16));
+    for (const part of [edges, tissue]) { part.position.set(x / 2, y / 2, z / 2); this.fixed.add(part); }
+    this.jaws = scene.jaws.map((jaw) => this.#jaw(jaw));
+    if (!same) this.reset();
+    this.ask();
+  }
+
+  #jaw(jaw) {
+    const height = this.scene.size[2], group = new THREE.Group(), plate = PLATE * height;
+    const body = new THREE.BoxGeometry(jaw.width, jaw.depth, plate);
+    const made = new THREE.Mesh(body, glass("#aab1ba", 0.32));
+    const edges = new THREE.LineSegments(new THREE.EdgesGeometry(body), new THREE.LineBasicMaterial({ color: 0x8b949e }));
+    for (const part of [made, edges]) { part.position.z = plate / 2; group.add(part); }
+    const bar = new THREE.BoxGeometry(1, 1, 1);
+    bar.translate(0, 0, 0.5);
+    const bars = new THREE.InstancedMesh(shaded(bar), new THREE.MeshBasicMaterial({ vertexColors: true }), this.scene.rows * this.scene.columns);
+    bars.frustumCulled = false;
+    group.add(bars);
+    group.matrixAutoUpdate = false;
+    this.fixed.add(group);
+    return { group, bars, rotation: jaw.rotation, base: plate };
+  }
+
+  setInclusions(inclusions) {
+    if (!this.scene) return;
+    empty(this.bodies);
+    for (const one of inclusions) {
+      if (!one.points.length) continue;
+      const shape = new THREE.BufferGeometry();
+      shape.setAttribute("position", new THREE.Float32BufferAttribute(one.points, 3));
+      shape.setIndex(one.triangles);
+      shape.computeVertexNormals();
+      const look = { color: this.scene.true_colour, opacity: 0.55, transparent: true, depthWrite: false };
+      const body = new THREE.Mesh(shape, new THREE.MeshLambertMaterial(look));
+      body.renderOrder = 1;
+      this.bodies.add(body);
+    }
+    this.ask();
+  }
+
+  setEstimate(found) {
+    if (!this.scene) return;
+    empty(this.found);
+    const lines = new THREE.LineBasicMaterial({ color: this.scene.estimate_colour, depthTest: false });
+    for (const one of found) {
+      const group = new THREE.Group(), arm = one.radius || this.scene.pitch / 3;
+      const ends = [[arm, 0, 0], [0, arm, 0], [0, 0, arm]].flatMap((end) => [...end.map((v) => -v), ...end]);
+      const cross = new THREE.BufferGeometry();
+      cross.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
+      group.add(new THREE.LineSegments(cross, lines));
+      if (one.radius) {
+        const ball = new THREE.WireframeGeometry(new THREE.SphereGeometry(one.radius, 14, 9));
+        group.add(new THREE.LineSegments(ball, lines));
+      }
+      group.position.set(...one.center);
+      group.renderOrder = 3;
+      this.found.add(group);
+    }
+    this.ask();
+  }
+
+  setFrame(frame) {
+    if (!this.scene) return;
+    const { rows, columns, taxel, pitch, size, colours } = this.scene, end = frame.scales[3] || 1;
+    const place = new THREE.Matrix4(), colour = new THREE.Color();
+    this.jaws.forEach((jaw, side) => {
+      const basis = jaw.rotation, at = frame.places[side];
+      jaw.group.matrix.fromArray([...basis.slice(0, 3), 0, ...basis.slice(3, 6), 0, ...basis.slice(6, 9), 0, ...at, 1]);
+      jaw.group.matrixWorldNeedsUpdate = true;
+      for (let k = 0; k < rows * columns; k++) {
+        const share = Math.min(1, Math.max(0, frame.forces[side * rows * columns + k] || 0) / end);
+        const row = Math.floor(k / columns), column = k % columns, level = 3 * Math.round(255 * share);
+        place.makeScale(taxel, taxel, size[2] * Math.max(LEAST_BAR, BAR * share));
+        place.setPosition(pitch * (column - (columns - 1) / 2), pitch * (row - (rows - 1) / 2), jaw.base);
+        jaw.bars.setMatrixAt(k, place);
+        colour.setRGB(colours[level] / 255, colours[level + 1] / 255, colours[level + 2] / 255, THREE.SRGBColorSpace);
+        jaw.bars.setColorAt(k, colour);
+      }
+      jaw.bars.instanceMatrix.needsUpdate = true;
+      jaw.bars.instanceColor.needsUpdate = true;
+    });
+    this.asked = true;
+  }
+
+  turn(way) {
+    if (!this.scene) return;
+    if (way === "reset") return this.reset();
+    const from = this.camera.position.clone().sub(this.controls.target);
+    if (way === "left" || way === "right") from.applyAxisAngle(new THREE.Vector3(0, 0, 1), way === "left" ? -TURN : TURN);
+    const side = new THREE.Vector3().crossVectors(this.camera.up, from).normalize();
+    const lean = Math.asin(from.z / from.length()) + (way === "up" ? TURN : way === "down" ? -TURN : 0);
+    if ((way === "up" || way === "down") && Math.abs(lean) < 1.5) from.applyAxisAngle(side, way === "up" ? -TURN : TURN);
+    this.camera.position.copy(this.controls.target).add(from);
+    this.controls.update();
+    this.ask();
+  }
+
+  reset() {
+    const [x, y, z] = this.scene.size, middle = new THREE.Vector3(x / 2, y / 2, z / 2);
+    const wide = Math.max(...this.scene.jaws.map((jaw) => Math.hypot(jaw.width, jaw.depth)), Math.hypot(x, y));
+    const reach = Math.hypot(wide / 2, z * (0.5 + PLATE + BAR)), width = this.canvas.clientWidth || 4;
+    const narrow = Math.min(1, width / Math.max(1, this.canvas.clientHeight));
+    const away = (0.8 * reach) / Math.sin(THREE.MathUtils.degToRad(15)) / narrow;
+    this.camera.position.copy(middle).add(new THREE.Vector3(...FROM).normalize().multiplyScalar(away));
+    this.camera.near = away / 50; this.camera.far = 10 * away;
+    this.controls.target.copy(middle);
+    this.controls.update();
+    this.ask();
+  }
+
+  // Draws once at the next chance, however often it is asked.
+  ask() {
+    this.asked = true;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => { this.waiting = false; this.draw(); });
+  }
+
+  // Draws what was asked for; where drawing is slow (no graphics processor), new frames wait so that the rest of the page does
+  // not: whether it still has to draw.
+  drawFrame(now) {
+    if (this.drawnAt !== undefined && !this.timed) {
+      this.timed = true;
+      this.cost = 0.7 * (this.cost ?? 16) + 0.3 * Math.min(200, now - this.drawnAt);
+    }
+    if (!this.asked) return false;
+    if (this.cost > SLOW && now - this.drawnAt < 3 * this.cost) return true;
+    this.draw();
+    Object.assign(this, { drawnAt: now, timed: false });
+    return false;
+  }
+
+  draw() {
+    if (!this.asked) return;
+    this.asked = false;
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (!width || !height || !this.scene) return;
+    const sharp = Math.min(2, window.devicePixelRatio || 1);
+    if (this.width !== width || this.height !== height || this.sharp !== sharp) {
+      Object.assign(this, { width, height, sharp });
+      this.renderer.setPixelRatio(sharp);
+      this.renderer.setSize(width, height, false);
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+    }
+    this.light.position.copy(this.camera.position);
+    this.renderer.render(this.world, this.camera);
+    this.canvas.dataset.drawn = String(Number(this.canvas.dataset.drawn || 0) + 1);
+    this.canvas.dataset.camera = this.camera.position.toArray().map((v) => v.toFixed(2)).join(" ");
+  }
+}
+
+function glass(color, opacity, side = THREE.FrontSide) {
+  return new THREE.MeshBasicMaterial({ color, opacity, side, transparent: true, depthWrite: false });
+}
+
+// A box whose sides are darker than its top, once and for all: cheaper than light where a processor draws.
+function shaded(box) {
+  const normals = box.attributes.normal, shades = [];
+  for (let k = 0; k < normals.count; k++) {
+    const shade = normals.getZ(k) > 0.5 ? 1 : Math.abs(normals.getX(k)) > 0.5 ? 0.62 : 0.78;
+    shades.push(shade, shade, shade);
+  }
+  return box.setAttribute("color", new THREE.Float32BufferAttribute(shades, 3));
+}
+
+function empty(group) {
+  group.traverse((part) => { part.geometry?.dispose(); part.material?.dispose(); });
+  group.clear();
+}

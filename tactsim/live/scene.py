@@ -1,0 +1,145 @@
+"""What the page shows: the block with what is in it, and the forces on the taxels at one time or over many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tactsim.contact.jaw import Jaw
+from tactsim.experiments.grasp_setup import JawSettings
+from tactsim.localization.interface import ROUNDING_NOISE, Readings
+from tactsim.localization.readings import JAWS, taxel_name
+from tactsim.mesh.solid import Inclusion
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+Array = np.ndarray
+MOST_NAMED = 6
+"""Taxels that a message names before it counts the rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What does not change from frame to frame.
+
+    Attributes
+    ----------
+    title : in words, as the user or a sensor wrote it
+    size : (3,) of the undeformed block in m, which begins at the origin
+    layout : of the taxels on each jaw
+    inclusions : the true ones; None if they are not known, as with a real sensor
+    jaws : by side
+    places : (2, 3) in m of the middle of each jaw's face, the upper jaw first, at the closing ``closing`` in m of each jaw
+    notes : what the user must know about these data
+    """
+
+    title: str
+    size: Array
+    layout: TaxelLayout
+    inclusions: tuple[Inclusion, ...] | None
+    jaws: Mapping[str, Jaw]
+    places: Array
+    closing: float = 0.0
+    notes: tuple[str, ...] = ()
+
+    def places_at(self, closing: float | None) -> Array:
+        """Middle (2, 3) in m of both faces when each jaw has closed by ``closing`` in m; None leaves them where they are."""
+        places = self.places.copy()
+        if closing is not None:
+            places[:, 2] += np.array([1.0, -1.0]) * (self.closing - closing)
+        return places
+
+
+def plain_scene(title: str, size: Array, layout: TaxelLayout, **known: Any) -> Scene:
+    """A scene whose jaws, if nothing else is known, are a quarter wider than the block and touch it in its middle."""
+    jaws = {side: JawSettings().jaw(side, size.tolist()) for side in JAWS}
+    places = np.array([[size[0] / 2, size[1] / 2, size[2]], [size[0] / 2, size[1] / 2, 0.0]])
+    return Scene(title, size, layout, **({"inclusions": None, "jaws": jaws, "places": places} | known))
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The taxels at one time.
+
+    Attributes
+    ----------
+    forces : (jaw, row, column) in N pressing into the taxels, the upper jaw first; what is not valid may be NaN
+    valid : (jaw, row, column), False for a dead or saturated taxel
+    time : in s; None if not known
+    closing : of each jaw from first touch in m; None if not known
+    """
+
+    forces: Array
+    valid: Array
+    time: float | None = None
+    closing: float | None = None
+
+    def notes(self) -> tuple[str, ...]:
+        """What the user must know about this frame: taxels that are not to be trusted."""
+        bad = [taxel_name(*map(int, place)).split(" ")[0] for place in np.argwhere(~self.valid)]
+        if not bad:
+            return ()
+        named = ", ".join(bad[:MOST_NAMED]) + (f" and {len(bad) - MOST_NAMED} more" if len(bad) > MOST_NAMED else "")
+        if any(not good.any() for good in self.valid):
+            return (f"no taxel of a jaw gives a number ({named}): there is nothing to draw",)
+        return (f"dead or saturated taxels, interpolated from their neighbours: {named}",)
+
+    def readings(self, scene: Scene) -> Readings:
+        """The frame as estimators take it.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a whole jaw has no valid taxel.
+        """
+        return Readings(
+            self.forces,
+            scene.layout,
+            scene.size,
+            noise=ROUNDING_NOISE,
+            valid=None if self.valid.all() else self.valid,
+            middle=scene.places[:, :2].mean(axis=0),
+            closing=self.closing,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Frames over time.
+
+    Attributes
+    ----------
+    times : (n,) in s, increasing
+    forces, valid : (n, jaw, row, column), forces in N
+    closings : (n,) in m; None if not known
+    """
+
+    scene: Scene
+    times: Array
+    forces: Array
+    valid: Array
+    closings: Array | None
+
+    def frame(self, step: int) -> Frame:
+        """The frame of a step, counted from 0; beyond the ends the nearest one."""
+        k = min(max(step, 0), len(self.times) - 1)
+        closing = None if self.closings is None else float(self.closings[k])
+        return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing)
+
+    def step_at(self, time: float) -> int:
+        """Number of the last step that is not after a time in s."""
+        return int(np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self.times) - 1))
+
+    def at(self, time: float) -> Frame:
+        """The frame at a time in s, linear between the steps; a taxel is valid if it is so in both."""
+        k = self.step_at(time)
+        if k == len(self.times) - 1 or time <= self.times[0]:
+            return self.frame(k)
+        share = float((time - self.times[k]) / (self.times[k + 1] - self.times[k]))
+        closing = None
+        if self.closings is not None:
+            closing = float((1 - share) * self.closings[k] + share * self.closings[k + 1])
+        forces = (1 - share) * self.forces[k] + share * self.forces[k + 1]
+        return Frame(forces, self.valid[k] & self.valid[k + 1], float(time), closing)

@@ -1,0 +1,152 @@
+"""What the user of one page has chosen: whose forces, which sample, which estimator."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tactsim.dataset.variable import STATUS
+from tactsim.errors import InputError, TactsimError, UnknownName, shown
+from tactsim.live.content import LIVE, Content
+from tactsim.live.estimating import BY_NAME, CHOICES, Choice, frame_readings, shown_signal
+from tactsim.live.recorded import SOURCES
+from tactsim.live.samples import ANY
+from tactsim.live.scene import Recording
+
+Array = np.ndarray
+MOST_RANGED = 64
+"""Steps of a recording from which the ends of the colour scales are taken beforehand."""
+
+
+class Selection:
+    """Begins with the live feed if there is one, else with the first recording or the first sample that is done."""
+
+    def __init__(self, content: Content):
+        self._content = content
+        self._filter = (ANY, ANY)
+        self._recordings = content.recordings
+        self._sample: int | None = None
+        self._fault = ""
+        self.choice: Choice = CHOICES[0]
+        self.source = LIVE if content.feed is not None else next(iter(content.recordings), next(iter(SOURCES)))
+        if content.samples is not None:
+            self._open_sample(content.samples.near(0, 0, status="done"))
+
+    @property
+    def live(self) -> bool:
+        """Whether the feed is shown."""
+        return self.source == LIVE
+
+    @property
+    def recording(self) -> Recording | None:
+        """What is shown if it is not the feed; None if there is nothing."""
+        return self._recordings.get(self.source)
+
+    def take(self, command: dict[str, Any]) -> bool:
+        """Makes a choice; whether another scene may result.
+
+        Raises
+        ------
+        InputError
+            If there is no such thing to choose.
+        """
+        what = command["do"]
+        if what == "estimator":
+            self.choice = self._estimator(str(command["name"]))
+            return False
+        if what == "source":
+            name = str(command["name"])
+            if name not in self._names():
+                raise UnknownName("source of forces", name[:40], self._names())
+            self.source = name
+        elif self._content.samples is None:
+            raise InputError("there are no samples to choose from; open a data set")
+        elif what == "filter":
+            self._narrow(str(command.get("split", ANY)), str(command.get("status", ANY)))
+        else:
+            self._move(command)
+        return True
+
+    def _estimator(self, name: str) -> Choice:
+        if name not in BY_NAME:
+            raise UnknownName("estimator", name[:40], BY_NAME)
+        return BY_NAME[name]
+
+    def _narrow(self, split: str, status: str) -> None:
+        assert self._content.samples is not None
+        number = self._content.samples.near(self._sample or 0, 0, split, status)
+        self._filter = (split, status)
+        self._open_sample(number)
+
+    def _move(self, command: dict[str, Any]) -> None:
+        samples, here = self._content.samples, self._sample or 0
+        assert samples is not None
+        if "move" in command:
+            self._open_sample(samples.near(here, 1 if command["move"] > 0 else -1, *self._filter))
+            return
+        number = command["number"]
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < samples.count:
+            raise InputError(f"there is no sample {shown(number)}; allowed: 0 to {samples.count - 1}")
+        self._open_sample(number)
+
+    def _open_sample(self, number: int | None) -> None:
+        assert self._content.samples is not None
+        self._sample, self._recordings, self._fault = number, {}, ""
+        if number is None:
+            self._fault = "no sample has this split and status; choose others"
+            return
+        try:
+            self._recordings = self._content.samples.recordings(number)
+        except TactsimError as error:
+            self._fault = str(error)
+        if not self.live and self.source not in self._recordings:
+            self.source = next(iter(self._recordings), self.source)
+
+    def _names(self) -> list[str]:
+        return ([LIVE] if self._content.feed is not None else []) + list(self._recordings)
+
+    def offered(self) -> dict[str, Any]:
+        """What can be chosen at all."""
+        samples, reference = self._content.samples, self._content.reference
+        return {
+            "is": "offer",
+            "estimators": [
+                {"name": one.name, "label": one.label, "enabled": reference is not None or not one.needs_reference}
+                for one in CHOICES
+            ],
+            "samples": None if samples is None else {"count": samples.count, "splits": samples.splits, "status": STATUS},
+            **self.state(),
+        }
+
+    def state(self) -> dict[str, Any]:
+        """What is chosen now."""
+        words = {LIVE: "live", **SOURCES}
+        found: dict[str, Any] = {
+            "sources": [{"name": name, "label": words[name]} for name in self._names()],
+            "source": self.source,
+            "estimator": self.choice.name,
+            "sample": None,
+            "selection_fault": "" if self.live else self._fault,
+        }
+        samples = self._content.samples
+        if samples is not None:
+            told = {} if self._sample is None else samples.told(self._sample)
+            split, status = self._filter
+            count = len(samples.chosen(*self._filter))
+            found["sample"] = {"number": self._sample, "split": split, "status": status, "chosen": count, "told": told}
+        return found
+
+    def signals(self) -> list[tuple[Array, Array]]:
+        """Signals that the views draw and forces at some steps of the recording, for the ends of the colour scales."""
+        recording, found = self.recording, []
+        count = 0 if recording is None else len(recording.times)
+        for step in np.unique(np.linspace(0, count - 1, min(count, MOST_RANGED)).astype(int)) if count else ():
+            assert recording is not None
+            frame = recording.frame(int(step))
+            try:
+                readings = frame_readings(recording.scene, frame, self.choice, self._content.reference)
+            except TactsimError:
+                continue
+            found.append((shown_signal(readings)[0], frame.forces))
+        return found

@@ -1,0 +1,55 @@
+"""The true inclusions as the page draws them: triangles in space and outlines in the three views."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from contourpy import contour_generator
+
+from tactsim.display.localization_parts import outline
+from tactsim.errors import TactsimError
+from tactsim.live.scene import Scene
+from tactsim.mesh.any_inclusion import inclusion_name
+from tactsim.mesh.solid import Solid
+
+Array = np.ndarray
+AWAY = {"front": 1, "left": 0, "top": 2}
+"""Axis along which each view looks."""
+ACROSS = 14
+"""Triangles along the shortest extent of a body."""
+DIGITS = 4
+"""Decimals in mm: a tenth of a micrometre, far below a pixel."""
+
+
+def drawn_inclusions(scene: Scene) -> list[dict[str, Any]]:
+    """Name, triangles in mm and outlines by view of every true inclusion; one whose surface file is missing has no shape."""
+    found = []
+    for number, inclusion in enumerate(scene.inclusions or (), 1):
+        drawn: dict[str, Any] = {"name": inclusion_name(number, inclusion), "points": [], "triangles": [], "outlines": {}}
+        try:
+            body = inclusion.solids(scene.size)[0]
+            points, triangles = _clipped(body, scene.size)
+            outlines = {view: _outline(body, scene.size, away) for view, away in AWAY.items()}
+            drawn |= {"points": _rounded(points), "triangles": triangles.ravel().tolist(), "outlines": outlines}
+        except (TactsimError, OSError):
+            drawn["name"] += " (its surface file is not at hand)"
+        found.append(drawn)
+    return found
+
+
+def _clipped(body: Solid, size: Array) -> tuple[Array, Array]:
+    """Points in mm and triangles; what leaves the block is drawn onto its faces."""
+    edge = float(np.ptp(np.clip(body.bounds(), 0.0, size), axis=0).min()) / ACROSS
+    points, triangles = body.triangles(edge)
+    return 1e3 * np.clip(points, 0.0, size), triangles
+
+
+def _outline(body: Solid, size: Array, away: int) -> list[list[float]]:
+    """Lines in mm, each as x, y, x, y, ... along the two axes of a view in their order."""
+    first, second, distance = outline(body, size, away)
+    return [_rounded(np.asarray(line)) for line in contour_generator(first, second, distance).lines(0.0)]
+
+
+def _rounded(points: Array) -> list[float]:
+    return np.round(np.asarray(points, dtype=float).ravel(), DIGITS).tolist()

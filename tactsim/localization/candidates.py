@@ -1,0 +1,216 @@
+"""Balls and straight tubes that could lie in a block, with the change of force that each makes for a contrast of one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from tactsim.errors import InputError
+from tactsim.localization.lump_response import LumpResponse
+
+Array = np.ndarray
+LINE_STEP = 1e-3
+"""Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
+ANGLES = 12
+"""Directions of tubes over half a turn."""
+CUTS = (0.25, 0.5, 0.75)
+"""Parts of its way through the block after which a tube may end."""
+SAME_SPREAD = float(np.sqrt(5 / 4))
+"""Radius of the ball over that of the circle with the same second moment along a diameter: r^2 / 5 and r^2 / 4."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Bodies of one kind, all equally likely beforehand.
+
+    Attributes
+    ----------
+    kind : "sphere" or "tube"
+    begins, ends : (n, 3) in m, both ends of the centre line of a tube; a ball has its centre as both
+    radii : (n,) in m
+    signals : (n, taxels) in N for a contrast of one
+    """
+
+    kind: str
+    begins: Array
+    ends: Array
+    radii: Array
+    signals: Array
+
+    @property
+    def centers(self) -> Array:
+        """Middles (n, 3) in m."""
+        return (self.begins + self.ends) / 2
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+    def chosen(self, which: Array) -> Candidates:
+        """Those of a mask or of indices."""
+        parts = (self.begins, self.ends, self.radii, self.signals)
+        return Candidates(self.kind, *(part[which] for part in parts))
+
+    def overlaps(self, one: int) -> Array:
+        """Which candidates (n,) meet the given one, which can then not be there as well.
+
+        Balls meet nearer than the sum of their radii; tubes, which are straight and level, where their lines come that near.
+        """
+        reach = self.radii + self.radii[one]
+        if self.kind == "sphere":
+            away = self.begins - self.begins[one]
+            return np.einsum("nk,nk->n", away, away) < reach**2
+        above = np.abs(self.begins[:, 2] - self.begins[one, 2])
+        return (_plan_distance(self.begins[:, :2], self.ends[:, :2], one) < reach) & (above < reach)
+
+
+def ball_candidates(response: LumpResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
+    """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.
+
+    Raises
+    ------
+    InputError
+        If none fits.
+    """
+    axes = tuple(axis[every // 2 :: every] for axis in response.axes)
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    room = np.minimum(grid, size - grid).min(axis=1)
+    parts = []
+    for k in _tabulated(response, np.asarray(radii)):
+        fits = room >= response.radii[k] + gap
+        picked = response.values[k][tuple(slice(every // 2, None, every) for _ in range(3))]
+        parts.append((grid[fits], np.full(int(fits.sum()), response.radii[k]), picked.reshape(len(grid), -1)[fits]))
+    centers, sizes, signals = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if not len(sizes):
+        raise InputError("no ball of the tabulated radii fits into the block; take smaller radii")
+    return Candidates("sphere", centers, centers, sizes, np.ascontiguousarray(signals))
+
+
+def tube_candidates(
+    response: LumpResponse, size: Array, radii: Sequence[float], *, gap: float, closed: bool = True, spacing: float = LINE_STEP
+) -> Candidates:
+    r"""Straight level tubes of about these outer radii in every direction, through the block or, if ``closed``, ending in it.
+
+    The change that a tube of radius r makes is the integral of the density over it. With the change S of a ball of radius
+    :math:`r' = r \sqrt{5/4}`, whose second moment across the line is that of the circle, it is
+
+    .. math:: \Delta F = \pi r^2 \int S(x(l)) \Big/ \tfrac{4}{3} \pi r'^3 \, dl
+
+    as the ball's change over its volume is the density averaged over the ball. A tube that ends is a quarter of the way, half
+    or three quarters through the block, from either side.
+
+    Raises
+    ------
+    InputError
+        If none fits.
+    """
+    heights = response.axes[2]
+    lines = _lines(size, spacing)
+    spans = [(0.0, 1.0)] + [span for cut in CUTS for span in ((0.0, cut), (cut, 1.0)) if closed]
+    across = lines[1] - lines[0]
+    firsts, lasts = (np.concatenate([lines[0] + end * across for end in ends]) for ends in zip(*spans, strict=True))
+    table = _line_integrals(response, firsts, lasts)
+    parts = []
+    for k in _tabulated(response, np.asarray(radii) * SAME_SPREAD):
+        radius = float(response.radii[k]) / SAME_SPREAD
+        level = np.flatnonzero(np.minimum(heights, size[2] - heights) >= radius + gap)
+        inside = _beside(firsts, lasts, size) >= radius + gap
+        factor = np.pi * radius**2 / (4 / 3 * np.pi * response.radii[k] ** 3)
+        plane = response.values[k][:, :, level].reshape(len(response.axes[0]) * len(response.axes[1]), -1)
+        signals = factor * (table[inside] @ plane).reshape(int(inside.sum()) * len(level), -1)
+        z = np.tile(heights[level], int(inside.sum()))
+        placed = [np.column_stack([np.repeat(points[inside], len(level), axis=0), z]) for points in (firsts, lasts)]
+        parts.append((*placed, np.full(len(z), radius), signals))
+    begins, ends, sizes, found = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if not len(sizes):
+        raise InputError("no tube of the tabulated radii fits into the block; take smaller radii")
+    return Candidates("tube", begins, ends, sizes, found)
+
+
+def _tabulated(response: LumpResponse, radii: Array) -> Array:
+    """Numbers of the tabulated radii nearest to those wanted, each once."""
+    return np.unique(np.abs(response.radii[:, None] - radii).argmin(axis=0))
+
+
+def _lines(size: Array, spacing: float) -> tuple[Array, Array]:
+    """Both ends (n, 2) in plan of lines across the block in every direction, evenly spaced."""
+    firsts, lasts = [], []
+    middle = np.asarray(size[:2]) / 2
+    for angle in np.arange(ANGLES) * np.pi / ANGLES:
+        along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        reach = float(np.abs(across) @ middle)
+        count = int(reach / spacing)
+        for offset in np.arange(-count, count + 1) * spacing:
+            span = _crossing(middle + offset * across, along, size)
+            if span is not None:
+                firsts.append(span[0])
+                lasts.append(span[1])
+    return np.array(firsts), np.array(lasts)
+
+
+def _crossing(point: Array, along: Array, size: Array) -> tuple[Array, Array] | None:
+    """Where a line through ``point`` enters and leaves the block in plan; None if it only touches it."""
+    low, high = -np.inf, np.inf
+    for axis in range(2):
+        if abs(along[axis]) < 1e-9:
+            continue
+        both = np.sort(np.array([-point[axis], size[axis] - point[axis]]) / along[axis])
+        low, high = max(low, float(both[0])), min(high, float(both[1]))
+    return (point + low * along, point + high * along) if high - low > LINE_STEP else None
+
+
+def _beside(firsts: Array, lasts: Array, size: Array) -> Array:
+    """Least distance (n,) of each line from the corners of the block: a tube nearer than its radius would cut an edge."""
+    corners = np.array([[0.0, 0.0], [size[0], 0.0], [0.0, size[1]], [size[0], size[1]]])
+    along = (lasts - firsts) / np.linalg.norm(lasts - firsts, axis=1, keepdims=True)
+    away = corners[None] - firsts[:, None]
+    return np.abs(away[..., 0] * along[:, None, 1] - away[..., 1] * along[:, None, 0]).min(axis=1)
+
+
+def _line_integrals(response: LumpResponse, firsts: Array, lasts: Array) -> csr_array:
+    """Weights in m (lines, nx ny) whose product with values at the centres in plan is their integral along each line."""
+    counts = np.maximum(1, np.ceil(np.linalg.norm(lasts - firsts, axis=1) / LINE_STEP).astype(int))
+    line = np.repeat(np.arange(len(counts)), counts)
+    share = (np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[line]
+    points = firsts[line] + share[:, None] * (lasts - firsts)[line]
+    step = (np.linalg.norm(lasts - firsts, axis=1) / counts)[line]
+    lower, part = [], []
+    for axis in range(2):
+        centres = response.axes[axis]
+        place = np.interp(points[:, axis], centres, np.arange(len(centres)))
+        lower.append(np.minimum(place.astype(int), len(centres) - 2))
+        part.append(place - lower[-1])
+    entries, columns = [], []
+    for i in (0, 1):
+        for j in (0, 1):
+            entries.append(step * (part[0] if i else 1 - part[0]) * (part[1] if j else 1 - part[1]))
+            columns.append((lower[0] + i) * len(response.axes[1]) + lower[1] + j)
+    shape = (len(counts), len(response.axes[0]) * len(response.axes[1]))
+    return csr_array((np.concatenate(entries), (np.tile(line, 4), np.concatenate(columns))), shape=shape)
+
+
+def _plan_distance(firsts: Array, lasts: Array, one: int) -> Array:
+    """Distance (n,) in m in plan of every segment from one of them: 0 where they cross."""
+    begin, end = firsts[one], lasts[one]
+    ends = [_from_segment(point, firsts, lasts) for point in (begin, end)]
+    ends += [_from_segment(points, begin, end) for points in (firsts, lasts)]
+    sides = [_side(begin, end, firsts) * _side(begin, end, lasts), _side(firsts, lasts, begin) * _side(firsts, lasts, end)]
+    return np.where((sides[0] < 0) & (sides[1] < 0), 0.0, np.min(ends, axis=0))
+
+
+def _from_segment(points: Array, firsts: Array, lasts: Array) -> Array:
+    along = lasts - firsts
+    share = np.clip(_dot(points - firsts, along) / _dot(along, along), 0.0, 1.0)
+    away = points - firsts - share[..., None] * along
+    return np.sqrt(_dot(away, away))
+
+
+def _dot(first: Array, second: Array) -> Array:
+    return first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]
+
+
+def _side(firsts: Array, lasts: Array, points: Array) -> Array:
+    along, away = lasts - firsts, points - firsts
+    return along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]

@@ -1,0 +1,155 @@
+"""Nothing, one lump, two lumps, an artery or two: told apart by Bayes' rule on the fast forward model."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+from scipy.special import logsumexp
+
+from tactsim.errors import InputError
+from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
+from tactsim.localization.evidence import Change, Found, nothing
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.units import Length
+
+Array = np.ndarray
+ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
+CLASSES: tuple[str, ...] = ("none", "lump", "two_lumps", "artery", "two_arteries")
+"""What can be told apart; the order of every table."""
+PAIRS = ("two_lumps", "two_arteries")
+WORDS = {"lump": "one lump", "two_lumps": "two lumps", "artery": "an artery", "two_arteries": "two arteries"}
+COARSE = 4
+"""Every how many tabulated centres a ball is tried in all pairs."""
+COARSE_SPACING, FINE_SPACING = 4e-3, 2e-3
+"""Distance in m of the parallel tubes that are tried in all pairs, and in the best ones."""
+RADIUS_STEP = 1e-3
+
+
+class HypothesesEstimator(Estimator):
+    r"""Which of several classes explains the change of the taxels' forces, and where its one or two inclusions lie.
+
+    A class is a set of bodies: balls anywhere in the block; straight level tubes in any direction, through the block or ending
+    in it; pairs of balls, or of tubes through the block, that do not overlap. Each body changes the forces by its contrast,
+    which is integrated out, times the response of the tissue; the response of a tube is the integral along its line. The
+    evidence of a class is the mean over its bodies, so that a second body must explain more than it costs (Occam's razor):
+
+    .. math:: P(k | d) \propto P(k)\, \langle p(d | \text{bodies}) \rangle_k
+
+    Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
+    the likeliest one. To first order a tube acts by its whole section, with one contrast for wall and lumen together: an empty
+    soft one is softer than the tissue. The wall's thickness and a pressure cannot be told.
+
+    Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
+    """
+
+    needs_response: ClassVar[bool] = True
+    kind: Literal["hypotheses"] = "hypotheses"
+    classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
+    """What may be there."""
+    radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
+    """Least and largest radius of a lump."""
+    tube_radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 5e-3)
+    """Least and largest outer radius of an artery."""
+    gap: Annotated[Length, Field(ge=0)] = 0.5e-3
+    """Least distance of a body from the faces of the block that it does not leave through."""
+    contrast_spread: Annotated[float, Field(gt=0)] = 5.0
+    """Standard deviation of the contrast beforehand."""
+    model_error: Annotated[float, Field(ge=0, le=1)] = 0.12
+    """Error of the forward model over the root mean square of the change."""
+    prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
+    """Probability beforehand that anything is there."""
+    second: Annotated[float, Field(gt=0, le=1)] = 0.2
+    """Probability beforehand of a class of two over that of one: of a second one too weak to be felt nothing else tells."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Of the draws by which pairs are averaged."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """All classes."""
+        return cls()
+
+    def estimate(self, readings: Readings) -> Estimate:
+        """None, one or two inclusions, and the probability of each class."""
+        if readings.difference is None or readings.response is None:
+            raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
+        values, noise = readings.difference.ravel(), 2 * readings.noise**2
+        variance = noise + self.model_error**2 * float(np.mean(values**2))
+        if variance == 0:
+            return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0, self._told({"none": 0.0}))
+        change = Change(values, variance, self.contrast_spread)
+        found: dict[str, tuple[Found, Candidates]] = {name: self._explained(name, change, readings) for name in self.classes}
+        evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in found.items()}
+        if noise > 0:
+            evidence["none"] = self._prior("none") + nothing(values, noise)
+        told = self._told(evidence)
+        likeliest = max(told, key=lambda name: told[name])
+        probability = float(np.clip(1 - told["none"], 0.0, 1.0))
+        if likeliest == "none":
+            return Estimate(False, (), f"nothing there with a probability of {told['none']:.3g}", probability, told)
+        inclusions = _inclusions(*found[likeliest])
+        reason = f"{WORDS[likeliest]} with a probability of {told[likeliest]:.3g}"
+        return Estimate(True, inclusions, reason, probability, told)
+
+    def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Found, Candidates]:
+        """What a class explains, and its bodies."""
+        assert readings.response is not None  # checked by estimate
+        candidates, coarse = self._bodies(name, readings.response, readings.block_size)
+        if coarse is None:
+            return change.single(candidates), candidates
+        return change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)])), candidates
+
+    def _bodies(self, name: str, response: LumpResponse, size: Array) -> tuple[Candidates, Candidates | None]:
+        """The bodies of a class, and for pairs a few of them."""
+        balls, tubes = _steps(self.radii), _steps(self.tube_radii)
+        if name == "lump":
+            return ball_candidates(response, size, balls, gap=self.gap), None
+        if name == "two_lumps":
+            few = ball_candidates(response, size, balls[1::2], gap=self.gap, every=COARSE)
+            return ball_candidates(response, size, balls, gap=self.gap), few
+        if name == "artery":
+            return tube_candidates(response, size, tubes, gap=self.gap), None
+        few = tube_candidates(response, size, tubes[1::2], gap=self.gap, closed=False, spacing=COARSE_SPACING)
+        lower = few.begins[:, 2]
+        kept = few.chosen(np.isin(lower, np.unique(lower)[::COARSE]))
+        return tube_candidates(response, size, tubes, gap=self.gap, closed=False, spacing=FINE_SPACING), kept
+
+    def _prior(self, name: str) -> float:
+        """Logarithm of the probability of a class beforehand."""
+        if name == "none":
+            return float(np.log(1 - self.prior))
+        shares = {other: self.second if other in PAIRS else 1.0 for other in self.classes}
+        return float(np.log(self.prior * shares[name] / sum(shares.values())))  # type: ignore[index]
+
+    def _told(self, evidence: dict[str, float]) -> dict[str, float]:
+        """Probability of each class from their log evidence; classes that are not asked for have none."""
+        total = logsumexp(list(evidence.values()))
+        return {name: float(np.exp(evidence[name] - total)) if name in evidence else 0.0 for name in CLASSES}
+
+
+def _steps(limits: tuple[float, float]) -> list[float]:
+    """Radii from the least to the largest in steps of a millimetre."""
+    return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
+
+
+def _inclusions(found: Found, candidates: Candidates) -> tuple[EstimatedInclusion, ...]:
+    """The bodies of a class, the one with the strongest signal first."""
+    bodies = []
+    for numbers, contrasts, spreads in zip(found.bodies, found.contrasts, found.spreads, strict=True):
+        samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
+        mean, line = found.weights @ samples, None
+        if candidates.kind == "tube":
+            best = int(numbers[found.weights.argmax()])
+            mean[:3] = candidates.centers[best]
+            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
+            line = ((x0, y0, z0), (x1, y1, z1))
+        away = samples - mean
+        covariance = (found.weights[:, None] * away).T @ away
+        covariance[4, 4] += found.weights @ spreads
+        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[found.weights.argmax()]]))
+        x, y, z, radius, contrast = map(float, mean)
+        body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, line=line)
+        bodies.append((signal, body))
+    return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))

@@ -1,0 +1,60 @@
+"""Place and radius of one lump by networks that were trained on a data set."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+
+from tactsim.errors import InputError
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.networks import inputs, read_weights
+from tactsim.localization.region import GaussianRegion
+
+Array = np.ndarray
+LEAST_RADIUS = 0.1e-3
+"""Radius in m that an estimate is raised to: a network may tell one below zero."""
+
+
+class LearnedEstimator(Estimator):
+    """One lump at most, as an ensemble of networks saw it in training.
+
+    ``tactsim data train`` makes the weights from a data set of grasps. What the networks take are the changes of the taxels'
+    forces from the reference over their size, and that size and the noise over the whole force. Readings of another matrix or
+    block are refused. The uncertainty is that of grasps held out of the training, and the spread of the ensemble.
+
+    Source: an ensemble of perceptrons after B. Lakshminarayanan, A. Pritzel & C. Blundell 2017, arXiv:1612.01474.
+    """
+
+    kind: Literal["learned"] = "learned"
+    weights: str
+    """File of the weights, relative to the working folder."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """Weights wherever they were written."""
+        return cls(weights="results/lumps_estimator.npz")
+
+    @classmethod
+    def checked(cls, path: str | Path) -> Self:
+        """The estimator of a file that is there and can be read."""
+        read_weights(path)
+        return cls(weights=str(path))
+
+    def estimate(self, readings: Readings) -> Estimate:
+        """At most one ball, with the region of its centre."""
+        if readings.difference is None or readings.reference is None:
+            raise InputError("the learned estimator needs a reference without a lump")
+        learned = read_weights(self.weights)
+        learned.check(readings)
+        features = inputs(readings.difference[None], np.asarray(readings.reference)[None], readings.noise)[0]
+        probability = learned.probability(features)
+        if probability < 0.5:
+            return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
+        mean, covariance = learned.place(features)
+        x, y, z = map(float, np.clip(mean[:3], 0.0, learned.block_size))
+        radius = max(float(mean[3]), LEAST_RADIUS)
+        region = GaussianRegion(np.array([x, y, z]), covariance[:3, :3])
+        ball = EstimatedInclusion("sphere", (x, y, z), radius, region=region)
+        return Estimate(True, (ball,), f"a ball with a probability of {probability:.3g}", probability)

@@ -1,0 +1,197 @@
+r"""How well one or two bodies of unknown contrast explain a change of the taxels' forces: Bayesian evidence.
+
+The change d is S^T c plus Gaussian errors of variance v, with rows s of S for the bodies and a normal prior of standard deviation
+:math:`\sigma` for each contrast. With the contrasts integrated out,
+
+.. math:: \ln p(d) = -\frac{d \cdot d - b^T A^{-1} b}{2 v} - \frac{1}{2} \ln\det\frac{\sigma^2 A}{v},
+    \quad A = S S^T + \frac{v}{\sigma^2} 1, \quad b = S d
+
+but for a constant that only depends on v and the number of taxels. Two bodies are rewarded for what they explain and fined by the
+determinant and by being averaged over all places, so that no other penalty for their number is needed.
+
+Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from tactsim.localization.candidates import Candidates
+
+Array = np.ndarray
+BEGINNINGS = 4
+"""Pairs of the coarse grid from which the search on the fine grid begins."""
+DRAWS = 32
+"""Bodies drawn near the best pairs, each of which is paired with every other one."""
+ROUNDS = 2
+"""Turns of the search, in which either body of a pair moves to its best place with the other at rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a class of bodies explains.
+
+    Attributes
+    ----------
+    evidence : logarithm of the probability of the change under this class, averaged over all its members
+    bodies : one or two draws from the posterior: candidate numbers (m,) of each
+    weights : (m,) of the draws, adding up to 1
+    contrasts, spreads : (m,) of each body: mean and variance of its contrast in each draw
+    """
+
+    evidence: float
+    bodies: tuple[Array, ...]
+    weights: Array
+    contrasts: tuple[Array, ...]
+    spreads: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """A change of the taxels' forces (taxels,) in N, the variance v of its errors in N^2, and the prior of a contrast."""
+
+    values: Array
+    variance: float
+    contrast_spread: float
+
+    @property
+    def ridge(self) -> float:
+        """v over the prior's variance, in N^2."""
+        return self.variance / self.contrast_spread**2
+
+    def single(self, candidates: Candidates) -> Found:
+        """One of the candidates."""
+        along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
+        evidence = along**2 / stiff / (2 * self.variance) - np.log(stiff / self.ridge) / 2
+        total = float(logsumexp(evidence))
+        weights = np.exp(evidence - total)
+        numbers = np.arange(len(candidates))
+        spreads = self.variance / stiff
+        return Found(self._whole(total - np.log(len(candidates))), (numbers,), weights, (along / stiff,), (spreads,))
+
+    def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Found:
+        r"""Two of the fine candidates that do not overlap, by importance sampling.
+
+        All pairs of the coarse grid are tried; the best are moved on the fine one. Then bodies i are drawn with the probability
+        q(i) that they have beside one of the best others, and paired with all others j:
+
+        .. math:: p(d) = \frac{1}{m} \sum_{i \sim q} \frac{1}{n^2 q(i)} \sum_j p(d | i, j)
+        """
+        table = _Table(fine, self)
+        partners = self._partners(table, coarse)
+        likelihoods = [table.beside(partner) for partner in partners]
+        totals = np.array([logsumexp(likelihood) for likelihood in likelihoods])
+        q = sum(
+            share * np.exp((likelihood - likelihood.max()) / 2) / np.exp((likelihood - likelihood.max()) / 2).sum()
+            for share, likelihood in zip(_shares(totals), likelihoods, strict=True)
+        )
+        drawn = generator.choice(len(fine), DRAWS, p=q / q.sum())
+        rows = [table.beside(int(i)) for i in drawn]
+        logs = np.array([logsumexp(row) for row in rows]) - np.log(q[drawn] / q.sum())
+        evidence = float(logsumexp(logs)) - np.log(DRAWS) - 2 * np.log(len(fine))
+        shares = np.exp(logs - logsumexp(logs))
+        first, second = self._paired(fine, drawn, rows, generator)
+        mean, spread = table.contrasts(first, second)
+        return Found(self._whole(evidence), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
+
+    def _partners(self, table: _Table, coarse: Candidates) -> list[int]:
+        """Bodies of the best pairs, as numbers of the fine candidates."""
+        found: list[int] = []
+        for _, partner in _best_pairs(coarse, self):
+            fine = table.nearest(coarse, partner)
+            for _ in range(ROUNDS):
+                other = int(table.beside(fine).argmax())
+                fine = int(table.beside(other).argmax())
+            found += [number for number in (other, fine) if number not in found]
+        return found
+
+    def _paired(self, fine: Candidates, drawn: Array, rows: list[Array], generator: np.random.Generator) -> tuple[Array, Array]:
+        """Both bodies (DRAWS^2,) of draws from the posterior; the first is always the one nearer to that of the best draw."""
+        first, second = np.repeat(drawn, DRAWS), []
+        for row in rows:
+            weights = np.exp(row - row.max())
+            second.append(generator.choice(len(fine), DRAWS, p=weights / weights.sum()))
+        other, centers = np.concatenate(second), fine.centers
+        best = int(np.argmax([row.max() for row in rows]))
+        anchors = centers[int(drawn[best])], centers[int(rows[best].argmax())]
+        straight, crossed = (
+            np.linalg.norm(centers[first] - a, axis=1) + np.linalg.norm(centers[other] - b, axis=1)
+            for a, b in (anchors, anchors[::-1])
+        )
+        swap = crossed < straight
+        return np.where(swap, other, first), np.where(swap, first, other)
+
+    def _whole(self, evidence: float) -> float:
+        """With the part that all candidates share."""
+        return evidence + nothing(self.values, self.variance)
+
+
+def nothing(values: Array, variance: float) -> float:
+    """Logarithm of the probability of a change (taxels,) in N if it is all errors of this variance, but for a common constant."""
+    return float(-(values @ values) / (2 * variance) - values.size / 2 * np.log(variance))
+
+
+class _Table:
+    """What pairing a candidate with all others needs."""
+
+    def __init__(self, candidates: Candidates, change: Change):
+        self.candidates, self.change = candidates, change
+        self.along = candidates.signals @ change.values
+        self.stiff = (candidates.signals**2).sum(axis=1) + change.ridge
+
+    def beside(self, one: int) -> Array:
+        """Log evidence (n,) of every candidate as the second one beside a given first, minus infinity where they overlap."""
+        cross = self.candidates.signals @ self.candidates.signals[one]
+        found = _pair_evidence(self.along, self.along[one], self.stiff, self.stiff[one], cross, self.change)
+        found[self.candidates.overlaps(one)] = -np.inf
+        return found
+
+    def contrasts(self, first: Array, second: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Means and variances of both contrasts in pairs (m,)."""
+        signals = self.candidates.signals
+        cross = (signals[first] * signals[second]).sum(axis=1)
+        a, b, u, w = self.stiff[first], self.stiff[second], self.along[first], self.along[second]
+        determinant = a * b - cross**2
+        means = (b * u - cross * w) / determinant, (a * w - cross * u) / determinant
+        spreads = self.change.variance * b / determinant, self.change.variance * a / determinant
+        return means, spreads
+
+    def nearest(self, coarse: Candidates, number: int) -> int:
+        """The candidate most like one of another grid."""
+        parts = ("begins", "ends")
+        away = sum(((getattr(self.candidates, part) - getattr(coarse, part)[number]) ** 2).sum(axis=1) for part in parts)
+        return int(np.argmin(away + (self.candidates.radii - coarse.radii[number]) ** 2))
+
+
+def _pair_evidence(u: Array, w: Array, a: Array, b: Array, cross: Array, change: Change) -> Array:
+    """Log evidence without the common part, from the products with the change, the squares and the product of two signals."""
+    determinant = a * b - cross**2
+    explained = (b * u**2 - 2 * cross * u * w + a * w**2) / determinant
+    return explained / (2 * change.variance) - np.log(determinant / change.ridge**2) / 2
+
+
+def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
+    """The best pairs of the coarse grid, no two of which share a body."""
+    table = _Table(coarse, change)
+    cross = coarse.signals @ coarse.signals.T
+    evidence = _pair_evidence(table.along[:, None], table.along, table.stiff[:, None], table.stiff, cross, change)
+    for one in range(len(coarse)):
+        evidence[one, coarse.overlaps(one)] = -np.inf
+    found: list[tuple[int, int]] = []
+    for _ in range(BEGINNINGS):
+        first, second = (int(k) for k in np.unravel_index(int(evidence.argmax()), evidence.shape))
+        if not np.isfinite(evidence[first, second]):
+            break
+        found.append((first, second))
+        evidence[[first, second]] = -np.inf
+        evidence[:, [first, second]] = -np.inf
+    return found
+
+
+def _shares(totals: Array) -> Array:
+    """Shares of the best partners in the proposal: tempered, so that none is left out."""
+    shares = np.exp((totals - totals.max()) / 4)
+    return shares / shares.sum()

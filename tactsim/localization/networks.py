@@ -1,0 +1,163 @@
+"""Trained networks as plain arrays: what they take, what they give, and the file that keeps them."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+from pydantic import ValidationError
+from scipy.special import expit
+
+from tactsim.errors import InputError, StorageError
+from tactsim.localization.interface import Readings
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+Array = np.ndarray
+SCHEMA = "tactsim/learned/1"
+OUTPUTS = ("x", "y", "z", "radius")
+"""Order of what the networks tell of a lump."""
+TINY = 1e-9
+"""Change over the whole force of the reference below which there is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """Layers of a perceptron: matrices (in, out) and offsets (out,), rectified but for the last."""
+
+    matrices: tuple[Array, ...]
+    offsets: tuple[Array, ...]
+
+    def __call__(self, inputs: Array) -> Array:
+        """Outputs (n, out) of inputs (n, in)."""
+        for number, (matrix, offset) in enumerate(zip(self.matrices, self.offsets, strict=True), 1):
+            inputs = inputs @ matrix + offset
+            if number < len(self.matrices):
+                inputs = np.maximum(inputs, 0.0)
+        return inputs
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedWeights:
+    r"""An ensemble that tells place and radius, and a network that tells whether there is a lump.
+
+    The inputs are what `inputs` makes of readings, over ``scale`` about ``middle``. Errors have the covariance of those of held
+    out grasps, ``covariance`` (4, 4) over the block's height squared, times :math:`e^{2 (a + b \\ln |d| / F)}` with the change d,
+    the whole force F of the reference and a and b of ``growth``, and that of the ensemble.
+    """
+
+    layout: TaxelLayout
+    block_size: Array
+    middle: Array
+    scale: Array
+    places: tuple[Network, ...]
+    presence: Network
+    covariance: Array
+    growth: Array
+    held_out: int = 0
+    """Grasps with a lump from which the covariance was found."""
+
+    def probability(self, features: Array) -> float:
+        """That there is a lump, for features (inputs,)."""
+        return float(expit(self.presence((features - self.middle)[None] / self.scale)[0, 0]))
+
+    def place(self, features: Array) -> tuple[Array, Array]:
+        """Mean (4,) of x, y, z and radius in m and their covariance (4, 4) in m^2."""
+        height = float(self.block_size[2])
+        told = np.concatenate([network((features - self.middle)[None] / self.scale) for network in self.places])
+        mean = told.mean(axis=0) * height + np.append(self.block_size / 2, 0.0)
+        away = (told - told.mean(axis=0)) * height
+        size = np.exp(2 * float(self.growth[0] + self.growth[1] * features[-2]))
+        return mean, away.T @ away / len(told) + size * height**2 * self.covariance
+
+    def check(self, readings: Readings) -> None:
+        """Refuse readings of another matrix or block than those that were learned."""
+        if readings.layout != self.layout:
+            raise InputError(
+                f"the estimator was trained on the matrix {self.layout}, the readings are of {readings.layout}; train it anew"
+            )
+        if not np.allclose(readings.block_size, self.block_size, rtol=1e-6):
+            told = [np.asarray(size).tolist() for size in (self.block_size, readings.block_size)]
+            raise InputError(
+                f"the estimator was trained on a block of {told[0]} m, the readings are of one of {told[1]} m; train it anew"
+            )
+
+    def told(self) -> str:
+        """In words."""
+        count = sum(matrix.size for matrix in self.places[0].matrices)
+        return f"{len(self.places)} networks of {count} weights, {self.held_out} lumps held out"
+
+    def content(self) -> bytes:
+        """As the bytes of an npz file, without pickle."""
+        arrays: dict[str, Array] = {
+            "schema": np.array(SCHEMA),
+            "layout": np.array(self.layout.model_dump_json()),
+            "held_out": np.array(self.held_out),
+            **{name: np.asarray(getattr(self, name), dtype=float) for name in NUMBERS},
+        }
+        for number, network in enumerate((self.presence, *self.places)):
+            arrays[f"depth_{number}"] = np.array(len(network.matrices))
+            for layer, (matrix, offset) in enumerate(zip(network.matrices, network.offsets, strict=True)):
+                arrays |= {f"matrix_{number}_{layer}": matrix, f"offset_{number}_{layer}": offset}
+        arrays["networks"] = np.array(1 + len(self.places))
+        content = io.BytesIO()
+        np.savez_compressed(content, allow_pickle=False, **arrays)
+        return content.getvalue()
+
+
+NUMBERS = ("block_size", "middle", "scale", "covariance", "growth")
+"""Arrays of the weights beside those of the networks."""
+
+
+def read_weights(path: str | Path) -> LearnedWeights:
+    """The weights in a file.
+
+    Raises
+    ------
+    StorageError
+        If there is no such file, or it does not hold the weights of this version.
+    """
+    try:
+        with np.load(io.BytesIO(Path(path).read_bytes()), allow_pickle=False) as file:
+            if str(file["schema"]) != SCHEMA:
+                raise StorageError(f"{path} has the schema {str(file['schema'])[:40]!r}; this tactsim reads {SCHEMA!r}")
+            presence, *places = (_network(file, number) for number in range(int(file["networks"])))
+            layout = TaxelLayout.model_validate_json(str(file["layout"]))
+            numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
+            found = LearnedWeights(
+                layout=layout, places=tuple(places), presence=presence, held_out=int(file["held_out"]), **numbers
+            )
+    except FileNotFoundError:
+        raise StorageError(f"{path}: no such file; tactsim data train writes one") from None
+    except (ValueError, KeyError, EOFError, BadZipFile, ValidationError) as error:
+        raise StorageError(f"{path} does not hold the weights of a learned estimator: {str(error)[:120]}") from None
+    if not found.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
+        raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
+    return found
+
+
+def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
+    """Features (n, taxels + 2): the change over its own size, and the logarithms of change and noise over the reference's force.
+
+    Parameters
+    ----------
+    change, reference : (n, jaw, row, column) in N
+    noise : (n,) or one number, in N
+    """
+    flat, whole = change.reshape(len(change), -1), np.abs(reference).reshape(len(reference), -1).sum(axis=1)
+    if not (whole > 0).all():
+        raise InputError("the reference has no force; needed: a grasp that has closed")
+    size = np.linalg.norm(flat, axis=1)
+    least = TINY * whole
+    told = np.log(np.maximum(size, least) / whole), np.log(np.maximum(noise, least) / whole)
+    return np.column_stack([flat / np.maximum(size, least)[:, None], *told])
+
+
+def _network(file: np.lib.npyio.NpzFile, number: int) -> Network:
+    layers = range(int(file[f"depth_{number}"]))
+    found = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
+    if not all(np.isfinite(array).all() for part in found for array in part):
+        raise ValueError("weights that are not finite")
+    return Network(*found)

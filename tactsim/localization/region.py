@@ -1,0 +1,131 @@
+"""Where the centre of an inclusion lies with a stated probability: the smallest region that holds it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import chi2
+
+from tactsim.errors import InvalidQuantity
+
+Array = np.ndarray
+LEVEL = 0.9
+"""Probability of a region where none is named."""
+
+
+class Region(ABC):
+    """Regions of highest density of the centre, one for every probability."""
+
+    @abstractmethod
+    def contains(self, point: Array, probability: float = LEVEL) -> bool:
+        """Whether a point (3,) in m lies in the region of this probability."""
+
+    @abstractmethod
+    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
+        """Width in plan, the diameter of a circle of the same area, and height of the region, both in m."""
+
+
+@dataclass(frozen=True, eq=False)
+class CellRegion(Region):
+    """A distribution over the cells of a regular grid.
+
+    Attributes
+    ----------
+    axes : three arrays of the middles of the cells in m, each evenly spaced, at least two
+    weights : (nx, ny, nz), not negative, of any sum above zero
+
+    Raises
+    ------
+    InvalidQuantity
+        On construction: weights of another shape, not finite, negative or all zero.
+    """
+
+    axes: tuple[Array, Array, Array]
+    weights: Array
+
+    def __post_init__(self) -> None:
+        found = np.asarray(self.weights, dtype=float)
+        if found.shape != tuple(map(len, self.axes)) or min(found.shape) < 2:
+            raise InvalidQuantity(
+                f"weights of shape {found.shape} on axes of {[len(axis) for axis in self.axes]} cells, at least 2"
+            )
+        if not np.isfinite(found).all() or found.min() < 0 or found.sum() <= 0:
+            raise InvalidQuantity("the weights of a region must be finite and not negative, and not all zero")
+        object.__setattr__(self, "weights", found / found.sum())
+
+    @cached_property
+    def cell(self) -> Array:
+        """Sides (3,) of a cell in m."""
+        return np.array([float(axis[1] - axis[0]) for axis in self.axes])
+
+    def inside(self, probability: float = LEVEL) -> Array:
+        """Which cells (nx, ny, nz) belong to the region: the likeliest that reach the probability together."""
+        check_probability(probability)
+        flat = self.weights.ravel()
+        order = np.argsort(-flat, kind="stable")
+        before = np.cumsum(flat[order]) - flat[order]
+        chosen = np.zeros(flat.shape, bool)
+        chosen[order] = (before < probability) & (flat[order] > 0)
+        return chosen.reshape(self.weights.shape)
+
+    def contains(self, point: Array, probability: float = LEVEL) -> bool:
+        """Whether the cell of the point belongs to the region; a point beyond the grid does not."""
+        lowest = np.array([float(axis[0]) for axis in self.axes]) - self.cell / 2
+        index = np.floor((np.asarray(point, dtype=float) - lowest) / self.cell).astype(int)
+        if (index < 0).any() or (index >= self.weights.shape).any():
+            return False
+        return bool(self.inside(probability)[tuple(index)])
+
+    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
+        """Of the cells of the region."""
+        chosen = self.inside(probability)
+        area = float(chosen.any(axis=2).sum() * self.cell[0] * self.cell[1])
+        return 2 * float(np.sqrt(area / np.pi)), float(chosen.any(axis=(0, 1)).sum() * self.cell[2])
+
+
+@dataclass(frozen=True, eq=False)
+class GaussianRegion(Region):
+    r"""Ellipsoids :math:`(x - m)^T C^{-1} (x - m) \le q` with the quantile q of chi-squared with three degrees of freedom.
+
+    Attributes
+    ----------
+    mean : (3,) in m
+    covariance : (3, 3) in m^2, positive definite
+
+    Raises
+    ------
+    InvalidQuantity
+        On construction: a covariance that is not positive definite.
+    """
+
+    mean: Array
+    covariance: Array
+
+    def __post_init__(self) -> None:
+        found = np.asarray(self.covariance, dtype=float)
+        if found.shape != (3, 3) or not np.isfinite(found).all() or np.linalg.eigvalsh(found).min() <= 0:
+            raise InvalidQuantity(f"a covariance of shape {found.shape}; needed: (3, 3), finite, positive definite")
+
+    def contains(self, point: Array, probability: float = LEVEL) -> bool:
+        """Whether the point lies in the ellipsoid."""
+        away = np.asarray(point, dtype=float) - self.mean
+        return bool(away @ np.linalg.solve(self.covariance, away) <= self._quantile(probability))
+
+    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
+        """Of the shadow of the ellipsoid on the plan, and its height."""
+        quantile = self._quantile(probability)
+        plan = float(np.linalg.det(np.asarray(self.covariance)[:2, :2]))
+        return 2 * float(np.sqrt(quantile) * plan**0.25), 2 * float(np.sqrt(quantile * np.asarray(self.covariance)[2, 2]))
+
+    def _quantile(self, probability: float) -> float:
+        check_probability(probability)
+        return float(chi2.ppf(probability, 3))
+
+
+def check_probability(probability: float) -> None:
+    """Refuse a probability that is not between 0 and 1."""
+    if not 0 < probability < 1:
+        raise InvalidQuantity(f"a region of probability {probability}; allowed: above 0 and below 1")

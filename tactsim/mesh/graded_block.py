@@ -1,0 +1,171 @@
+"""Blocks of few elements: a grid of cells that grow away from the faces, and around one lump a box of rounded cells.
+
+Tissue that sticks to a jaw is strained without bound where its free face begins, so that thin cells at the faces are worth more
+than many cells (Apel 1999, Anisotropic Finite Elements: Local Estimates and Applications, for grading towards edges).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.curving import fitted
+from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
+from tactsim.mesh.solid import Inclusion
+from tactsim.mesh.structured_block import SIDES, blown, directions, grid, skin, stacked
+from tactsim.mesh.tetrahedra import mesh_key
+
+Array = np.ndarray
+EDGE_SHARE = 1 / 3
+"""Thickness of the cells at the faces over that far away, where none is given."""
+ROOM = 0.6
+"""How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
+REACH = 2.0
+"""Half width of the box over that of the lump, at most."""
+LEAST_ACROSS = 3
+"""Cells across the box, at least: two miss the volume of a ball by 0.6 %. An even number keeps a middle plane free of cells."""
+ATTEMPTS = 3
+"""Numbers of cells across that are tried, each one more than the last, until the shapes suit."""
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Ascending coordinates in m from face to face, and the first of those in the box of rounded cells."""
+
+    places: Array
+    first: int
+
+
+def graded_block(
+    size: Sequence[float], inclusion: Inclusion | None = None, settings: BlockMeshSettings | None = None
+) -> BlockMesh:
+    """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the lump, if there is one.
+
+    A sphere or an ellipsoid may lie anywhere in the block. Cells are wanted ``edge_size`` thick at the faces (by default a third
+    of ``size``), growing from there by ``growth`` up to ``size``; on the lump they are at most about ``inclusion_size`` long,
+    shorter where it comes so near to a face that longer ones would be badly curved.
+
+    Raises
+    ------
+    InputError
+        If the inclusion is of another kind or does not suit the block.
+    ConvergenceError
+        If the mesh misses the volumes or the shape asked for.
+    """
+    started, extent, settings = time.perf_counter(), np.asarray(size, float), settings or BlockMeshSettings()
+    held = [] if inclusion is None else [inclusion]
+    check_inclusions(extent, held, 0.0)
+    key = f"graded-{mesh_key(size, held, settings)}"
+    finished = partial(fitted, size=extent, inclusions=held, key=key, started=started, slide=False, smooth=False)
+    if inclusion is None:
+        lines = [_Line(_spaced(0.0, float(length), settings, (True, True)), 0) for length in extent]
+        corners, cells = _tensor(lines, 0)
+        simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
+        return finished(corners, simplices, np.zeros(len(simplices), np.int64))
+    solid = inclusion.solids(extent)[0]
+    if not isinstance(solid, EllipsoidSolid):
+        raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
+    stretch = solid.turn * solid.semi_axes @ solid.turn.T  # symmetric: maps the ball onto the lump without a twist
+    across = max(LEAST_ACROSS, round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size))
+    for finer in range(ATTEMPTS):
+        corners, cells, labels = _around(solid, stretch, _lines(solid, extent, settings, across + finer), across + finer)
+        simplices = _sixths(cells, _mirrored_places(corners, solid.center, stretch))
+        try:
+            return finished(corners, simplices, np.repeat(labels, 6))
+        except ConvergenceError:
+            if finer == ATTEMPTS - 1:
+                raise
+    raise AssertionError("every attempt returns or raises")
+
+
+def _around(solid: EllipsoidSolid, stretch: Array, lines: Sequence[_Line], across: int) -> tuple[Array, Array, Array]:
+    """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
+    corners, outside = _tensor(lines, across)
+    logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, across + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    core = grid((across,) * 3)
+    shell, quads = skin(core, logical)
+    inner = solid.center + blown(logical) @ stretch
+    wall = solid.center + directions(logical[shell]) @ stretch
+    steps = np.stack(np.unravel_index(shell, (across + 1,) * 3)) + np.array([[line.first] for line in lines])
+    on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.places) for line in lines))
+    added, rounded, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
+    numbers = np.concatenate([len(corners) + np.arange(len(inner) + len(shell)), on_box])
+    points = np.vstack([corners, added[: len(inner) + len(shell)]])
+    cells = np.vstack([outside, numbers[rounded]])
+    used, compact = np.unique(cells, return_inverse=True)
+    labels = np.concatenate([np.zeros(len(outside), np.int64), (depth < 1).astype(np.int64)])
+    return points[used], compact.reshape(cells.shape), labels
+
+
+def _lines(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, across: int) -> list[_Line]:
+    """For each axis: places graded from a face to the box, even through the box to its middle, and on to the other face."""
+    lines = []
+    for (low, high), center, length in zip(solid.bounds().T, solid.center, extent, strict=True):
+        half = (high - low) / 2
+        begin = center - min(REACH * half, half + ROOM * low)
+        end = center + min(REACH * half, half + ROOM * (length - high))
+        before = _spaced(0.0, begin, settings, (True, False))
+        after = _spaced(end, length, settings, (False, True))
+        within = np.interp(np.linspace(-1, 1, across + 1), [-1, 0, 1], [begin, center, end])
+        lines.append(_Line(np.concatenate([before[:-1], within, after[1:]]), len(before) - 1))
+    return lines
+
+
+def _spaced(begin: float, end: float, settings: BlockMeshSettings, at_face: tuple[bool, bool]) -> Array:
+    """Ascending places in m between two, spaced by ``edge_size`` at a face and growing up to ``size``."""
+    edge = min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
+    fine = np.linspace(begin, end, 400)
+    wanted = np.full(fine.shape, settings.size)
+    for there, away in zip(at_face, (fine - begin, end - fine), strict=True):
+        if there:
+            wanted = np.minimum(wanted, edge + settings.growth * away)
+    density = 1 / wanted
+    passed = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(fine))])
+    count = max(1, round(passed[-1]))
+    places = np.interp(np.linspace(0, passed[-1], count + 1), passed, fine)
+    places[0], places[-1] = begin, end
+    return places
+
+
+def _tensor(lines: Sequence[_Line], across: int) -> tuple[Array, Array]:
+    """Corners (n, 3) of a grid, and its cells (H, 8) outside the box of ``across``^3 cells."""
+    corners = np.stack(np.meshgrid(*[line.places for line in lines], indexing="ij"), axis=-1).reshape(-1, 3)
+    counts = [len(line.places) - 1 for line in lines]
+    place = np.stack(np.meshgrid(*[np.arange(count) for count in counts], indexing="ij"), axis=-1)
+    first = np.array([line.first for line in lines])
+    inside = ((place >= first) & (place < first + across)).all(axis=-1).ravel()
+    return corners, grid(counts)[~inside]
+
+
+def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:
+    """Places (n,) of corners in an order that is the same for a cell and for its mirror images about the centre.
+
+    What is farther from the lump comes first, in lengths in which it is a ball, so that a curved side sees the tip of its
+    tetrahedron; on the ball, what is nearest to a corner of the cube around it.
+    """
+    distances = np.abs(np.linalg.solve(stretch, (corners - center).T).T)
+    distances = (distances / distances.max()).round(9)
+    order = np.lexsort((*distances.T, distances.max(axis=1), -np.linalg.norm(distances, axis=1).round(9)))
+    places = np.empty(len(order), dtype=np.int64)
+    places[order] = np.arange(len(order))
+    return places
+
+
+def _sixths(cells: Array, places: Array) -> Array:
+    """Six tetrahedra for each cell (H, 8): from its first corner to the two triangles of each side beyond, cut alike."""
+    sides = cells[:, SIDES]
+    start = places[sides].argmin(axis=2)
+    turned = np.take_along_axis(sides, (start[:, :, None] + np.arange(4)) % 4, axis=2)
+    triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2)
+    apex = np.take_along_axis(cells, places[cells].argmin(axis=1)[:, None], axis=1)
+    beyond = (sides != apex[:, :, None]).all(axis=2)
+    chosen = triangles[beyond][:, :, ::-1]  # (3 H, 2, 3), by cell
+    tips = np.broadcast_to(np.repeat(apex, 3, axis=0)[:, :, None], (*chosen.shape[:2], 1))
+    return np.concatenate([chosen, tips], axis=2).reshape(-1, 4)

@@ -1,0 +1,130 @@
+"""Small made-up results, data sets and streams for the tests of the live page."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from dataclasses import replace
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+from sweeps import run_sweep
+
+from tactsim.contact.jaw import Jaw
+from tactsim.dataset.recorders.grasp import GraspRecorder
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.variable import PENDING
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.grasp import Grasp
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.results import Quantity, Result, Status, StepRecord, write_result
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIZE = (40e-3, 40e-3, 20e-3)
+CLOSING = 1e-3
+TITLE = "A made-up <b>grasp</b>"
+SIDES = ("upper", "lower")
+SWEEP = """\
+schema: tactsim/sweep/1
+title: Made-up lumps
+experiment:
+  kind: grasp
+  block: {size: [40 mm, 40 mm, 20 mm], tissue: icf_stable}
+  inclusions:
+    - shape: {kind: sphere, center: [20 mm, 20 mm, {uniform: [8 mm, 12 mm]}], radius: 4 mm}
+      material: lump
+  matrix: {rows: 3, columns: 3, pitch: 10 mm, size: 9 mm}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 1 mm, duration: 1 s}]}
+  mesh: {kind: layers, size: 6 mm}
+sweep: {samples: 6, times: 1, splits: {train: 0.5, validation: 0.25}}
+"""
+
+
+def taxel_forces(steps: int = 4, count: int = 3, *, lump: float = 0.5, place: tuple[float, float] = (3e-3, -2e-3)) -> np.ndarray:
+    """Forces (step, jaw, row, column) in N that rise to a bump over a lump nearer to the upper jaw."""
+    layout = TaxelLayout(rows=count, columns=count, pitch=30e-3 / count, size=27e-3 / count)
+    x, y = (layout.borders(along).mean(axis=1) for along in "xy")
+    bump = np.exp(-((x[None] - place[0]) ** 2 + (y[:, None] - place[1]) ** 2) / 8e-3**2)
+    last = 0.1 + lump * np.stack([bump, 0.6 * bump])
+    return np.linspace(1 / steps, 1, steps)[:, None, None, None] * last
+
+
+def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title: str = TITLE) -> Result:
+    """The result of a grasp with these forces (step, jaw, row, column) in N, closed by 1 mm in 1 s."""
+    found = taxel_forces() if forces is None else forces
+    steps, count = len(found), found.shape[-1]
+    layout = TaxelLayout(rows=count, columns=count, pitch=30e-3 / count, size=27e-3 / count)
+    course = np.linspace(1 / steps, 1, steps)
+    quantities = {"displacement": Quantity(CLOSING, "m", ""), "time": Quantity(1.0, "s", "")}
+    for jaw, side in enumerate(SIDES):
+        quantities[f"taxel_force_{side}"] = Quantity(found[-1, jaw].tolist(), "N", "")
+        if steps > 1:
+            quantities[f"taxel_force_{side}_history"] = Quantity(found[:, jaw].tolist(), "N", "")
+    if steps > 1:
+        quantities["time_history"] = Quantity(course.tolist(), "s", "")
+        quantities["displacement_history"] = Quantity((CLOSING * course).tolist(), "m", "")
+    ball = Sphere(center=(23e-3, 18e-3, 12e-3), radius=4e-3)
+    return Result(
+        kind="grasp",
+        status=Status.CONVERGED,
+        reason="done",
+        quantities=quantities,
+        steps=(StepRecord(1, 1, 0.0, {"displacement": CLOSING}),),
+        units={"displacement": "m"},
+        details={
+            "title": title,
+            "block_size": list(SIZE),
+            "inclusions": [ball.model_dump(mode="json")] if lump else [],
+            "jaws": {side: Jaw(width=50e-3, depth=50e-3, side=side).model_dump(mode="json") for side in SIDES},
+            "jaw_places": {"upper": [20e-3, 20e-3, SIZE[2] - CLOSING], "lower": [20e-3, 20e-3, CLOSING]},
+            "matrix": layout.model_dump(mode="json"),
+        },
+    )
+
+
+def grasp_folder(place: Path, forces: np.ndarray | None = None, **options: object) -> Path:
+    """The folder of such a result."""
+    return write_result(made_up_grasp(forces, **options), place, case_id="abc", provenance={})  # type: ignore[arg-type]
+
+
+def made_up_store(folder: Path, *, done: int = 4) -> Path:
+    """A data set of six grasps that nobody computed: the first are done, the next failed, the last is pending."""
+    file, place, numbers = folder / "sweep.yaml", folder / "lumps.zarr", itertools.count()
+    file.write_text(SWEEP, encoding="utf-8")
+
+    def run(experiment: Grasp, progress: object) -> Result:
+        number = next(numbers)
+        if number >= done:
+            raise ConvergenceError("residual <i>1</i>")
+        found = made_up_grasp((1 + 0.1 * number) * taxel_forces(1))
+        values = {"time": 1.0, "displacement": CLOSING, "reaction_force": 1.0}
+        beside = {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside") for side in SIDES}
+        numbers_of = {name: Quantity(0.0, unit, "") for name, (unit, _) in GraspRecorder.quantities.items()}
+        units = {"time": "s", "displacement": "m", "reaction_force": "N"}
+        quantities = found.quantities | beside | numbers_of
+        return replace(found, quantities=quantities, steps=(StepRecord(1, 1, 0.0, values),), units=units)
+
+    with patch.object(Grasp, "run", run):
+        run_sweep(load_sweep(file), place)
+    group = Store.open(place, writing=True).group
+    group["status"][5], group["reason"][5] = PENDING, ""
+    return place
+
+
+def description(count: int = 3, **more: object) -> dict:
+    """The first line of a stream."""
+    matrix = {"rows": count, "columns": count, "pitch": 30e-3 / count, "size": 27e-3 / count}
+    return {"schema": "tactsim/frames/1", "matrix": matrix, "block_size": list(SIZE), **more}
+
+
+def frame_line(time: float = 0.0, count: int = 3, **more: object) -> dict:
+    """A frame of a stream."""
+    forces = taxel_forces(1, count)[0].tolist()
+    return {"time": time, "taxel_force_upper": forces[0], "taxel_force_lower": forces[1], **more}
+
+
+def line(content: object) -> bytes:
+    """A line of a stream."""
+    return json.dumps(content).encode() + b"\n"

@@ -1,0 +1,153 @@
+"""Grasps made up by the fast forward model, as a store and as results of plain tissue, for tests of the ranking of estimators."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.contact.jaw import Jaw
+from tactsim.dataset.ranking_reference import PlainGrasp
+from tactsim.dataset.ranking_source import SPHERE, JudgedSamples, Truth
+from tactsim.dataset.running import opened_run
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.variable import DONE
+from tactsim.localization.interface import Readings
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results.writing import write_result
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIZE = np.array([40e-3, 40e-3, 20e-3])
+LAYOUT = TaxelLayout(rows=3, columns=3, pitch=10e-3, size=9e-3)
+RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3])
+CLOSINGS = np.array([0.4e-3, 0.8e-3, 1.2e-3])
+NOISE = 0.3e-3
+TEXT = """\
+schema: tactsim/sweep/1
+title: Made-up grasps
+experiment:
+  kind: grasp
+  block: {size: [40 mm, 40 mm, 20 mm], tissue: icf_stable}
+  inclusions:
+    - shape: {kind: sphere, center: [{uniform: [8 mm, 32 mm]}, 20 mm, 10 mm], radius: 3 mm}
+      material: {kind: neo_hookean, c10: 100 kPa}
+  matrix: {rows: 3, columns: 3, pitch: 10 mm, size: 9 mm}
+  loading:
+    control: displacement
+    pieces:
+      - {kind: ramp, to: 1 mm, duration: 1 s}
+  time: {steps: 1}
+sweep: {samples: 40, seed: 3, splits: {train: 0.75, validation: 0.0}}
+"""
+READOUT = "  time: {steps: 1}\n  readout: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}, seed: 4}\n"
+
+
+def response() -> LumpResponse:
+    """A bell over every taxel that fades with the distance from its jaw."""
+    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip((40, 40, 20), SIZE, strict=True)]
+    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
+    away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
+    depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
+    density = 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
+    volumes = np.full(len(places), np.prod(SIZE) / len(places))
+    return LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=2e-3)
+
+
+def plain_forces(closings: np.ndarray) -> np.ndarray:
+    """Forces (n, 2, 3, 3) in N of tissue that stiffens a little."""
+    pattern = 0.25 + 0.05 * np.array([[0, 1, 0], [1, 2, 1], [0, 1, 0]])
+    rising = np.asarray(closings)[:, None, None, None] / 1e-3
+    return np.broadcast_to(pattern, (2, 3, 3)) * (rising + 0.2 * rising**2)
+
+
+def plain_grasp() -> PlainGrasp:
+    """The plain tissue at several closings."""
+    closings = np.append(0.0, CLOSINGS)
+    forces = plain_forces(closings)
+    return PlainGrasp(closings, forces, Readings(forces[-1], LAYOUT, SIZE, noise=0.0))
+
+
+def truths(count: int, seed: int = 1) -> tuple[Truth, ...]:
+    """Lumps at random; every eighth sample has none."""
+    generator = np.random.default_rng(seed)
+    told = []
+    for number in range(count):
+        center = tuple(map(float, generator.uniform([8e-3, 8e-3, 6e-3], [32e-3, 32e-3, 14e-3])))
+        closing, radius = float(generator.uniform(0.5e-3, 1.2e-3)), float(generator.uniform(3e-3, 5e-3))
+        there = (center, radius, float(SIZE[2] - center[2]), 10.0) if number % 8 else (None,) * 4
+        told.append(Truth(number, closing, *there))
+    return tuple(told)
+
+
+def made_forces(told: tuple[Truth, ...], table: LumpResponse, contrast: float = 2.0) -> np.ndarray:
+    """What the taxels feel (n, 2, 3, 3) in N, without noise."""
+    forces = plain_forces(np.array([truth.closing for truth in told]))
+    for k, truth in enumerate(told):
+        if truth.center is not None:
+            forces[k] += contrast * table.signal(np.array([truth.center]), np.array([truth.radius]))[0]
+    return forces
+
+
+def made_samples(count: int, table: LumpResponse, *, noise: float = NOISE, seed: int = 1) -> JudgedSamples:
+    """Samples to be judged, without a store."""
+    told = truths(count, seed)
+    return JudgedSamples(told, made_forces(told, table), np.ones(count), None, plain_grasp(), "taxel_force", noise)  # type: ignore[arg-type]
+
+
+def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLayout = LAYOUT, size: np.ndarray = SIZE) -> str:
+    """The folder of a result of plain tissue."""
+    forces = plain_forces(closings)
+    many = len(closings) > 1
+    told = {"displacement": Quantity(float(closings[-1]), "m", "")}
+    if many:
+        told["displacement_history"] = Quantity(closings.tolist(), "m", "")
+    for jaw, side in enumerate(("upper", "lower")):
+        own = np.resize(forces[:, jaw], (len(closings), layout.rows, layout.columns))
+        told[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
+        if many:
+            told[f"taxel_force_{side}_history"] = Quantity(own.tolist(), "N", "")
+    details = {
+        "block_size": size.tolist(),
+        "inclusions": [],
+        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
+        "jaw_places": {"upper": [20e-3, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
+        "matrix": layout.model_dump(mode="json"),
+    }
+    steps = tuple(StepRecord(k + 1, 3, 0.0, {"displacement": float(c)}) for k, c in enumerate(closings))
+    result = Result("grasp", Status.CONVERGED, "made up", told, steps=steps, units={"displacement": "m"}, details=details)
+    write_result(result, folder, case_id="0" * 16, provenance={})
+    return str(folder)
+
+
+def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: bool = True) -> Path:
+    """A store whose samples hold the made-up grasps; the first thirty are for training."""
+    path = folder / "sweep.yaml"
+    path.write_text(text, encoding="utf-8")
+    place = folder / "made.zarr"
+    with opened_run(load_sweep(path), place, resume=False, accept_changes=False):
+        pass
+    group, told = Store.open(place, writing=True).group, truths(40)
+    if not done:
+        return place
+    forces = made_forces(told, table)
+    there = np.array([truth.present for truth in told])
+    values = {
+        "closing": [truth.closing for truth in told],
+        "inclusion_count": there.astype(int),
+        "inclusion_kind": SPHERE * there[:, None],
+        "inclusion_center": [[truth.center or [np.nan] * 3] for truth in told],
+        "inclusion_radius": [[truth.radius or np.nan] for truth in told],
+        "inclusion_contrast": [[truth.contrast or np.nan] for truth in told],
+        "time_s": np.ones((40, 1)),
+        "taxel_force": forces[:, None],
+        "split": np.where(np.arange(40) < 30, 0, 2),
+        "status": np.full(40, DONE),
+    }
+    if "read_force" in group:
+        values["read_force"] = 0.8 * forces[:, None]
+    for name, content in values.items():
+        group[name][...] = np.asarray(content, dtype=group[name].dtype)
+    return place

@@ -1,0 +1,110 @@
+"""The examples run, on data sets made up in a few seconds."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sweeps import run_sweep
+
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import load_sweep
+from tactsim.experiments.grasp import Grasp
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+
+ROOT = Path(__file__).parents[1]
+SAMPLES = 200
+
+
+def felt(experiment: Grasp) -> np.ndarray:
+    """Forces (jaw, row, column) in N of a stand-in for the solver: each lump adds to the taxels near it."""
+    centers = np.array([5e-3, 15e-3, 25e-3]) + 5e-3
+    x, y = np.meshgrid(centers, centers)
+    force = np.full((2, 3, 3), 1e3 * experiment.loading.least_and_most()[1])
+    for one in experiment.inclusions:
+        place, radius = np.array(one.shape.center), one.shape.radius
+        for jaw, depth in enumerate((20e-3 - place[2], place[2])):
+            near = np.sqrt((x - place[0]) ** 2 + (y - place[1]) ** 2 + depth**2)
+            force[jaw] *= 1 + (one.material != experiment.block.tissue) * 2 * radius / near
+    return force
+
+
+def pretended_run(experiment: Grasp, progress: object) -> Result:
+    """A result with what the data set reads."""
+    force, noise = felt(experiment), np.random.default_rng(experiment.readout.seed).normal(0, 1e-3, (2, 3, 3))  # type: ignore[union-attr]
+    units = {"time": "s", "displacement": "m", "reaction_force": "N"}
+    told = {"readout_time": Quantity([1.0], "s", "")}
+    for jaw, side in enumerate(("upper", "lower")):
+        told[f"taxel_force_{side}"] = Quantity(force[jaw].tolist(), "N", "")
+        told[f"read_force_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "N", "")
+        told[f"voltage_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "V", "")
+        told |= {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside")}
+    for name, unit in (("max_penetration", "m"), ("min_volume_ratio", "1"), ("unstable_volume_fraction", "1")):
+        told[name] = Quantity(0.0, unit, "")
+    step = StepRecord(0, 1, 0.0, {"time": 1.0, "displacement": 1e-3, "reaction_force": 1.0})
+    return Result("grasp", Status.CONVERGED, "", told, steps=(step,), units=units)
+
+
+@pytest.fixture(scope="module")
+def grasps(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set of the shipped sweep with the stand-in for the solver."""
+    folder = tmp_path_factory.mktemp("grasps")
+    text = (ROOT / "cases" / "sweep_lumps.yaml").read_text(encoding="utf-8")
+    head, _, tail = text.partition("  samples_per_specimen")
+    (folder / "sweep.yaml").write_text(head + "  seed: 1" + tail.partition("  seed: 1")[2], encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Grasp, "run", pretended_run)
+        run_sweep(load_sweep(folder / "sweep.yaml", samples=SAMPLES), folder / "lumps.zarr")
+    assert (Store.open(folder / "lumps.zarr").read("status") == 1).all()
+    return folder / "lumps.zarr"
+
+
+def run_example(store: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-W", "error", str(ROOT / "examples" / "train_lump_position.py"), str(store)]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment)
+
+
+def errors_of(store: Path) -> dict[str, float]:
+    done = run_example(store)
+    assert done.returncode == 0, done.stderr
+    return {name: float(value) for name, value in (line.split() for line in done.stdout.splitlines())}
+
+
+def test_lumps_are_found_better_than_by_guessing(grasps: Path) -> None:
+    told = errors_of(grasps)
+    assert told["test_samples"] >= 10
+    assert told["lateral_error_mm"] < 0.6 * told["trivial_lateral_error_mm"]  # forces that follow the lump tell where it is
+    assert told["error_mm"] < 0.7 * told["trivial_error_mm"]
+
+
+def test_forces_of_other_lumps_tell_nothing(grasps: Path) -> None:
+    """The twin: with the readings dealt anew among the samples, nothing can be learned."""
+    store = Store.open(grasps, writing=True)
+    kept = store.read("read_force")
+    store.group["read_force"][...] = np.random.default_rng(1).permutation(kept)
+    try:
+        told = errors_of(grasps)
+    finally:
+        store.group["read_force"][...] = kept
+    assert told["error_mm"] > 0.9 * told["trivial_error_mm"]
+
+
+def test_too_few_samples_are_told(grasps: Path, tmp_path: Path) -> None:
+    missing = run_example(tmp_path)
+    assert missing.returncode == 5
+    assert "holds no zarr.json" in missing.stderr
+    store = Store.open(grasps, writing=True)
+    kept = store.read("split")
+    store.group["split"][...] = np.zeros_like(kept)
+    try:
+        few = run_example(grasps)
+    finally:
+        store.group["split"][...] = kept
+    assert few.returncode == 2
+    assert "test: 0 samples with one lump" in few.stderr
+    assert "Traceback" not in few.stderr

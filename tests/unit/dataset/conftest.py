@@ -1,0 +1,13 @@
+"""Tests of data sets do without waiting for the disk; that what is needed is synced is tested in test_durability.py."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.dataset import journal, store
+
+
+@pytest.fixture(autouse=True)
+def no_waiting_for_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (journal, store):
+        monkeypatch.setattr(module, "sync", lambda path: None)

@@ -1,0 +1,54 @@
+"""The card of a data set: what it tells, and that the lines of code in it run."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from sweeps import Inline, sweep_file
+
+from tactsim.dataset.card import card_text
+from tactsim.dataset.layout import layout_of
+from tactsim.dataset.running import opened_run
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import load_sweep
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A small store and the text of its card."""
+    folder = tmp_path_factory.mktemp("card")
+    sweep = load_sweep(sweep_file(folder))
+    with opened_run(sweep, folder / "s.zarr") as going:
+        going.compute(Inline(sweep), lambda tally: None)
+    return folder / "s.zarr", card_text(Store.open(folder / "s.zarr"), sweep, layout_of(sweep))
+
+
+def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    place, card = store
+    loaders = ModuleType("torch.utils.data")
+    loaders.DataLoader = lambda samples, **options: (samples, options)  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "torch.utils.data", loaders)
+    parts = re.findall(r"```python\n(.*?)```", card, flags=re.DOTALL)
+    assert len(parts) == 3
+    found: dict = {}
+    for part in parts:
+        exec(part.replace("STORE", str(place)), found)  # noqa: S102  the card is ours
+    assert found["done"].sizes["sample"] == 24
+    assert found["train"].sizes["sample"] + found["test"].sizes["sample"] < 24
+    assert found["loader"][0].inputs == ("read_force",)
+    assert found["loader"][0].targets == ("inner_radius",)
+    assert len(found["samples"]) == found["train"].sizes["sample"]
+
+
+def test_the_card_tells_what_the_store_holds(store: tuple[Path, str]) -> None:
+    place, card = store
+    held = Store.open(place)
+    for name, array in held.arrays.items():
+        assert f"| {name} | " in card
+        assert str(array.attrs["long_name"]).replace("|", "/") in card
+    assert "| done | 24 |" in card
+    assert "| force_at_the_moon | " not in card

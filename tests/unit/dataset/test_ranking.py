@@ -1,0 +1,140 @@
+"""The measures of estimators, their order, and what the command writes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_grasps import SIZE, made_samples, made_store, plain_result, response
+
+from tactsim.cli import main
+from tactsim.dataset.ranking import Outcome, binned, interval, measures, outcome, penalty, ranking
+from tactsim.dataset.ranking_report import against_baseline, as_json, as_text, record
+from tactsim.dataset.ranking_source import Truth
+from tactsim.errors import InputError
+from tactsim.localization.estimators.model_based import ModelBasedEstimator
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.interface import Estimate, EstimatedInclusion
+from tactsim.localization.region import GaussianRegion
+
+LUMP = Truth(1, 1e-3, (20e-3, 20e-3, 12e-3), 4e-3, 8e-3, 10.0)
+NOTHING = Truth(2, 1e-3)
+MOST = np.hypot(20e-3, 10e-3)
+
+
+def told(truth: Truth, center: tuple[float, float, float] | None, radius: float = 4e-3, spread: float = 1e-3) -> Outcome:
+    """The outcome of an estimate with a ball there, or of none."""
+    if center is None:
+        return outcome(Estimate(False, (), "nothing"), truth)
+    region = GaussianRegion(np.array(center), spread**2 * np.eye(3))
+    return outcome(Estimate(True, (EstimatedInclusion("sphere", center, radius, region=region),), "a ball"), truth)
+
+
+def test_errors_of_one_estimate() -> None:
+    found = told(LUMP, (23e-3, 16e-3, 11e-3), radius=5e-3)
+    assert found.lateral == pytest.approx(5e-3)
+    assert found.depth == pytest.approx(-1e-3)
+    assert found.radius == pytest.approx(1e-3)
+    assert found.covered is False
+    assert told(LUMP, (21e-3, 20e-3, 12e-3)).covered is True
+    assert found.width == pytest.approx(2 * np.sqrt(6.2514) * 1e-3, rel=1e-4)
+    assert found.width != pytest.approx(2 * np.sqrt(4.6052) * 1e-3, rel=1e-2)  # that of two dimensions
+
+
+def test_hiding_does_not_pay() -> None:
+    assert penalty(told(LUMP, None), SIZE) == pytest.approx(MOST)
+    assert penalty(told(LUMP, (0.0, 0.0, 0.0)), SIZE) == pytest.approx(MOST)
+    assert penalty(told(NOTHING, None), SIZE) == 0
+    assert penalty(told(NOTHING, (20e-3, 20e-3, 10e-3)), SIZE) == pytest.approx(MOST)
+    honest = [told(LUMP, (24e-3, 20e-3, 12e-3)), told(LUMP, (26e-3, 20e-3, 12e-3))]
+    hiding = [told(LUMP, (20e-3, 20e-3, 12e-3)), told(LUMP, None)]
+    better, worse = (measures(found, SIZE) for found in (honest, hiding))
+    assert worse["lateral_error"]["median"]["value"] < better["lateral_error"]["median"]["value"]
+    assert worse["score"]["value"] > better["score"]["value"]
+    assert worse["lateral_error_with_misses"]["value"] == pytest.approx(10e-3)
+
+
+def test_rates_and_counts() -> None:
+    found = [told(LUMP, (20e-3, 20e-3, 12e-3)), told(LUMP, None), told(LUMP, (20e-3, 20e-3, 2e-3)), told(NOTHING, None)]
+    numbers = measures(found, SIZE)
+    assert (numbers["samples"], numbers["lumps"], numbers["without_lump"], numbers["found"]) == (4, 3, 1, 2)
+    assert numbers["detection_rate"]["value"] == pytest.approx(2 / 3)
+    assert numbers["false_alarm_rate"]["value"] == 0
+    assert numbers["coverage"]["value"] == pytest.approx(0.5)
+    assert numbers["depth_error"]["quantile_90"]["value"] == pytest.approx(9e-3)
+
+
+def test_what_no_sample_tells_is_none() -> None:
+    numbers = measures([told(NOTHING, None)], SIZE)
+    assert numbers["detection_rate"] is None
+    assert numbers["lateral_error"] is None
+    assert numbers["coverage"] is None
+    assert b"NaN" not in as_json(numbers)
+
+
+def test_an_interval_holds_its_value_and_shrinks() -> None:
+    generator = np.random.default_rng(5)
+    few, many = (interval(generator.standard_normal(n), np.mean) for n in (20, 2000))
+    assert few is not None
+    assert many is not None
+    assert few["low"] < few["value"] < few["high"]
+    assert many["high"] - many["low"] == pytest.approx(4 * 0.98 / np.sqrt(2000), rel=0.15)
+    assert many["high"] - many["low"] < few["high"] - few["low"]
+
+
+def test_bins_hold_every_lump_once() -> None:
+    samples = made_samples(24, response())
+    found = [told(truth, truth.center) for truth in samples.truths]
+    for parts in binned(found, SIZE).values():
+        assert sum(part["lumps"] for part in parts) == 21
+        assert all(part["low"] <= part["high"] for part in parts)
+
+
+def test_the_better_estimator_comes_first() -> None:
+    table = response()
+    samples = made_samples(16, table)
+    good = ModelBasedEstimator(model_error=0.02, background_error=0.0, background_scale=0.0)
+    ranked = ranking({"thesis": ThesisEstimator(), "model": good}, samples, table)
+    assert [one.name for one in ranked] == ["model", "thesis"]
+    assert ranked[0].measures["lateral_error"]["median"]["value"] < 1e-3
+    assert ranked[0].measures["coverage"]["value"] >= 0.7
+    assert against_baseline(ranked)["model"]["lateral_error_with_misses"] < 0.5
+    assert set(ranked[0].noises) == {1.0, 2.0, 4.0}
+    text = as_text(ranked, samples, ())
+    assert "| model |" in text.replace("\n", "")
+    assert json.loads(as_json(record(ranked, samples, {})))["estimators"][0]["samples"][1]["found"]
+    with pytest.raises(InputError, match="needs the response"):
+        ranking({"model": good}, samples, None)
+
+
+def test_the_command_writes_report_and_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = response()
+    monkeypatch.setattr("tactsim.experiments.response_store.stored_response", lambda folder: table)
+    store, plain = made_store(tmp_path, table), plain_result(tmp_path / "plain")
+    order = [
+        "data",
+        "rank",
+        str(store),
+        "--reference",
+        plain,
+        "--noise",
+        "0.3 mN",
+        "--split",
+        "test",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(order) == 0
+    assert "| model_based |" in capsys.readouterr().out
+    content = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert content["samples"] == 10
+    assert content["noise"]["value"] == pytest.approx(0.3e-3)
+    assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference", "model_based"}
+    names = {file.name for file in (tmp_path / "out").iterdir()}
+    assert names == {"report.json", "report.md", "errors.png", "noise.png", "places.png"}
+    assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
+    assert "no such file" in capsys.readouterr().err

@@ -1,0 +1,123 @@
+"""Samples of a store with their truth and their reference."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_grasps import (
+    CLOSINGS,
+    LAYOUT,
+    NOISE,
+    READOUT,
+    SIZE,
+    TEXT,
+    made_samples,
+    made_store,
+    plain_forces,
+    plain_result,
+    response,
+)
+from sweeps import small_store
+
+from tactsim.cli import main
+from tactsim.dataset.ranking_reference import PlainGrasp
+from tactsim.dataset.ranking_source import judged_samples
+from tactsim.errors import InputError, StorageError
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return made_store(tmp_path_factory.mktemp("made"), response())
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return plain_result(tmp_path_factory.mktemp("plain") / "plain")
+
+
+def test_forces_less_their_reference_are_what_the_lump_adds(store: Path, plain: str) -> None:
+    samples = judged_samples(store, [plain], source="taxel_force")
+    assert [truth.sample for truth in samples.truths] == list(range(40))
+    nothing = [k for k, truth in enumerate(samples.truths) if not truth.present]
+    away = np.abs(samples.forces - samples.references)
+    assert away[nothing].max() < 2e-3  # a cubic through three closings
+    assert np.delete(away, nothing, axis=0).max(axis=(1, 2, 3)).min() > 2e-3
+    assert judged_samples(store, [plain], source="taxel_force", split="test").forces.shape == (10, 2, 3, 3)
+
+
+def test_a_reference_at_the_wrong_closing_leaves_a_change(store: Path, plain: str) -> None:
+    samples = judged_samples(store, [plain], source="taxel_force")
+    wrong = samples.plain.at(np.array([truth.closing - 0.05e-3 for truth in samples.truths]))
+    nothing = [k for k, truth in enumerate(samples.truths) if not truth.present]
+    assert np.abs(samples.forces - wrong)[nothing].max() > 6e-3
+
+
+def test_several_results_are_several_closings(tmp_path: Path) -> None:
+    folders = [plain_result(tmp_path / f"plain{k}", np.array([c])) for k, c in enumerate(CLOSINGS[::-1])]
+    found = PlainGrasp.of_results(folders)
+    assert found.closings == pytest.approx([0.0, *CLOSINGS])
+    assert found.at(0.8e-3) == pytest.approx(plain_forces(np.array([0.8e-3]))[0])
+    assert found.at(0.8e-3) != pytest.approx(plain_forces(np.array([0.82e-3]))[0], rel=1e-3)
+    with pytest.raises(InputError, match="two or more"):
+        PlainGrasp.of_results(folders[:1])
+    with pytest.raises(InputError, match="no reference"):
+        PlainGrasp.of_results([])
+
+
+def test_the_noise_of_readings_is_as_large_as_stated() -> None:
+    samples = made_samples(60, response())
+    for multiple in (1.0, 4.0):
+        readings = list(samples.readings(multiple=multiple))
+        away = np.array([each.forces for each in readings]) - samples.forces
+        assert away.std() == pytest.approx(multiple * NOISE, rel=0.1)
+        assert readings[0].noise == pytest.approx(multiple * NOISE)
+    again = list(samples.readings(multiple=4.0))
+    assert np.array_equal(again[5].forces, readings[5].forces)
+    assert not np.array_equal(next(iter(samples.readings(multiple=4.0, seed=2))).forces, readings[0].forces)
+
+
+def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, plain: str) -> None:
+    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", READOUT))
+    samples = judged_samples(place, [plain], source="read_force")
+    assert samples.own_noise == samples.noise > 0
+    assert samples.references.shape == samples.forces.shape
+    louder = judged_samples(place, [plain], source="read_force", noise=5e-3)
+    assert louder.noise == pytest.approx(np.hypot(5e-3, samples.noise))
+    assert louder.added(1.0) == pytest.approx(5e-3)
+    assert np.abs(samples.references / samples.plain.at([t.closing for t in samples.truths]) - 1).max() > 0.05
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"closings": CLOSINGS[:2]}, "closes at least as far as every sample"),
+        ({"layout": LAYOUT.model_copy(update={"rows": 2})}, "matrix of the store"),
+        ({"size": SIZE + 1e-3}, "block of the store"),
+    ],
+)
+def test_another_reference_is_refused(store: Path, tmp_path: Path, changes: dict, words: str) -> None:
+    folder = plain_result(tmp_path / "other", **changes)
+    with pytest.raises(InputError, match=words):
+        judged_samples(store, [folder], source="taxel_force")
+
+
+def test_stores_that_cannot_be_judged_are_refused(store: Path, plain: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no readout"):
+        judged_samples(store, [plain], source="read_force")
+    with pytest.raises(StorageError, match="is not a data set"):
+        judged_samples(tmp_path / "nowhere", [plain], source="taxel_force")
+    with pytest.raises(InputError, match="no sample that is done"):
+        judged_samples(made_store(tmp_path, response(), done=False), [plain], source="taxel_force")
+    other = tmp_path / "closed_form"
+    other.mkdir()
+    with pytest.raises(InputError, match="holds samples of closed_form"):
+        judged_samples(small_store(other), [plain], source="taxel_force")
+
+
+def test_the_command_line_says_what_is_missing(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["data", "rank", str(store)]) == 2
+    assert "--reference is missing" in capsys.readouterr().err
+    assert main(["data", "rank", str(store), "--reference", "x", "--noise", "-1 mN"]) == 2
+    assert "--noise" in capsys.readouterr().err

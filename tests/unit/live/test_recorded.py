@@ -1,0 +1,155 @@
+"""Recordings of results and samples, and estimates on them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from live_pages import grasp_folder, made_up_store, taxel_forces
+
+from tactsim.errors import InputError, StorageError
+from tactsim.live.estimating import BY_NAME, Reference, estimated, frame_readings, shown_signal
+from tactsim.live.messages import Scales, frame_message
+from tactsim.live.recorded import result_recordings
+from tactsim.live.samples import Samples
+from tactsim.live.thinking import estimate_message
+
+
+def test_frames_between_the_steps_are_linear_and_the_jaws_follow(tmp_path: Path) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    frame = recording.at(0.625)
+    np.testing.assert_allclose(frame.forces, taxel_forces()[-1] * 0.625, rtol=1e-12)
+    assert frame.closing == pytest.approx(0.625e-3)
+    np.testing.assert_allclose(recording.scene.places_at(frame.closing)[:, 2], [20e-3 - 0.625e-3, 0.625e-3])
+    np.testing.assert_allclose(recording.at(5.0).forces, taxel_forces()[-1])
+    np.testing.assert_allclose(recording.at(-5.0).forces, taxel_forces()[0])
+
+
+def test_a_taxel_that_is_null_in_the_result_is_dead(tmp_path: Path) -> None:
+    forces = taxel_forces(1)
+    forces[0, 1, 2, 0] = np.nan
+    recording = result_recordings(grasp_folder(tmp_path / "a", forces))["taxel_force"]
+    assert recording.frame(0).notes() == ("dead or saturated taxels, interpolated from their neighbours: L3,1",)
+
+
+def change(folder: Path, place: tuple[str, ...], value: object) -> Path:
+    """Overwrites something in result.json."""
+    path = folder / "result.json"
+    content = json.loads(path.read_text())
+    part = content
+    for key in place[:-1]:
+        part = part[key]
+    part[place[-1]] = value
+    path.write_text(json.dumps(content))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("quantities", "taxel_force_upper_history", "value"), [[[1.0, 2.0]] * 2] * 4),
+        (("quantities", "taxel_force_upper_history", "value"), "x"),
+        (("quantities", "time_history", "value"), [0.1, 0.2, 0.2, 0.3]),
+        (("quantities", "time_history", "value"), [0.1]),
+        (("details", "matrix", "rows"), -1),
+        (("details", "matrix", "rows"), 4),
+        (("details", "block_size"), None),
+        (("details", "jaws"), {}),
+    ],
+)
+def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str, ...], value: object) -> None:
+    folder = change(grasp_folder(tmp_path / "a"), place, value)
+    with pytest.raises(StorageError, match="is not a complete result of a grasp"):
+        result_recordings(folder)
+
+
+def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(8, lump=0.0), lump=False)))
+    choice = BY_NAME["thesis_reference"]
+    for time in (0.3, 0.77, 1.0):
+        signal, words = shown_signal(frame_readings(recording.scene, recording.at(time), choice, reference))
+        np.testing.assert_allclose(signal, time * (taxel_forces()[-1] - 0.1), rtol=1e-9)
+        assert words == "force above that of the reference"
+    found = estimated(recording.scene, frame_readings(recording.scene, recording.at(1.0), choice, reference), choice, reference)
+    assert found["present"]
+    assert found["errors"][0].startswith("Off by")
+
+
+def test_an_estimator_without_its_reference_says_what_it_needs(tmp_path: Path) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    with pytest.raises(InputError, match="--reference FOLDER"):
+        frame_readings(recording.scene, recording.at(1.0), BY_NAME["model_based"], None)
+    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(2, 4), lump=False)))
+    with pytest.raises(InputError, match="another block or another matrix"):
+        frame_readings(recording.scene, recording.at(1.0), BY_NAME["model_based"], reference)
+    same = Reference.open(str(grasp_folder(tmp_path / "c", taxel_forces(2), lump=False)))
+    with pytest.raises(InputError, match="holds for a closing of 1 mm"):
+        same.response(0.5e-3)
+
+
+def test_a_model_that_cannot_be_had_is_told_in_words(tmp_path: Path) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(4, lump=0.0), lump=False)))
+    choice = BY_NAME["model_based"]
+    readings = frame_readings(recording.scene, recording.at(1.0), choice, reference)
+    told = json.loads(estimate_message(recording.scene, readings, choice, reference))
+    assert told["fault"]
+    assert not told["fault"].startswith("internal error")
+    assert (told["present"], told["inclusions"]) == (None, [])
+
+
+@pytest.mark.parametrize(
+    ("lump", "strength", "words"),
+    [(True, 0.0, "Missed: there is one inclusion"), (False, 1.0, "False alarm"), (False, 0.0, "True: there is no inclusion")],
+)
+def test_an_estimate_is_held_against_the_truth(tmp_path: Path, lump: bool, strength: float, words: str) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a", taxel_forces(1, lump=strength), lump=lump))["taxel_force"]
+    choice = BY_NAME["thesis"]
+    found = estimated(recording.scene, frame_readings(recording.scene, recording.frame(0), choice, None), choice, None)
+    assert found["errors"][0].startswith(words)
+
+
+def test_pictures_end_at_the_largest_value_so_far(tmp_path: Path) -> None:
+    recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    scales = Scales()
+    for time in (1.0, 0.25):
+        readings = frame_readings(recording.scene, recording.at(time), BY_NAME["thesis"], None)
+        message = frame_message(recording.scene, recording.at(time), readings, scales)
+        assert max(message[-18000:]) == pytest.approx(255 * time, abs=1)
+
+
+def test_a_sample_shows_what_the_store_holds_and_where_the_lump_was(tmp_path: Path) -> None:
+    samples = Samples.open(made_up_store(tmp_path))
+    recording = samples.recordings(3)["taxel_force"]
+    np.testing.assert_allclose(recording.forces[0], 1.3 * taxel_forces(1)[0])
+    assert recording.scene.inclusions is not None
+    center = samples.data["inclusion_center"].values[3, 0]
+    np.testing.assert_allclose(recording.scene.inclusions[0].center, center)  # type: ignore[attr-defined]
+    failed = samples.recordings(4)["taxel_force"]
+    assert not failed.valid.any()
+    assert failed.scene.notes == ("sample 4 is failed: ConvergenceError: residual <i>1</i>",)
+    assert samples.recordings(5)["taxel_force"].scene.notes == ("sample 5 is pending: it was not computed",)
+
+
+def test_samples_are_sought_in_both_directions_and_around_the_end(tmp_path: Path) -> None:
+    samples = Samples.open(made_up_store(tmp_path))
+    assert samples.chosen(status="done").tolist() == [0, 1, 2, 3]
+    parts = [samples.chosen(name).tolist() for name in samples.splits]
+    assert sorted(number for part in parts for number in part) == list(range(6))
+    assert [samples.near(1, move, status="done") for move in (-1, 0, 1)] == [0, 1, 2]
+    assert [samples.near(number, move, status="done") for number, move in ((0, -1), (3, 1))] == [3, 0]
+    assert [samples.near(0, move, status="failed") for move in (-1, 0, 1)] == [4, 4, 4]
+    empty = next(name for name in samples.splits if not len(samples.chosen(name, "failed")))
+    assert samples.near(0, 1, empty, "failed") is None
+    with pytest.raises(InputError, match="unknown split 'x'; known: train"):
+        samples.chosen("x")
+
+
+def test_samples_of_another_version_are_refused(tmp_path: Path) -> None:
+    samples = Samples.open(made_up_store(tmp_path))
+    other = samples.data.assign(case_id=("sample", ["0" * 16] * 6))
+    with pytest.raises(StorageError, match="another case than this version"):
+        Samples(samples.place, other).recordings(0)

@@ -1,0 +1,206 @@
+"""Candidates, evidence, and the estimator that tells one lump, two lumps, an artery and nothing apart."""
+
+import numpy as np
+import pytest
+
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.localization.candidates import ball_candidates, tube_candidates
+from tactsim.localization.confusion import ConfusionTable, class_of, estimated_class
+from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
+from tactsim.localization.evidence import Change, nothing
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+SIZE = np.array([40e-3, 40e-3, 20e-3])
+LAYOUT = TaxelLayout()
+RADII = np.array([2.5e-3, 3.5e-3, 4.5e-3, 5.5e-3])
+NOISE = 2e-3
+ESTIMATOR = HypothesesEstimator(model_error=0.02, radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3))
+GAP = ESTIMATOR.gap
+
+
+def density(places):
+    """A bell over every taxel that fades with the distance from its jaw, (2, 3, 3, n) in N/m^3."""
+    x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
+    away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
+    depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
+    return 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
+
+
+def block_response(change=density):
+    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip((40, 40, 20), SIZE, strict=True)]
+    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    volumes = np.full(len(places), np.prod(SIZE) / len(places))
+    return LumpResponse.of_density(places, volumes, change(places), size=SIZE, radii=RADII, spacing=2e-3)
+
+
+@pytest.fixture(scope="module")
+def response():
+    return block_response()
+
+
+def readings(response, change, *, seed=1, noise=NOISE, known=True):
+    generator = np.random.default_rng(seed)
+    forces, reference = (0.3 + part + noise * generator.standard_normal((2, 3, 3)) for part in (change, 0.0))
+    return Readings(forces, LAYOUT, SIZE, reference=reference if known else None, noise=noise, response=response)
+
+
+def balls(response, *centers, radius=4e-3, contrast=3.0):
+    return contrast * response.signal(np.array(centers), np.full(len(centers), radius)).sum(axis=0)
+
+
+def tube(response, *, angle=0, height=12e-3, contrast=3.0):
+    found = tube_candidates(response, SIZE, [3e-3], gap=GAP, closed=False)
+    direction = (found.ends - found.begins)[:, :2]
+    wanted = np.array([np.cos(angle), np.sin(angle)])
+    along = np.abs(direction @ wanted) / np.linalg.norm(direction, axis=1) > 1 - 1e-9
+    off = np.linalg.norm(found.centers[:, :2] - 20e-3, axis=1) + np.abs(found.centers[:, 2] - height) + 1.0 * ~along
+    number = int(off.argmin())
+    return contrast * found.signals[number].reshape(2, 3, 3), found.centers[number], found.radii[number]
+
+
+def test_a_tube_is_the_integral_of_a_constant_density_over_it():
+    flat = block_response(lambda places: np.ones((1, 1, 1, len(places))))
+    found = tube_candidates(flat, SIZE, [3e-3], gap=GAP, closed=True)
+    middle = np.abs(found.centers[:, 2] - 10e-3).argmin()
+    inner = np.linalg.norm(found.centers[:, :2] - 20e-3, axis=1) < 5e-3
+    chosen = found.chosen(inner & (found.centers[:, 2] == found.centers[middle, 2]))
+    volumes = np.pi * chosen.radii**2 * np.linalg.norm(chosen.ends - chosen.begins, axis=1)
+    # the ends lose up to 0.35 of the radius of the ball, and a cut tube gains as much at neither end
+    assert chosen.signals[:, 0] == pytest.approx(volumes, rel=0.1)
+    assert chosen.signals[:, 0] != pytest.approx(1.3 * volumes, rel=0.1)
+
+
+def test_overlapping_bodies_are_told():
+    response = block_response()
+    found = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
+    one = int(np.linalg.norm(found.centers - SIZE / 2, axis=1).argmin())
+    away = np.linalg.norm(found.centers - found.centers[one], axis=1)
+    np.testing.assert_array_equal(found.overlaps(one), away < 5e-3)
+    tubes = tube_candidates(response, SIZE, [2.5e-3], gap=GAP, closed=False, spacing=4e-3)
+    along = np.abs(tubes.begins[:, 1] - tubes.ends[:, 1]) < 1e-9
+    level = tubes.begins[:, 2] == tubes.begins[0, 2]
+    parallel = np.flatnonzero(along & level)
+    meets = tubes.overlaps(int(parallel[0]))
+    apart = np.abs(tubes.begins[parallel, 1] - tubes.begins[parallel[0], 1])
+    np.testing.assert_array_equal(meets[parallel], apart < 2 * tubes.radii[0])
+    assert meets[np.flatnonzero(level & ~along)].any()
+
+
+def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
+    found = ball_candidates(response, SIZE, [3.5e-3], gap=GAP).chosen(np.array([100]))
+    values = 0.02 * np.random.default_rng(3).standard_normal(18)
+    change = Change(values, 4e-4, 2.0)
+    covariance = 4e-4 * np.eye(18) + 4.0 * np.outer(found.signals[0], found.signals[0])
+    exact = -(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2
+    assert change.single(found).evidence == pytest.approx(exact, rel=1e-10)
+    assert change.single(found).evidence != pytest.approx(nothing(values, 4e-4), rel=1e-10)
+
+
+def test_the_evidence_of_pairs_is_their_mean_over_all(response):
+    found = ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3)
+    values = balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)).ravel()
+    change = Change(values, 2.5e-3, 5.0)
+    exact = []
+    for i in range(len(found)):
+        pairs = found.signals[i][:, None] * found.signals[i] + 2.5e-3 / 25 * np.eye(18)
+        base = 25 * pairs
+        for j in np.flatnonzero(~found.overlaps(i)):
+            covariance = base + 25 * np.outer(found.signals[j], found.signals[j])
+            exact.append(-(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2)
+    largest = max(exact)
+    mean = largest + np.log(np.exp(np.array(exact) - largest).sum() / len(found) ** 2)
+    sampled = [change.double(found, found, np.random.default_rng(seed)).evidence for seed in range(4)]
+    assert np.mean(sampled) == pytest.approx(mean, abs=0.2)  # scatter of 32 draws
+    assert np.mean(sampled) != pytest.approx(mean + np.log(2), abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["none", "lump", "two_lumps", "artery"])
+def test_classes_are_told_apart(response, name):
+    changes = {
+        "none": np.zeros((2, 3, 3)),
+        "lump": balls(response, (15e-3, 25e-3, 11e-3)),
+        "two_lumps": balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)),
+        "artery": tube(response, angle=np.pi / 6)[0],
+    }
+    found = ESTIMATOR.estimate(readings(response, changes[name]))
+    assert estimated_class(found) == name
+    assert found.classes[name] > 0.5
+    assert sum(found.classes.values()) == pytest.approx(1.0)
+    assert found.probability == pytest.approx(1 - found.classes["none"], abs=1e-9)
+    assert len(found.inclusions) == {"none": 0, "lump": 1, "two_lumps": 2, "artery": 1}[name]
+    wrong = ESTIMATOR.model_copy(update={"classes": ("lump",)}).estimate(readings(response, changes["two_lumps"]))
+    assert estimated_class(wrong) == "lump"
+
+
+def test_two_lumps_lie_where_they_are(response):
+    places = np.array([(11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)])
+    found = ESTIMATOR.estimate(readings(response, balls(response, *places)))
+    centers = np.array([one.center for one in found.inclusions])
+    order = np.argsort(centers[:, 0])
+    for center, body, place in zip(centers[order], np.array(found.inclusions)[order], places, strict=True):
+        reach = 3 * np.sqrt(np.diag(body.covariance)[:3]) + 1.5e-3
+        assert np.all(np.abs(center - place) < reach)
+        assert not np.all(np.abs(center - (places.sum(axis=0) - place)) < reach)
+
+
+@pytest.mark.parametrize("contrast", [3.0, -1.2])
+def test_a_tube_has_its_line_and_sign(response, contrast):
+    change, center, radius = tube(response, angle=np.pi / 2, contrast=contrast)
+    found = ESTIMATOR.estimate(readings(response, change, noise=5e-4)).inclusions[0]
+    assert found.kind == "tube"
+    assert np.sign(found.contrast) == np.sign(contrast)
+    line = np.array(found.line)
+    assert abs(line[0, 0] - line[1, 0]) < 1e-9
+    assert abs(found.center[0] - center[0]) < 1.5e-3
+    assert abs(found.radius - radius) < 2e-3
+
+
+def test_the_same_seed_gives_the_same_estimate(response):
+    given = readings(response, balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)))
+    lumps = ESTIMATOR.model_copy(update={"classes": ("lump", "two_lumps")})
+    first, again = (lumps.estimate(given).classes for _ in range(2))
+    assert first == again
+    other = lumps.model_copy(update={"seed": 2}).estimate(given).classes
+    assert other != first
+    assert other == pytest.approx(first, abs=0.05)
+
+
+def test_reference_and_response_are_needed(response):
+    with pytest.raises(InputError, match="reference"):
+        ESTIMATOR.estimate(readings(response, np.zeros((2, 3, 3)), known=False))
+    large = ESTIMATOR.model_copy(update={"gap": 9.9e-3})
+    with pytest.raises(InputError, match="fits into the block"):
+        large.estimate(readings(response, np.zeros((2, 3, 3))))
+
+
+def test_readings_equal_to_the_reference_without_noise_hold_nothing(response):
+    found = ESTIMATOR.estimate(readings(response, np.zeros((2, 3, 3)), noise=0.0))
+    assert not found.present
+    assert found.classes == dict.fromkeys(CLASSES, 0.0) | {"none": 1.0}
+
+
+def test_classes_by_shapes_and_by_estimates():
+    given = [(), ("sphere",), ("sphere", "ellipsoid"), ("tube",), ("tube", "tube"), ("sphere", "tube"), ("sphere",) * 3]
+    assert [class_of(kinds) for kinds in given] == [*CLASSES, None, None]
+    unknown = Estimate(True, (EstimatedInclusion("unknown", (0.0, 0.0, 0.0)),), "")
+    assert estimated_class(unknown) == "lump"
+    assert estimated_class(Estimate(False, (), "")) == "none"
+
+
+def test_the_table_counts():
+    table = ConfusionTable()
+    assert table.share_right is None
+    for true, found in (("lump", "lump"), ("lump", "two_lumps"), ("none", "none")):
+        table.add(true, found)
+    assert table.counts[1, 1:3].tolist() == [1, 1]
+    assert table.share_right == pytest.approx(2 / 3)
+    assert table.recalls == [1.0, 0.5, None, None, None]
+    with pytest.raises(InvalidQuantity, match="no class 'balls'"):
+        table.add("balls", "lump")
+
+
+def test_probabilities_of_classes_must_add_up():
+    with pytest.raises(InvalidQuantity, match=r"add up to 0\.5"):
+        Estimate(False, (), "", 0.0, {"none": 0.5})

@@ -1,0 +1,117 @@
+"""The learned estimator: trained on made-up grasps, kept, read again, refused."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from made_grasps import LAYOUT, NOISE, SIZE, made_samples, response
+
+from tactsim.dataset import training
+from tactsim.dataset.ranking import measures, outcomes
+from tactsim.errors import InputError, StorageError
+from tactsim.localization.estimators.learned import LearnedEstimator
+from tactsim.localization.interface import Readings
+from tactsim.localization.networks import LearnedWeights, Network, inputs, read_weights
+from tactsim.sensors.taxel_layout import TaxelLayout
+
+PLAIN = np.full((2, 3, 3), 0.3)
+
+
+def network(*shape):
+    generator = np.random.default_rng(sum(shape))
+    return Network(
+        tuple(0.1 * generator.standard_normal(pair) for pair in pairwise(shape)),
+        tuple(0.1 * generator.standard_normal(n) for n in shape[1:]),
+    )
+
+
+def weights(bias=5.0):
+    presence = Network((np.zeros((20, 1)),), (np.array([bias]),))
+    numbers = {"middle": np.zeros(20), "scale": np.ones(20), "covariance": 0.01 * np.eye(4), "growth": np.zeros(2)}
+    return LearnedWeights(
+        layout=LAYOUT, block_size=SIZE, places=(network(20, 8, 4), network(20, 6, 4)), presence=presence, held_out=3, **numbers
+    )
+
+
+def kept(folder, found):
+    path = folder / "weights.npz"
+    path.write_bytes(found.content())
+    return path
+
+
+def readings(layout=LAYOUT, size=SIZE):
+    change = 0.01 * np.random.default_rng(1).standard_normal((2, layout.rows, layout.columns))
+    plain = np.full(change.shape, 0.3)
+    return Readings(plain + change, layout, size, reference=plain, noise=NOISE)
+
+
+def test_weights_are_read_as_they_were_written(tmp_path):
+    path, told = kept(tmp_path, weights()), readings()
+    found = read_weights(path)
+    features = inputs(told.difference[None], told.reference[None], NOISE)[0]
+    for one, other in zip(found.place(features), weights().place(features), strict=True):
+        assert np.array_equal(one, other)
+    estimate = LearnedEstimator.checked(path).estimate(told)
+    assert estimate.present
+    assert estimate.inclusions[0].region.contains(np.array(estimate.inclusions[0].center))
+    assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(told).present
+
+
+def test_inputs_do_not_know_the_size_of_the_change_but_for_one():
+    change = np.random.default_rng(3).standard_normal((1, 2, 3, 3))
+    one, ten = (inputs(factor * change, PLAIN[None], NOISE)[0] for factor in (1, 10))
+    assert one[:-2] == pytest.approx(ten[:-2])
+    assert ten[-2] - one[-2] == pytest.approx(np.log(10))
+    with pytest.raises(InputError, match="no force"):
+        inputs(change, 0 * PLAIN[None], NOISE)
+
+
+def test_foreign_readings_and_files_are_refused(tmp_path):
+    estimator = LearnedEstimator.checked(kept(tmp_path, weights()))
+    with pytest.raises(InputError, match="trained on the matrix"):
+        estimator.estimate(readings(layout=TaxelLayout(rows=4, columns=3)))
+    with pytest.raises(InputError, match="trained on a block"):
+        estimator.estimate(readings(size=SIZE + 1e-3))
+    with pytest.raises(InputError, match="needs a reference"):
+        estimator.estimate(Readings(PLAIN, LAYOUT, SIZE))
+    for content in (b"nothing", b""):
+        (tmp_path / "bad.npz").write_bytes(content)
+        with pytest.raises(StorageError, match="does not hold"):
+            LearnedEstimator.checked(tmp_path / "bad.npz")
+    np.savez(tmp_path / "object.npz", schema=np.array({"a": 1}, dtype=object))
+    with pytest.raises(StorageError, match="does not hold"):
+        LearnedEstimator.checked(tmp_path / "object.npz")
+    np.savez(tmp_path / "other.npz", schema=np.array("tactsim/learned/9"))
+    with pytest.raises(StorageError, match="reads 'tactsim/learned/1'"):
+        LearnedEstimator.checked(tmp_path / "other.npz")
+
+
+def test_mirror_images_are_those_of_the_fast_model():
+    table = response()
+    samples = made_samples(9, table)
+    examples = training._examples(samples)
+    mirrored = training._mirrored(examples, samples)
+    assert len(mirrored.targets) == 16 * 9
+    there = np.isfinite(mirrored.targets[:, 0])
+    expected = 2.0 * table.signal(mirrored.targets[there, :3], mirrored.targets[there, 3])
+    size = np.abs(expected).max()
+    assert mirrored.changes[there] == pytest.approx(expected, abs=0.02 * size)  # the reference between its closings
+    assert mirrored.changes[there] != pytest.approx(expected[::-1], abs=0.06 * size)
+
+
+def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
+    pytest.importorskip("sklearn")
+    monkeypatch.setattr(training, "FAST", 1500)
+    monkeypatch.setattr(training, "NETWORKS", 2)
+    monkeypatch.setattr(training, "HIDDEN", (32,))
+    monkeypatch.setattr(training, "COPIES", 1)
+    table = response()
+    found = training.trained(made_samples(48, table, seed=2), table)
+    judged = made_samples(40, table, seed=5)
+    numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, found)), judged, None), SIZE)
+    guess = np.median([np.hypot(*(np.array(t.center)[:2] - 20e-3)) for t in judged.truths if t.present])
+    assert numbers["detection_rate"]["value"] > 0.8
+    assert numbers["lateral_error_with_misses"]["value"] < 0.5 * guess
+    assert numbers["coverage"]["value"] > 0.6
+    with pytest.raises(InputError, match="at least 20"):
+        training.trained(made_samples(10, table), table)

@@ -1,0 +1,57 @@
+"""Regions of highest density: what they hold and how large they are."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from tactsim.errors import InvalidQuantity
+from tactsim.localization.region import CellRegion, GaussianRegion
+
+AXES = tuple((np.arange(n) + 0.5) * 1e-3 for n in (20, 20, 10))
+MEAN = np.array([10e-3, 9e-3, 5e-3])
+COVARIANCE = np.diag([2e-3, 1e-3, 1.5e-3]) ** 2
+
+
+def cells():
+    places = np.stack(np.meshgrid(*AXES, indexing="ij"), axis=-1)
+    return CellRegion(AXES, multivariate_normal(MEAN, COVARIANCE).pdf(places))
+
+
+@pytest.mark.parametrize("probability", [0.5, 0.9])
+def test_gaussian_regions_hold_their_share_of_draws(probability):
+    draws = np.random.default_rng(2).multivariate_normal(MEAN, COVARIANCE, 1000)
+    held = np.mean([GaussianRegion(MEAN, COVARIANCE).contains(point, probability) for point in draws])
+    assert held == pytest.approx(probability, abs=0.045)  # three standard deviations of 1000 draws
+    narrow = np.mean([GaussianRegion(MEAN, COVARIANCE / 2).contains(point, probability) for point in draws])
+    assert narrow != pytest.approx(probability, abs=0.1)
+
+
+def test_cells_of_a_gaussian_agree_with_its_ellipsoid():
+    region = cells()
+    assert region.weights[region.inside(0.9)].sum() == pytest.approx(0.9, abs=0.01)
+    exact = GaussianRegion(MEAN, COVARIANCE)
+    width, height = region.sizes()
+    assert width == pytest.approx(exact.sizes()[0], rel=0.1)  # cells of 1 mm
+    assert height == pytest.approx(exact.sizes()[1], abs=1e-3)
+    assert region.contains(MEAN)
+    assert not region.contains(MEAN + np.array([6e-3, 0, 0]))
+    assert not region.contains(np.array([-1e-3, 9e-3, 5e-3]))
+
+
+def test_a_sure_region_is_one_cell():
+    weights = np.zeros((20, 20, 10))
+    weights[3, 4, 5] = 2.0
+    region = CellRegion(AXES, weights)
+    assert region.inside().sum() == 1
+    assert region.contains([3.9e-3, 4.1e-3, 5.5e-3])
+    assert not region.contains([4.1e-3, 4.1e-3, 5.5e-3])
+
+
+def test_what_is_no_region_is_refused():
+    for weights in (np.zeros((20, 20, 10)), -np.ones((20, 20, 10)), np.ones((2, 2, 2)), np.full((20, 20, 10), np.nan)):
+        with pytest.raises(InvalidQuantity):
+            CellRegion(AXES, weights)
+    with pytest.raises(InvalidQuantity, match="positive definite"):
+        GaussianRegion(MEAN, np.diag([1.0, 1.0, 0.0]))
+    with pytest.raises(InvalidQuantity, match="probability"):
+        GaussianRegion(MEAN, COVARIANCE).sizes(1.0)

@@ -1,0 +1,87 @@
+"""Graded cells around one lump: conforming, thin at the faces, sound wherever the lump lies, and the same every time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.block_source import GradedSource
+from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
+from tactsim.mesh.graded_block import graded_block
+from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.mesh_store import content_hash
+
+SIZE = (40e-3, 40e-3, 20e-3)
+CENTRED = Sphere(center=(20e-3, 20e-3, 10e-3), radius=5e-3)
+COARSE = BlockMeshSettings(size=6e-3, inclusion_size=5e-3, edge_size=1.6e-3, growth=0.7)
+
+
+def mirrored(mesh, axis):
+    """Whether the corners and the centres of the elements are their own mirror image."""
+    found = True
+    for points in (mesh.nodes, mesh.nodes[mesh.elements].mean(axis=1)):
+        image = points.copy()
+        image[:, axis] = SIZE[axis] - image[:, axis]
+        places = [np.round(p * 1e9).astype(np.int64) for p in (points, image)]
+        found &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
+    return found
+
+
+def random_lumps(count):
+    generator = np.random.default_rng(5)
+    for _ in range(count):
+        radius = generator.uniform(2e-3, 7e-3)
+        room = np.array(SIZE) - 2 * (radius + 0.6e-3)
+        yield Sphere(center=tuple(radius + 0.6e-3 + generator.random(3) * room), radius=radius)
+
+
+def test_lumps_anywhere_are_meshed_soundly():
+    for lump in random_lumps(12):
+        block = graded_block(SIZE, lump, COARSE)
+        assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
+        assert block.quality.minimum > 0.02
+        assert block.quality.curvature > 0
+        assert 8_000 < block.unknowns < 30_000
+
+
+def test_cells_are_thin_at_the_faces_and_thicker_inside():
+    block = graded_block(SIZE, None, COARSE)
+    for axis in range(3):
+        steps = np.diff(np.unique(block.mesh.nodes[:, axis].round(12)))[::2] * 2
+        assert steps[0] < 1.6 * COARSE.edge_size
+        assert steps[len(steps) // 2] > 1.5 * steps[0]
+        np.testing.assert_allclose(steps, steps[::-1], rtol=1e-6)
+    assert block.region_names == ("tissue",)
+
+
+def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
+    even = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
+    assert all(mirrored(even, axis) for axis in range(3))
+    odd = graded_block(SIZE, CENTRED, COARSE).mesh
+    assert not all(mirrored(odd, axis) for axis in range(3))
+
+
+def test_the_same_lump_has_the_same_mesh_and_another_has_another():
+    first, again = (graded_block(SIZE, CENTRED, COARSE) for _ in range(2))
+    other = graded_block(SIZE, Sphere(center=(20e-3, 20.1e-3, 10e-3), radius=5e-3), COARSE)
+    assert content_hash(first.mesh) == content_hash(again.mesh) != content_hash(other.mesh)
+    assert first.key == again.key != other.key
+
+
+def test_a_turned_ellipsoid_is_followed():
+    turned = Ellipsoid(center=(18e-3, 21e-3, 9e-3), semi_axes=(6e-3, 4e-3, 3e-3), rotation=(0.3, 0.2, 0.7))
+    block = graded_block(SIZE, turned, COARSE)
+    assert abs(block.volume_errors[1]) < VOLUME_TOLERANCE
+
+
+def test_what_cannot_be_meshed_is_refused_by_name():
+    tube = Tube(centre_line=((0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)), inner_radius=2e-3, wall=1e-3)
+    with pytest.raises(InputError, match="a tube cannot be meshed in graded cells; allowed: sphere, ellipsoid"):
+        graded_block(SIZE, tube, COARSE)
+    with pytest.raises(InputError, match="one inclusion or none, not 2"):
+        GradedSource(kind="graded").sourced(SIZE, [CENTRED, CENTRED])
+    with pytest.raises(InvalidQuantity, match="protrudes"):
+        graded_block(SIZE, Sphere(center=(20e-3, 20e-3, 3e-3), radius=5e-3), COARSE)
