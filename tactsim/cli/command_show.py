@@ -57,7 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
     if given:
         raise InputError(f"{', '.join(given)}: for the live page only; add --web")
     if arguments.result is None:
-        raise InputError("RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE")
+        raise InputError(
+            "RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE (see tactsim show --help)"
+        )
     if (arguments.result / "zarr.json").is_file():
         return _show_data_set(arguments)
     return _show_result(arguments)
