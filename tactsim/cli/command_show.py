@@ -58,7 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"{', '.join(given)}: for the live page only; add --web")
     if arguments.result is None:
         raise InputError(
-            "RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE (see tactsim show --help)"
+            "RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE; "
+            "tactsim show --help tells more"
         )
     if (arguments.result / "zarr.json").is_file():
         return _show_data_set(arguments)
