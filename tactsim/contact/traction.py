@@ -94,7 +94,7 @@ class ContactPair:
     forces as unknowns of their own, updated by their linearisation and condensed point by point (the mixed integration point
     method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
     against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
-    doi:10.1137/060671061).
+    doi:10.1137/060671061). ``grip`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
     """
 
     body: RigidBody

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -13,6 +13,7 @@ from tactsim.errors import InputError
 from tactsim.experiments.localization_source import (
     SIDES,
     Source,
+    away_from_truth,
     folder_words,
     readings_of,
     stored_grasp,
@@ -169,15 +170,10 @@ def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quanti
     """Errors of the strongest inclusion against the true one nearest to it in plan."""
     if not estimate.inclusions or not true:
         return {}
-    center: Any = np.asarray(estimate.inclusions[0].center)
-    points = np.concatenate(true)
-    away = np.hypot(*(points - center)[:, :2].T)
-    nearest = points[int(away.argmin())]
+    nearest, lateral, depth = away_from_truth(np.array(estimate.inclusions[0].center), np.concatenate(true))
     of = "of the strongest inclusion from the nearest true one (its centre, or the centre line of an artery)"
     return {
         "true_center": Quantity(nearest.tolist(), "m", "x, y, z of the true inclusion nearest in plan, in the undeformed block"),
-        "lateral_error": Quantity(float(away.min()), "m", f"distance in plan {of}"),
-        "depth_error": Quantity(
-            float(center[2] - nearest[2]), "m", f"height {of}; positive if estimated too near to the upper jaw"
-        ),
+        "lateral_error": Quantity(lateral, "m", f"distance in plan {of}"),
+        "depth_error": Quantity(depth, "m", f"height {of}; positive if estimated too near to the upper jaw"),
     }

@@ -112,6 +112,16 @@ def true_places(inclusion: Inclusion, size: Array) -> Array:
     return np.array([inclusion.solids(size)[0].bounds().mean(axis=0) if center is None else center], dtype=float)
 
 
+def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:
+    """The true place (3,) nearest in plan among ``places`` (n, 3), and the distances of a centre (3,) from it, all in m.
+
+    The distances are that in plan, and that in height, positive if the centre is nearer to the upper jaw.
+    """
+    away = center - places
+    nearest = int(np.hypot(*away[:, :2].T).argmin())
+    return places[nearest], float(np.hypot(*away[nearest, :2])), float(away[nearest, 2])
+
+
 def _taxels(result: Result, name: str) -> Array:
     return np.array([result.quantities[f"{name}_{side}"].value for side in SIDES], dtype=float)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import stored_grasp, true_places, with_reference
+from tactsim.experiments.localization_source import SAME_CLOSING, away_from_truth, stored_grasp, true_places, with_reference
 from tactsim.experiments.response_store import stored_response
 from tactsim.live.recorded import result_recordings
 from tactsim.live.scene import Frame, Recording, Scene
@@ -20,8 +20,6 @@ from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 
 Array = np.ndarray
-SAME = 1e-3
-"""Largest relative difference of two closings that count as the same."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class Reference:
             If the jaws have closed by another way in m than the reference at its end, for which the model holds.
         """
         last = self.recording.frame(len(self.recording.times) - 1).closing
-        if closing is not None and last is not None and abs(closing - last) > SAME * abs(last):
+        if closing is not None and last is not None and abs(closing - last) > SAME_CLOSING * abs(last):
             raise InputError(
                 f"the model of the tissue holds for a closing of {format_quantity(last, 'm')}, where the reference ends; "
                 f"here it is {format_quantity(closing, 'm')}: go to that step, or give a reference that ends here"
@@ -92,7 +90,7 @@ class Reference:
             return last
         if frame.time is not None:
             found = recording.at(frame.time)
-            if found.closing is not None and abs(found.closing - closing) <= SAME * abs(closing):
+            if found.closing is not None and abs(found.closing - closing) <= SAME_CLOSING * abs(closing):
                 return found
         way = recording.closings
         rising = len(way) > 1 and bool((np.diff(way) > 0).all()) and way[0] <= closing <= way[-1]
@@ -179,11 +177,9 @@ def _errors(scene: Scene, found: Estimate) -> list[str]:
         count = len(scene.inclusions)
         return [f"Missed: there {'is one inclusion' if count == 1 else f'are {count} inclusions'}"]
     points = np.concatenate([true_places(shape, scene.size) for shape in scene.inclusions])
-    away = np.array(found.inclusions[0].center) - points
-    nearest = int(np.hypot(*away[:, :2].T).argmin())
-    lateral, depth = 1e3 * float(np.hypot(*away[nearest, :2])), 1e3 * float(away[nearest, 2])
+    _, lateral, depth = away_from_truth(np.array(found.inclusions[0].center), points)
     size = _radius_error(scene, found.inclusions[0])
-    return [f"Off by {lateral:.1f} mm in plan and {depth:+.1f} mm in height{size}"]
+    return [f"Off by {1e3 * lateral:.1f} mm in plan and {1e3 * depth:+.1f} mm in height{size}"]
 
 
 def _radius_error(scene: Scene, one: EstimatedInclusion) -> str:

@@ -19,7 +19,7 @@ from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 from tactsim.mesh.solid import Inclusion
-from tactsim.mesh.structured_block import SIDES, blown, directions, grid, skin, stacked
+from tactsim.mesh.structured_block import SIDES, blown, directions, grid, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
 Array = np.ndarray
@@ -72,11 +72,10 @@ def graded_block(
     solid = inclusion.solids(extent)[0]
     if not isinstance(solid, EllipsoidSolid):
         raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
-    stretch = solid.turn * solid.semi_axes @ solid.turn.T  # symmetric: maps the ball onto the lump without a twist
     across = max(LEAST_ACROSS, round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size))
     for finer in range(ATTEMPTS):
-        corners, cells, labels = _around(solid, stretch, _lines(solid, extent, settings, across + finer), across + finer)
-        simplices = _sixths(cells, _mirrored_places(corners, solid.center, stretch))
+        corners, cells, labels = _around(solid, _lines(solid, extent, settings, across + finer), across + finer)
+        simplices = _sixths(cells, _mirrored_places(corners, solid.center, solid.stretch))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
         except ConvergenceError:
@@ -85,14 +84,14 @@ def graded_block(
     raise AssertionError("every attempt returns or raises")
 
 
-def _around(solid: EllipsoidSolid, stretch: Array, lines: Sequence[_Line], across: int) -> tuple[Array, Array, Array]:
+def _around(solid: EllipsoidSolid, lines: Sequence[_Line], across: int) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
     corners, outside = _tensor(lines, across)
     logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, across + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     core = grid((across,) * 3)
     shell, quads = skin(core, logical)
-    inner = solid.center + blown(logical) @ stretch
-    wall = solid.center + directions(logical[shell]) @ stretch
+    inner = solid.center + blown(logical) @ solid.stretch
+    wall = solid.center + directions(logical[shell]) @ solid.stretch
     steps = np.stack(np.unravel_index(shell, (across + 1,) * 3)) + np.array([[line.first] for line in lines])
     on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.places) for line in lines))
     added, rounded, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
@@ -152,10 +151,7 @@ def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:
     """
     distances = np.abs(np.linalg.solve(stretch, (corners - center).T).T)
     distances = (distances / distances.max()).round(9)
-    order = np.lexsort((*distances.T, distances.max(axis=1), -np.linalg.norm(distances, axis=1).round(9)))
-    places = np.empty(len(order), dtype=np.int64)
-    places[order] = np.arange(len(order))
-    return places
+    return ranks((*distances.T, distances.max(axis=1), -np.linalg.norm(distances, axis=1).round(9)))
 
 
 def _sixths(cells: Array, places: Array) -> Array:

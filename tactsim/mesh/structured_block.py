@@ -93,9 +93,8 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, around + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     core = grid((around,) * 3)
     shell, quads = skin(core, logical)
-    stretch = solid.turn * solid.semi_axes @ solid.turn.T  # symmetric: maps the ball onto the lump without a twist
-    inner = solid.center + blown(logical) @ stretch
-    wall = solid.center + directions(logical[shell]) @ stretch
+    inner = solid.center + blown(logical) @ solid.stretch
+    wall = solid.center + directions(logical[shell]) @ solid.stretch
     outer = (logical[shell] + 1) / 2 * extent
     layers = [inner[shell] + share * (wall - inner[shell]) for share in np.arange(1, within + 1) / within]
     layers += [wall + share * (outer - wall) for share in beyond]
@@ -157,7 +156,12 @@ def _mirrored_order(logical: Array, shell: Array, layers: int) -> Array:
     """Places (n,) of the corners in an order that is the same for a side of a cell and for its mirror images."""
     distances = np.vstack([np.abs(logical), *[np.abs(logical[shell])] * layers]).round(9)
     depth = np.repeat(np.arange(layers + 1), [len(logical), *[len(shell)] * layers])
-    order = np.lexsort((*distances.T, depth))
+    return ranks((*distances.T, depth))
+
+
+def ranks(keys: tuple[Array, ...]) -> Array:
+    """Places (n,) of entries in the order of their keys (n,), the last key first."""
+    order = np.lexsort(keys)
     places = np.empty(len(order), dtype=np.int64)
     places[order] = np.arange(len(order))
     return places

@@ -46,6 +46,11 @@ class EllipsoidSolid(Solid):
         self.center, self.semi_axes, self.turn = center, semi_axes, turn
         self.patches = (self.project,)
 
+    @property
+    def stretch(self) -> Array:
+        """Symmetric matrix (3, 3) in m that maps the unit ball onto the ellipsoid about its centre, without a twist."""
+        return self.turn * self.semi_axes @ self.turn.T
+
     def project(self, points: Array) -> tuple[Array, Array]:
         """Nearest points and outward normals, both (n, 3)."""
         local = (points - self.center) @ self.turn
