@@ -95,6 +95,7 @@ class ContactPair:
     method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
     against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
     doi:10.1137/060671061). ``grip`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
+    ``held_limit`` (n,) in Pa, if given, limits the tangential traction whatever the pressure (friction after Tresca).
     """
 
     body: RigidBody
@@ -103,6 +104,7 @@ class ContactPair:
     tangential_penalty: Array | float = 1.0
     switch_stiffness: float = 1.0
     grip: Array | float = 1.0
+    held_limit: Array | None = None
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
         """The same pair, regularised otherwise (all in Pa/m)."""
@@ -110,7 +112,19 @@ class ContactPair:
 
     def traction_limit(self, pressure: Array) -> Array:
         """Largest tangential traction (n,) in Pa under pressures (n,) in Pa."""
+        if self.held_limit is not None:
+            return self.held_limit
         return np.where(self.grip == 0, 0.0, self.law.traction_limit(pressure))
+
+    def limit_slope(self, pressure: Array) -> Array:
+        """How the limit (n,) grows with the pressure."""
+        if self.held_limit is not None:
+            return np.zeros_like(pressure)
+        return self.grip * self.law.traction_limit_slope(pressure)
+
+    def with_held_limit(self, pressure: Array) -> ContactPair:
+        """The same pair with the limits that hold under pressures (n,) in Pa."""
+        return replace(self, held_limit=self.traction_limit(pressure))
 
     def iterate(self, state: ContactState) -> ContactIterate:
         """Where Newton starts: the forces of the last accepted step."""
@@ -151,7 +165,7 @@ class ContactPair:
         across = np.eye(len(points))[:, :, None] - direction[:, None] * direction[None, :]
         spread = np.where(slips, limit, 0.0) / np.where(slips, size, 1.0)
         tangential_slope = spread * np.einsum("ijn,jkn->ikn", across, decider_slope) + np.where(sticks, trial_slope, 0.0)
-        limit_slope = np.where(slips, self.grip * self.law.traction_limit_slope(weight), 0.0)
+        limit_slope = np.where(slips, self.limit_slope(weight), 0.0)
         coupling = limit_slope * direction[:, None] * slope[None, :]
         at_limit = np.where(slips, limit, 0.0) + limit_slope * (pressure - weight)
         tangential = np.where(slips, at_limit * direction, np.where(sticks, trial, 0.0))

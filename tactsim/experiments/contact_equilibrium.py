@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Kinematics, PastStress
-from tactsim.fem.newton import FollowerLoad, Problem
+from tactsim.fem.newton import Equilibrium, FollowerLoad, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 
 Array = np.ndarray
@@ -20,6 +21,10 @@ PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
 AUGMENTATIONS = 12
 """How often with better multipliers."""
+STALLED = 0.1
+"""Residual below which Newton was near."""
+HELD_ROUNDS = 6
+"""How often limits of friction are held before a step counts as failed."""
 COARSE = 1e-3
 """Residual that suffices between augmentations."""
 
@@ -65,7 +70,7 @@ def contact_equilibrium(
     coarse = COARSE if regularisation.augments else 0.0
     for _ in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
-        solved = problem.solve(guess, interfaces=contacts, loads=loads, push=push, past=past, coarse=coarse)
+        solved = _solved(problem, guess, contacts, loads=loads, push=push, past=past, coarse=coarse)
         load += solved.travel
         contacts = _moved(before, load - state.load, directions, regularisation)
         iterations += solved.iterations
@@ -90,6 +95,30 @@ def contact_equilibrium(
             before = tuple(old.augmented(result) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
     raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
+
+
+def _solved(problem: Problem, guess: Array, contacts: Sequence[PosedContact], **settings: Any) -> Equilibrium:
+    """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
+    not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
+    doi:10.1007/BF00534623, is Coulomb's)."""
+    try:
+        return problem.solve(guess, interfaces=contacts, **settings)
+    except ConvergenceError as failure:
+        stalled = failure
+    for _ in range(HELD_ROUNDS):
+        if not stalled.history or stalled.history[-1] > STALLED:
+            break
+        u = problem.body.space.split(guess)[0]
+        held = [contact.holding(contact.surface.points.interpolate(u)) for contact in contacts]
+        between = problem.solve(guess, interfaces=held, **settings)
+        guess = between.unknowns
+        u = problem.body.space.split(guess)[0]
+        begun = [c.resumed(c.at(c.surface.points.interpolate(u))) for c in contacts]
+        try:
+            return problem.solve(guess, interfaces=begun, **settings)
+        except ConvergenceError as failure:
+            stalled = failure
+    raise stalled
 
 
 def _moved(

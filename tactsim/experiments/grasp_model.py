@@ -31,6 +31,8 @@ CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0
 """Directions in which the jaws close."""
 TOUCH = 1e-15
 """Gap at touch over the size of the block."""
+LEAST_STRETCH = 0.5
+"""Of a first guess."""
 MOST_APPROACHES = 1000
 """Steps of the approach; each is as long as the gap, which shrinks fast unless the jaw misses the block."""
 
@@ -101,6 +103,19 @@ class GraspModel:
         )
         unknowns = np.zeros(self.space.size)
         return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+
+    def compressed(self, closing: float) -> Array:
+        """Unknowns (size,) of the block under uniform compression at constant volume, each jaw's face closed by ``closing`` in m.
+
+        Newton starts there: from the undeformed block, its first step would turn thin cells at the free edges inside out.
+        """
+        low, high = self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)
+        height = (high - low)[2]
+        stretch = max(1 - 2 * closing / height, LEAST_STRETCH)
+        unknowns = np.zeros(self.space.size)
+        wider = stretch**-0.5 - 1
+        self.space.split(unknowns)[0][:] = (self.mesh.nodes - (low + high) / 2) * [wider, wider, stretch - 1]
+        return unknowns
 
     def _grip(self, side: str) -> Array:
         """One at the surface points (n,) of the face under a jaw, zero at those beside it, which roll onto it."""

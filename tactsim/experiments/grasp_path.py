@@ -22,6 +22,9 @@ MANY_ITERATIONS = 60
 TOUCH = 0.1
 """First guess of a closing under a force in penetration tolerances, so that the jaws touch."""
 
+PRESSED = 0.1
+"""Largest penetration of the first guess of a closing, over the closing, so that the jaws touch."""
+
 
 def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
     """The path through all histories of a grasp, from jaws that just touch."""
@@ -35,7 +38,7 @@ class GraspedBlock:
     """Answers the closing in m or the force in N of each jaw, and the pressure in Pa of each lumen."""
 
     def __init__(self, experiment: GraspSetup, model: GraspModel):
-        self._model, self._touch = model, TOUCH * experiment.tolerance
+        self._model, self._touch, self._tolerance = model, TOUCH * experiment.tolerance, experiment.tolerance
         self._by_force = experiment.loading.control == "force"
         facets = [model.facets[f"lumen:{number}"] for number in experiment.lumens]
         self._walls = [FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets]
@@ -51,6 +54,8 @@ class GraspedBlock:
         """The equilibrium under a closing or force and pressures; jaws without a force stay where they are."""
         model, pressures = self._model, [wall.at(p) for wall, p in zip(self._walls, loads[1:], strict=True)]
         if not self._by_force:
+            if loads[0] > now.load and not now.unknowns.any():
+                guess = np.append(model.compressed(loads[0] + min(self._tolerance, PRESSED * loads[0])), loads[0])
             return model.equilibrium(now, loads[0], guess[:-1], past=past, loads=pressures)
         if loads[0] == 0:
             return model.equilibrium(now, now.load, guess[:-1], past=past, loads=pressures)

@@ -65,6 +65,12 @@ class PosedContact:
         """The pair for a solution that goes on from forces found already."""
         return replace(self, begin=ContactIterate(now.pressure, now.tangential))
 
+    def holding(self, displacement: Array) -> PosedContact:
+        """The pair with its forces and limits of friction at displacements (d, n) of the points: Newton starts from the forces,
+        the limits stay."""
+        now = self.at(displacement)
+        return replace(self.resumed(now), pair=self.pair.with_held_limit(now.pressure))
+
     def augmented(self, now: ContactTraction) -> PosedContact:
         """The pair before the step, with the forces that were found for it as multipliers."""
         return replace(self, state=self.state.augmented(now))
@@ -92,6 +98,11 @@ class PosedContact:
     def start(self) -> ContactIterate:
         """Newton starts from the forces of the last accepted step, or those of a solution to be made exact."""
         return self.pair.iterate(self.state) if self.begin is None else self.begin
+
+    def settled(self, displacement: Array) -> ContactIterate:
+        """The forces that hold at displacements (d, n) of the points."""
+        now = self.at(displacement)
+        return ContactIterate(now.pressure, now.tangential)
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa."""

@@ -18,7 +18,7 @@ from tactsim.fem.surface import SurfaceAssembly
 Array = np.ndarray
 
 
-CYCLE_AFTER = 10
+CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
 """A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, goes in a circle."""
 ROUND_OFF = 128 * np.finfo(float).eps
@@ -43,6 +43,9 @@ class Interface(Protocol):
 
     def start(self) -> Any:
         """The carried forces at the beginning."""
+
+    def settled(self, displacement: Array) -> Any:
+        """The carried forces that hold at displacements (d, n) of the points."""
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa that holds at displacements (d, n) of the points."""
@@ -76,10 +79,12 @@ class NewtonOptions:
     """Largest residual over the largest nodal force (not below round-off), and over the mean nodal volume."""
     max_iterations: int = 25
     smallest_damping: float = 1 / 256
-    relaxation: float = 0.5
-    """Step length once the residual moves in circles."""
+    search_halvings: int = 5
+    """How often a step is halved for a smaller residual, once the residual has moved in circles."""
     patience: int = 8
     """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
+    most_halvings: int = 10
+    """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
     volume_floor: float = 0.2
     """A step is shortened until no J falls below this part of the smallest J before it."""
 
@@ -99,6 +104,21 @@ class Equilibrium:
     def iterations(self) -> int:
         """Linear systems solved."""
         return len(self.history) - 1
+
+
+@dataclass(frozen=True)
+class _Iterate:
+    """Where Newton is: ``internal`` less external nodal forces in N, the interfaces' moves in m and tractions in Pa, the relative
+    ``residual``, and the root of the sum of all squared ``unbalanced`` forces in N."""
+
+    unknowns: Array
+    kinematics: Kinematics
+    travel: float
+    internal: Array
+    moved: list[Array]
+    tractions: tuple[Array, ...]
+    residual: float
+    unbalanced: float
 
 
 class Problem:
@@ -144,40 +164,73 @@ class Problem:
         tolerance = max(options.tolerance, coarse)
         body = self.body if past is None else self.body.with_past(past)
         carried = [interface.start() for interface in interfaces]
-        unknowns = guess.copy()
+        unknowns, halvings = guess.copy(), 0
         kinematics = self._admissible(unknowns, 0.0)
         if kinematics is None:
             raise ConvergenceError("an element is inside out in the state that Newton starts from")
+        forces = (interfaces, loads, nodal_force, push)
+        state = self._balance(body, unknowns, kinematics, travel, forces)
+        searching = False
         for iteration in range(options.max_iterations + 1):
-            internal = body.residual(unknowns, kinematics)
-            scale = np.abs(internal[: body.space.displacement_size]).max()
-            internal -= self._nodal(unknowns, loads, nodal_force)
-            moved = self._displacements(unknowns, interfaces, push, travel)
-            tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
-            noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
-            history.append(self._residual_norm(internal, scale, interfaces, (tractions, noise)))
-            if push is not None:
-                surfaces = [interface.surface for interface in interfaces]
-                history[-1] = max(history[-1], push.error(surfaces, tractions, noise, options.tolerance))
+            history.append(state.residual)
             if history[-1] < tolerance:
-                return Equilibrium(unknowns, kinematics, tractions, tuple(history), travel)
-            if iteration == options.max_iterations or not np.isfinite(history[-1]) or self._stagnates(history):
+                return Equilibrium(state.unknowns, state.kinematics, state.tractions, tuple(history), state.travel)
+            exhausted = iteration == options.max_iterations or halvings > options.most_halvings
+            if exhausted or not np.isfinite(history[-1]) or self._stagnates(history):
                 break
-            now = [i.linearised(d, c) for i, d, c in zip(interfaces, moved, carried, strict=True)]
+            if searching := searching or self._cycles(history):
+                carried = [i.settled(d) for i, d in zip(interfaces, state.moved, strict=True)]
+            now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.moved, carried, strict=True)]
             needed = SHARE_OF_TOLERANCE * tolerance / history[-1]
             accuracy = min(max(FORCING * history[-1], needed), LARGEST_FORCING)
-            parts = (interfaces, now, loads, accuracy)
-            step, further = self._linear_step((body, unknowns, kinematics), internal, parts, push)
-            largest = options.relaxation if self._cycles(history) else 1.0
-            damping, kinematics = self._damped(unknowns, step, kinematics, largest)
-            unknowns, travel = unknowns + damping * step, travel + damping * further
+            step, further = self._linear_step(body, state, (interfaces, now, loads, accuracy), push)
+            damping, admissible = self._damped(state.unknowns, step, state.kinematics)
+            halvings += round(-np.log2(damping))
+            search = options.search_halvings if searching else 0
+            damping, state = self._searched(body, state, (step, further), (damping, admissible, search), forces)
             moves = self._displacements(step, interfaces, push, further)
             carried = [i.advanced(n, c, move, damping) for i, n, c, move in zip(interfaces, now, carried, moves, strict=True)]
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
+    def _balance(self, body: Body, unknowns: Array, kinematics: Kinematics, travel: float, forces: tuple[Any, ...]) -> _Iterate:
+        """The iterate at these unknowns with the forces that hold there."""
+        interfaces, loads, nodal_force, push = forces
+        internal = body.residual(unknowns, kinematics)
+        scale = np.abs(internal[: body.space.displacement_size]).max()
+        internal -= self._nodal(unknowns, loads, nodal_force)
+        moved = self._displacements(unknowns, interfaces, push, travel)
+        tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
+        noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
+        residual, unbalanced = self._residual_norm(internal, scale, interfaces, (tractions, noise))
+        if push is not None:
+            surfaces = [interface.surface for interface in interfaces]
+            residual = max(residual, push.error(surfaces, tractions, noise, self.options.tolerance))
+        return _Iterate(unknowns, kinematics, travel, internal, moved, tractions, residual, unbalanced)
+
+    def _searched(
+        self,
+        body: Body,
+        before: _Iterate,
+        way: tuple[Array, float],
+        start: tuple[float, Kinematics, int],
+        forces: tuple[Any, ...],
+    ) -> tuple[float, _Iterate]:
+        """The step length, halved some times at most until the unbalanced forces shrink, and where it leads."""
+        (step, further), (damping, kinematics, most) = way, start
+        for halved in range(most + 1):
+            if halved:
+                damping /= 2
+                kinematics = body.kinematics(before.unknowns + damping * step)
+            travel = before.travel + damping * further
+            after = self._balance(body, before.unknowns + damping * step, kinematics, travel, forces)
+            if after.unbalanced < before.unbalanced:
+                break
+        return damping, after
+
     @staticmethod
     def _cycles(history: list[float]) -> bool:
-        """Whether the residual is back where it was: contact points that switch together in a circle need shorter steps."""
+        """Whether the residual is back where it was: contact points switch in a circle. From then on Newton linearises the forces
+        that hold, not those it carries, and halves steps that raise the unbalanced forces."""
         return len(history) > CYCLE_AFTER and history[-1] > CYCLE_RATIO * min(history[-5:-1])
 
     def _stagnates(self, history: list[float]) -> bool:
@@ -201,9 +254,11 @@ class Problem:
             return moved
         return [displacement - travel * e[:, None] for displacement, e in zip(moved, push.directions, strict=True)]
 
-    def _residual_norm(self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]) -> float:
+    def _residual_norm(
+        self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]
+    ) -> tuple[float, float]:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
-        error over the mean nodal volume."""
+        error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
         residual, split = internal.copy(), self.body.space.displacement_size
         scale, noise = max(scale, float(np.abs(internal[:split]).max())), self._noise.copy()
         for interface, traction, lost in zip(interfaces, *forces, strict=True):
@@ -213,22 +268,22 @@ class Problem:
             noise += interface.surface.largest_force(lost)[:split]
         residual = self.constraints.free(residual)
         unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.options.tolerance)).max()
-        return float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
+        relative = float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
+        return relative, float(np.linalg.norm(residual[:split]))
 
     def _linear_step(
-        self, state: tuple[Body, Array, Kinematics], internal: Array, parts: tuple[Any, ...], push: PrescribedForce | None
+        self, body: Body, state: _Iterate, parts: tuple[Any, ...], push: PrescribedForce | None
     ) -> tuple[Array, float]:
         """Newton's step of the unknowns, and of the interfaces' travel if their force is prescribed."""
-        body, unknowns, kinematics = state
         interfaces, now, loads, accuracy = parts
-        residual, data = internal.copy(), body.tangent(unknowns, kinematics)
+        residual, data = state.internal.copy(), body.tangent(state.unknowns, state.kinematics)
         coupling = np.zeros(len(data))
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
             data += interface.surface.stiffness(force.derivative)
             if force.coupling.any():
                 coupling += interface.surface.stiffness(force.coupling)
-        u, _ = body.space.split(unknowns)
+        u, _ = body.space.split(state.unknowns)
         for load in loads:
             data += load.stiffness(u)
         matrix = body.pattern.matrix(self.constraints.apply(data))
@@ -241,9 +296,9 @@ class Problem:
         further = border.travel(step, along)
         return step + further * along, further
 
-    def _damped(self, unknowns: Array, step: Array, before: Kinematics, damping: float) -> tuple[float, Kinematics]:
-        """Largest step length, halving from ``damping``, that keeps every element right side out."""
-        floor = self.options.volume_floor * min(1.0, float(before.J.min()))
+    def _damped(self, unknowns: Array, step: Array, before: Kinematics) -> tuple[float, Kinematics]:
+        """Largest step length, halving from one, that keeps every element right side out."""
+        floor, damping = self.options.volume_floor * min(1.0, float(before.J.min())), 1.0
         while damping >= self.options.smallest_damping:
             after = self._admissible(unknowns + damping * step, floor)
             if after is not None:

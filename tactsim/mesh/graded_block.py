@@ -27,6 +27,8 @@ EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that far away, where none is given."""
 ROOM = 0.6
 """How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
+NEAR = 1.5
+"""Gaps below which the box reaches to a face that a jaw presses, over the thickness of cells at the faces."""
 REACH = 2.0
 """Half width of the box over that of the lump, at most."""
 LEAST_ACROSS = 3
@@ -106,10 +108,11 @@ def _around(solid: EllipsoidSolid, lines: Sequence[_Line], across: int) -> tuple
 def _lines(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, across: int) -> list[_Line]:
     """For each axis: places graded from a face to the box, even through the box to its middle, and on to the other face."""
     lines = []
-    for (low, high), center, length in zip(solid.bounds().T, solid.center, extent, strict=True):
+    for axis, ((low, high), center, length) in enumerate(zip(solid.bounds().T, solid.center, extent, strict=True)):
         half = (high - low) / 2
-        begin = center - min(REACH * half, half + ROOM * low)
-        end = center + min(REACH * half, half + ROOM * (length - high))
+        below, above = (_left(gap, settings, pressed=axis == 2) for gap in (low, length - high))
+        begin = max(center - REACH * half, below)
+        end = min(center + REACH * half, length - above)
         before = _spaced(0.0, begin, settings, (True, False))
         after = _spaced(end, length, settings, (False, True))
         within = np.interp(np.linspace(-1, 1, across + 1), [-1, 0, 1], [begin, center, end])
@@ -117,9 +120,26 @@ def _lines(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, ac
     return lines
 
 
+def _left(gap: float, settings: BlockMeshSettings, *, pressed: bool) -> float:
+    """Way in m that the box leaves to a face ``gap`` away from the lump; none to a face that a jaw presses and that is near.
+
+    Thin cells along the edges of a pressed face turn inside out when the free faces roll onto the jaw.
+    """
+    if pressed and gap < NEAR * _edge(settings):
+        return 0.0
+    return (1 - ROOM) * gap
+
+
+def _edge(settings: BlockMeshSettings) -> float:
+    """Thickness of cells at the faces in m."""
+    return min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
+
+
 def _spaced(begin: float, end: float, settings: BlockMeshSettings, at_face: tuple[bool, bool]) -> Array:
     """Ascending places in m between two, spaced by ``edge_size`` at a face and growing up to ``size``."""
-    edge = min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
+    if end <= begin:
+        return np.array([begin])
+    edge = _edge(settings)
     fine = np.linspace(begin, end, 400)
     wanted = np.full(fine.shape, settings.size)
     for there, away in zip(at_face, (fine - begin, end - fine), strict=True):

@@ -85,8 +85,11 @@ def test_tractions_stay_in_the_cone_and_never_pull(kind, law, dim):
 
 @pytest.mark.parametrize(("kind", "dim"), PLACED)
 @pytest.mark.parametrize("law", sorted(LAWS))
-def test_newton_sees_the_derivative_of_the_traction(kind, law, dim):
+@pytest.mark.parametrize("held", [False, True])
+def test_newton_sees_the_derivative_of_the_traction(kind, law, dim, held):
     pair, state, moved = pressed(BODIES[kind].example(), LAWS[law].example(), dim)
+    if held:
+        pair = pair.with_held_limit(pair.converged(moved, state).pressure)
     carried = pair.iterate(pair.converged(moved, state).commit())
     now = pair.linearised(moved, state, carried)
     np.testing.assert_allclose(now.traction, pair.converged(moved, state).traction, atol=1e-6 * np.abs(now.traction).max())
@@ -99,3 +102,13 @@ def test_newton_sees_the_derivative_of_the_traction(kind, law, dim):
         slope = (above - below) / (2 * step)
         kink = np.abs(slope - now.derivative[:, axis]).max(axis=0) > 1e-3 * pair.penalty
         assert kink.mean() < 0.05
+
+
+@pytest.mark.parametrize("grip", [0.0, 1.0])
+def test_a_held_limit_does_not_follow_the_pressure(grip):
+    pressures = np.array([0.0, 1e3, 2e3])
+    pair = ContactPair(BODIES["plane"].example(), LAWS["coulomb"](friction=0.5), grip=np.full(3, grip))
+    held = pair.with_held_limit(pressures)
+    np.testing.assert_allclose(held.traction_limit(10 * pressures), grip * 0.5 * pressures)
+    np.testing.assert_array_equal(held.limit_slope(pressures), 0)
+    np.testing.assert_allclose(pair.limit_slope(pressures), grip * 0.5)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from solids import box, facets_where, on_plane
@@ -9,8 +11,12 @@ from solids import box, facets_where, on_plane
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
+from tactsim.experiments import contact_equilibrium
+from tactsim.experiments.grasp import Grasp
 from tactsim.experiments.grasp_model import GraspModel
+from tactsim.fem import newton
 from tactsim.fem.loading import PathFollower, StepControl
+from tactsim.fem.time_steps import TimeMarcher
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded_block import graded_block
@@ -123,3 +129,40 @@ def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
 
 def test_without_contact_on_the_free_faces_they_would_pass_the_jaw():
     assert beyond_the_jaw(("upper", "lower")) > 50e-6
+
+
+STALLS = {
+    "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
+    "inclusions": [
+        {
+            "shape": {"kind": "sphere", "center": (20e-3, 22.1e-3, 7.1e-3), "radius": 4.3e-3},
+            "material": {"kind": "neo_hookean", "c10": 190e3},
+        }
+    ],
+    "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1.2e-3, "duration": 1.0}]},
+    "mesh": {"kind": "graded", "size": 6e-3, "inclusion_size": 5e-3, "edge_size": 1.2e-3, "growth": 1.2},
+    "time": {"steps": 1},
+}
+"""A hard lump in thin cells, closed in one step: its points stuck and slipped by turns until the step was a thousandth."""
+
+
+def test_a_grasp_whose_points_stick_and_slip_by_turns_ends_in_one_step():
+    result = Grasp.model_validate(STALLS).run(lambda step: None)
+    assert result.status == "converged"
+    assert len(result.steps) == 1
+
+
+def test_without_a_search_for_smaller_unbalanced_forces_it_would_not(monkeypatch):
+    monkeypatch.setattr(newton, "CYCLE_AFTER", 10**6)
+    monkeypatch.setattr(contact_equilibrium, "HELD_ROUNDS", 0)
+    monkeypatch.setattr(TimeMarcher, "march", _one_step_only(TimeMarcher.march))
+    result = Grasp.model_validate(STALLS).run(lambda step: None)
+    assert result.status != "converged"
+
+
+def _one_step_only(march):
+    def marched(self, *args, **settings):
+        self._control = replace(self._control, smallest=self._control.first)
+        return march(self, *args, **settings)
+
+    return marched

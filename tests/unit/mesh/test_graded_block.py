@@ -57,6 +57,15 @@ def test_cells_are_thin_at_the_faces_and_thicker_inside():
     assert block.region_names == ("tissue",)
 
 
+@pytest.mark.parametrize(("gap", "layers"), [(0.7e-3, 0), (2.3e-3, 0), (2.5e-3, 1)])
+def test_no_thin_layer_of_cells_is_left_between_a_box_and_a_pressed_face(gap, layers):
+    lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
+    nodes = graded_block(SIZE, lump, COARSE).mesh.nodes
+    edge = np.unique(nodes[(nodes[:, 0] == 0) & (nodes[:, 1] == 0), 2].round(9))
+    assert (edge < 0.41 * gap).sum() == 1 + 2 * layers  # the face itself, middles and far corners
+    assert np.diff(edge[::2]).min() > 0.9e-3
+
+
 def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
     even = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
     assert all(mirrored(even, axis) for axis in range(3))

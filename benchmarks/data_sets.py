@@ -1,0 +1,87 @@
+"""Speed of data sets: grasps per hour, ten thousand fast samples, opening a store; prints JSON.
+
+python benchmarks/data_sets.py [--held]
+
+With --held (an hour) also the error of the grasps' mesh: 20 samples that no sweep draws, against a fine mesh in four load steps.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from tactsim.dataset.drawing import drawn_specimen
+from tactsim.dataset.sweep import load_sweep
+from tactsim.experiments.grasp import Grasp
+from tactsim.results.result import Status
+
+CASES = Path(__file__).parents[1] / "cases"
+GRASPS, FAST = 60, 10_000
+STANDARD = ("experiment.contact.friction=0.6", "experiment.loading.pieces.0.to=1 mm")
+"""Friction and closing of the figure that is asked for; the sweep itself varies both."""
+OPENING = "import time; t = time.perf_counter(); import xarray; xarray.open_zarr({!r}); print(time.perf_counter() - t)"
+HELD, HELD_SEED = 20, 77
+FINE = {"size": 4e-3, "inclusion_size": 2.5e-3, "edge_size": 1e-3, "growth": 0.7}
+FINE_STEPS = 4
+
+
+def measure() -> dict[str, float]:
+    """Wall times in s of sweeps with a process per core, and what follows from them."""
+    with tempfile.TemporaryDirectory() as folder:
+        lumps, fast = Path(folder) / "lumps.zarr", Path(folder) / "fast.zarr"
+        overrides = [part for value in STANDARD for part in ("--set", value)] + ["--set", "sweep.within_specimen=[]"]
+        grasps = _swept(CASES / "sweep_lumps.yaml", lumps, GRASPS, *overrides, "--set", "sweep.samples_per_specimen=1")
+        quick = _swept(CASES / "sweep_closed_form.yaml", fast, FAST)
+        done = int((xarray.open_zarr(lumps)["status"] == 1).sum())
+        opening = float(subprocess.run([sys.executable, "-c", OPENING.format(str(fast))], check=True, capture_output=True).stdout)
+    return {
+        "grasps": float(GRASPS),
+        "grasps_done": float(done),
+        "grasp_seconds": grasps,
+        "grasps_per_hour": 3600 * done / grasps,
+        "fast_samples": float(FAST),
+        "fast_seconds": quick,
+        "open_seconds": opening,
+    }
+
+
+def _swept(case: Path, store: Path, samples: int, *options: str) -> float:
+    begin = time.perf_counter()
+    command = [sys.executable, "-m", "tactsim.cli", "sweep", str(case), "--out", str(store), "--samples", str(samples), "--quiet"]
+    subprocess.run([*command, *options], check=samples == FAST)
+    return time.perf_counter() - begin
+
+
+def held_errors(samples: range = range(HELD)) -> dict[str, float]:
+    """Largest differences of the taxels from those of the fine mesh, over the largest taxel, by held sample."""
+    sweep = load_sweep(CASES / "sweep_lumps.yaml", (f"sweep.seed={HELD_SEED}", "sweep.samples=60", *STANDARD[:1]))
+    errors: dict[str, float] = {}
+    for number in samples:
+        case = drawn_specimen(sweep, number)[0].case
+        assert case is not None
+        grasp = case.experiment
+        assert isinstance(grasp, Grasp)
+        finer = {"mesh": grasp.mesh.model_copy(update=FINE), "time": grasp.time.model_copy(update={"steps": FINE_STEPS})}
+        found = [_taxels(grasp), _taxels(grasp.model_copy(update=finer))]
+        errors[f"held_{number}"] = float(np.abs(found[0] - found[1]).max() / found[1].max())
+        sys.stderr.write(f"{number} {errors[f'held_{number}']:.4f}\n")
+    return errors
+
+
+def _taxels(grasp: Grasp) -> np.ndarray:
+    """Forces in N on the taxels of both jaws, NaN if the grasp did not converge."""
+    result = grasp.run(lambda record: None)
+    forces = np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return forces if result.status is Status.CONVERGED else forces * np.nan
+
+
+if __name__ == "__main__":
+    figures = held_errors() if "--held" in sys.argv[1:] else measure()
+    sys.stdout.write(json.dumps(figures, indent=2) + "\n")
