@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
@@ -21,6 +20,8 @@ from tactsim.localization.region import LEVEL
 Array = np.ndarray
 HIDDEN = (64, 64)
 NETWORKS = 4
+PASSES = 40
+"""Passes over the examples, as many whatever the loss does."""
 FAST = 8000
 """Grasps of the fast forward model; one in four without a lump."""
 COPIES = 4
@@ -150,17 +151,18 @@ def _log_uniform(limits: tuple[float, float], count: int, generator: np.random.G
 def _fitted(features: Array, targets: Array, size: Array, seed: int) -> tuple[tuple[Network, ...], Network]:
     """The ensemble for the place and the network for the presence, by scikit-learn."""
     try:
-        from sklearn.exceptions import ConvergenceWarning
         from sklearn.neural_network import MLPClassifier, MLPRegressor
     except ImportError:
         raise InputError("training needs scikit-learn; install it by pip install 'tactsim[learned]'") from None
     there = np.isfinite(targets[:, 0])
     wanted = (targets[there] - np.append(size / 2, 0.0)) / size[2]
-    options: dict[str, Any] = {"hidden_layer_sizes": HIDDEN, "max_iter": 40, "batch_size": 200, "alpha": 1e-4}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        places = [MLPRegressor(random_state=seed + k, **options).fit(features[there], wanted) for k in range(NETWORKS)]
-        presence = MLPClassifier(random_state=seed, **options).fit(features, there)
+    options: dict[str, Any] = {"hidden_layer_sizes": HIDDEN, "batch_size": 200, "alpha": 1e-4}
+    places = [MLPRegressor(random_state=seed + k, **options) for k in range(NETWORKS)]
+    presence = MLPClassifier(random_state=seed, **options)
+    for _ in range(PASSES):
+        for network in places:
+            network.partial_fit(features[there], wanted)
+        presence.partial_fit(features, there, classes=[False, True])
     return tuple(_plain(network) for network in places), _plain(presence)
 
 
