@@ -70,7 +70,7 @@ def contact_equilibrium(
     coarse = COARSE if regularisation.augments else 0.0
     for _ in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
-        solved = _solved(problem, guess, contacts, loads=loads, push=push, past=past, coarse=coarse)
+        solved = _solved(problem, guess, contacts, push, loads=loads, past=past, coarse=coarse)
         load += solved.travel
         contacts = _moved(before, load - state.load, directions, regularisation)
         iterations += solved.iterations
@@ -97,28 +97,26 @@ def contact_equilibrium(
     raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")
 
 
-def _solved(problem: Problem, guess: Array, contacts: Sequence[PosedContact], **settings: Any) -> Equilibrium:
+def _solved(
+    problem: Problem, guess: Array, contacts: Sequence[PosedContact], push: PrescribedForce | None, **settings: Any
+) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    try:
-        return problem.solve(guess, interfaces=contacts, **settings)
-    except ConvergenceError as failure:
-        stalled = failure
-    for _ in range(HELD_ROUNDS):
-        if not stalled.history or stalled.history[-1] > STALLED:
-            break
-        u = problem.body.space.split(guess)[0]
-        held = [contact.holding(contact.surface.points.interpolate(u)) for contact in contacts]
-        between = problem.solve(guess, interfaces=held, **settings)
-        guess = between.unknowns
-        u = problem.body.space.split(guess)[0]
-        begun = [c.resumed(c.at(c.surface.points.interpolate(u))) for c in contacts]
+    begun, travel = contacts, 0.0
+    for held_round in range(HELD_ROUNDS + 1):
         try:
-            return problem.solve(guess, interfaces=begun, **settings)
-        except ConvergenceError as failure:
-            stalled = failure
-    raise stalled
+            return problem.solve(guess, interfaces=begun, push=push, travel=travel, **settings)
+        except ConvergenceError as stalled:
+            if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
+                raise
+        moves = problem.displacements(guess, contacts, push, travel)
+        held = [contact.holding(move) for contact, move in zip(contacts, moves, strict=True)]
+        between = problem.solve(guess, interfaces=held, push=push, travel=travel, **settings)
+        guess, travel = between.unknowns, between.travel
+        moves = problem.displacements(guess, contacts, push, travel)
+        begun = [contact.resumed(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+    raise AssertionError("the last round returns or raises")
 
 
 def _moved(

@@ -188,7 +188,7 @@ class Problem:
             halvings += round(-np.log2(damping))
             search = options.search_halvings if searching else 0
             damping, state = self._searched(body, state, (step, further), (damping, admissible, search), forces)
-            moves = self._displacements(step, interfaces, push, further)
+            moves = self.displacements(step, interfaces, push, further)
             carried = [i.advanced(n, c, move, damping) for i, n, c, move in zip(interfaces, now, carried, moves, strict=True)]
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
@@ -198,7 +198,7 @@ class Problem:
         internal = body.residual(unknowns, kinematics)
         scale = np.abs(internal[: body.space.displacement_size]).max()
         internal -= self._nodal(unknowns, loads, nodal_force)
-        moved = self._displacements(unknowns, interfaces, push, travel)
+        moved = self.displacements(unknowns, interfaces, push, travel)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
         noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
         residual, unbalanced = self._residual_norm(internal, scale, interfaces, (tractions, noise))
@@ -245,7 +245,7 @@ class Problem:
             total += load.force(u)
         return total if nodal_force is None else total + nodal_force
 
-    def _displacements(
+    def displacements(
         self, unknowns: Array, interfaces: Sequence[Interface], push: PrescribedForce | None, travel: float
     ) -> list[Array]:
         """Displacement (d, n) of each surface relative to the travel of its interface."""
