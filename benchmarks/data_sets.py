@@ -26,7 +26,8 @@ CASES = Path(__file__).parents[1] / "cases"
 GRASPS, FAST = 60, 10_000
 STANDARD = ("experiment.contact.friction=0.6", "experiment.loading.pieces.0.to=1 mm")
 """Friction and closing of the figure that is asked for; the sweep itself varies both."""
-OPENING = "import time; t = time.perf_counter(); import xarray; xarray.open_zarr({!r}); print(time.perf_counter() - t)"
+OPENING = "import time; import xarray; t = time.perf_counter(); xarray.open_zarr({!r}); print(time.perf_counter() - t)"
+"""The first opening in a new process."""
 HELD, HELD_SEED = 20, 77
 FINE = {"size": 4e-3, "inclusion_size": 2.5e-3, "edge_size": 1e-3, "growth": 0.7}
 FINE_STEPS = 4
