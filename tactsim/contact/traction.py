@@ -67,6 +67,10 @@ class ContactTraction:
         """The state that an accepted step leaves behind."""
         return ContactState(self.pressure, self.tangential, self.points, self.normal)
 
+    def iterate(self) -> ContactIterate:
+        """Its forces, for Newton to carry."""
+        return ContactIterate(self.pressure, self.tangential)
+
     def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
         """Way (n,) in m that points moved along the body since a state although friction holds them."""
         travel = self.points - state.points

@@ -12,7 +12,8 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Kinematics, PastStress
-from tactsim.fem.newton import Equilibrium, FollowerLoad, Problem
+from tactsim.fem.external_forces import FollowerLoad
+from tactsim.fem.newton import Equilibrium, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 
 Array = np.ndarray

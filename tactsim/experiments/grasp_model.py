@@ -13,7 +13,8 @@ from tactsim.errors import InputError
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium, contact_equilibrium
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body, PastStress
-from tactsim.fem.newton import FollowerLoad, Problem
+from tactsim.fem.external_forces import FollowerLoad
+from tactsim.fem.newton import Problem
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly

@@ -21,7 +21,6 @@ MANY_ITERATIONS = 60
 """Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
 TOUCH = 0.1
 """First guess of a closing under a force in penetration tolerances, so that the jaws touch."""
-
 PRESSED = 0.1
 """Largest penetration of the first guess of a closing, over the closing, so that the jaws touch."""
 

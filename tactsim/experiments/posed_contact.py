@@ -63,7 +63,7 @@ class PosedContact:
 
     def resumed(self, now: ContactTraction) -> PosedContact:
         """The pair for a solution that goes on from forces found already."""
-        return replace(self, begin=ContactIterate(now.pressure, now.tangential))
+        return replace(self, begin=now.iterate())
 
     def holding(self, displacement: Array) -> PosedContact:
         """The pair with its forces and limits of friction at displacements (d, n) of the points: Newton starts from the forces,
@@ -101,8 +101,7 @@ class PosedContact:
 
     def settled(self, displacement: Array) -> ContactIterate:
         """The forces that hold at displacements (d, n) of the points."""
-        now = self.at(displacement)
-        return ContactIterate(now.pressure, now.tangential)
+        return self.at(displacement).iterate()
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa."""

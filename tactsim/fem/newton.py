@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
+from tactsim.fem.external_forces import FollowerLoad, Interface
 from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
-from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
 
@@ -32,43 +32,6 @@ nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solv
 
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
-
-
-class Interface(Protocol):
-    """Forces at the points of one surface that depend on where the points are, and on forces carried by Newton's iterate."""
-
-    @property
-    def surface(self) -> SurfaceAssembly:
-        """The surface that the forces act on."""
-
-    def start(self) -> Any:
-        """The carried forces at the beginning."""
-
-    def settled(self, displacement: Array) -> Any:
-        """The carried forces that hold at displacements (d, n) of the points."""
-
-    def converged(self, displacement: Array) -> Array:
-        """Traction (d, n) in Pa that holds at displacements (d, n) of the points."""
-
-    def rounding(self, displacement: Array) -> Array:
-        """Traction (n,) in Pa that is lost in the round-off of the positions."""
-
-    def linearised(self, displacement: Array, carried: Any) -> Any:
-        """An object with ``traction`` (d, n) in Pa, ``derivative`` (d, d, n) in Pa/m, and ``coupling``, the part of the
-        derivative without which it is symmetric but for curvature."""
-
-    def advanced(self, now: Any, carried: Any, step: Array, damping: float) -> Any:
-        """The carried forces after the points moved by ``damping * step``."""
-
-
-class FollowerLoad(Protocol):
-    """Nodal forces that depend on the displacement of the surface they act on."""
-
-    def force(self, displacement: Array) -> Array:
-        """External nodal forces (size,) in N at nodal displacements (n, d)."""
-
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries, minus the derivative of the force."""
 
 
 @dataclass(frozen=True)
