@@ -25,8 +25,13 @@ from tactsim.results.result import Status
 
 CASES = Path(__file__).parents[1] / "cases"
 GRASPS, FAST = 60, 10_000
-STANDARD = ("experiment.contact.friction=0.6", "experiment.loading.pieces.0.to=1 mm")
-"""Friction and closing of the figure that is asked for; the sweep itself varies both."""
+STANDARD = (
+    "experiment.contact.friction=0.6",
+    "experiment.loading.pieces.0.to=1 mm",
+    "sweep.within_specimen=[]",
+    "sweep.samples_per_specimen=1",
+)
+"""Friction and closing of the figure that is asked for, each lump once; the sweep itself varies them."""
 OPENING = "import time; import xarray; t = time.perf_counter(); xarray.open_zarr({!r}); print(time.perf_counter() - t)"
 """The first opening in a new process."""
 HELD, HELD_SEED = 20, 77
@@ -38,8 +43,8 @@ def measure() -> dict[str, float]:
     """Wall times in s of sweeps with a process per core, and what follows from them."""
     with tempfile.TemporaryDirectory() as folder:
         lumps, fast = Path(folder) / "lumps.zarr", Path(folder) / "fast.zarr"
-        overrides = [part for value in STANDARD for part in ("--set", value)] + ["--set", "sweep.within_specimen=[]"]
-        grasps = _swept(CASES / "sweep_lumps.yaml", lumps, GRASPS, *overrides, "--set", "sweep.samples_per_specimen=1")
+        overrides = [part for value in STANDARD for part in ("--set", value)]
+        grasps = _swept(CASES / "sweep_lumps.yaml", lumps, GRASPS, *overrides)
         quick = _swept(CASES / "sweep_closed_form.yaml", fast, FAST)
         done = int((xarray.open_zarr(lumps)["status"] == 1).sum())
         opening = float(subprocess.run([sys.executable, "-c", OPENING.format(str(fast))], check=True, capture_output=True).stdout)
@@ -65,7 +70,7 @@ def _swept(case: Path, store: Path, samples: int, *options: str) -> float:
 
 def held_errors(samples: range = range(HELD)) -> dict[str, float]:
     """Largest differences of the taxels from those of the fine mesh, over the largest taxel, by held sample."""
-    sweep = load_sweep(CASES / "sweep_lumps.yaml", (f"sweep.seed={HELD_SEED}", "sweep.samples=60", *STANDARD[:1]))
+    sweep = load_sweep(CASES / "sweep_lumps.yaml", (f"sweep.seed={HELD_SEED}", "sweep.samples=60", *STANDARD))
     errors: dict[str, float] = {}
     for number in samples:
         case = drawn_specimen(sweep, number)[0].case

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import ValidationError
+from tactsim.errors import InputError, ValidationError
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking_source import JudgedSamples
     from tactsim.experiments.localization_source import Source
 
 NAME = "data"
-SUMMARY = "check, describe or export a data set, rank estimators on it"
+SUMMARY = "check, describe or export a data set, judge estimators on it"
 DESCRIPTION = """\
 check reads every sample and finds damaged content (checksums), missing, doubled, constant and
 not finite samples, and specimens that are in two splits; the exit code is 4 if it finds one.
@@ -25,6 +27,9 @@ rank applies every estimator to every grasp that is done and judges it by the tr
 misses, false alarms, coverage; report.json, report.md and figures go to --out. The reference is
 the tissue without a lump, closed in several steps or in several results. train fits the
 learned estimator (kind: learned) to a part of a store (default: train).
+
+confusion counts how often nothing, one lump, two lumps, an artery and two arteries are taken for
+which, in grasps that all close as far as the reference; noise is added to the solved forces.
 """
 EXAMPLES = """\
 examples:
@@ -34,20 +39,21 @@ examples:
   tactsim data export lumps.zarr --to lumps_shards --split train
   tactsim data train lumps.zarr --reference results/plain --out lumps_estimator.npz
   tactsim data rank judged.zarr --reference results/plain --learned lumps_estimator.npz --out ranking
+  tactsim data confusion classes.zarr --reference results/plain --noise '0.63 mN' --out confusion
 """
-RANKING = "ranking"
+RANKING, CONFUSION = "ranking", "confusion"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("action", choices=("check", "info", "export", "rank", "train"), help="what to do")
+    parser.add_argument("action", choices=("check", "info", "export", "rank", "train", CONFUSION), help="what to do")
     parser.add_argument("store", metavar="STORE", type=Path, help="folder that tactsim sweep wrote")
     parser.add_argument("--to", metavar="PLACE", type=Path, help="export: file ending in .h5, or folder for Parquet and npz")
     parser.add_argument("--split", metavar="NAME", action="append", help="only this part; may be repeated")
-    ranking = parser.add_argument_group("rank and train")
+    ranking = parser.add_argument_group("rank, train and confusion")
     ranking.add_argument("--reference", metavar="RESULT", action="append", default=[], help="plain grasp; may be repeated")
     ranking.add_argument(
-        "--out", metavar="PLACE", type=Path, help=f"rank: folder (default {RANKING}); train: file ending in .npz"
+        "--out", metavar="PLACE", type=Path, help="folder (default: the name of the action); train: file ending in .npz"
     )
     ranking.add_argument("--readings", choices=("read_force", "taxel_force"), help="default: read_force if the store has it")
     ranking.add_argument("--noise", metavar="FORCE", help="added, such as '2 mN' (default: rounding to 0.1 N, read_force: none)")
@@ -57,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
-    actions = {"check": _check, "info": _info, "export": _export, "rank": _rank, "train": _train}
+    actions = {"check": _check, "info": _info, "export": _export, "rank": _rank, "train": _train, CONFUSION: _confusion}
     return actions[arguments.action](arguments)
 
 
@@ -82,7 +88,6 @@ def _info(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.export import exported
-    from tactsim.errors import InputError
 
     if arguments.to is None:
         raise InputError("export: --to is missing; name a file ending in .h5, or a folder for Parquet and npz")
@@ -93,7 +98,8 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.ranking import ranking
-    from tactsim.dataset.ranking_report import as_json, as_text, record
+    from tactsim.dataset.ranking_report import as_text, record
+    from tactsim.display.estimator_ranking import ranking_figures
     from tactsim.experiments.response_store import stored_response
     from tactsim.localization.estimators.learned import LearnedEstimator
     from tactsim.localization.estimators.model_based import ModelBasedEstimator
@@ -111,53 +117,89 @@ def _rank(arguments: argparse.Namespace) -> int:
     ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
     about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed}
     content, folder = record(ranked, samples, about), arguments.out or Path(RANKING)
-    drawn = _drawn(content)
+    drawn = _drawn(lambda: ranking_figures(content))
     text = as_text(ranked, samples, tuple(drawn))
-    _write(folder, {"report.json": as_json(content), "report.md": text.encode(), **drawn})
+    _write(folder, content, text, drawn)
     console.out(text.split("\n## ")[0].rstrip())
     console.out(f"report in {folder}")
     return 0
 
 
-def _drawn(content: dict[str, Any]) -> dict[str, bytes]:
-    """File name -> PNG; a figure that cannot be drawn never costs the numbers."""
-    from tactsim.display.estimator_ranking import ranking_figures
+def _confusion(arguments: argparse.Namespace) -> int:
+    from tactsim.dataset.confusion import store_confusion
+    from tactsim.dataset.confusion_report import as_text, record, verdict
+    from tactsim.display.canvas import png
+    from tactsim.display.confusion import confusion_figure
+    from tactsim.localization.estimators.hypotheses import HypothesesEstimator
+    from tactsim.localization.interface import ROUNDING_NOISE
 
+    if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
+        raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
+    estimator, given = HypothesesEstimator(), _noise(arguments)
+    noise = ROUNDING_NOISE if given is None else given
+    split, seed = arguments.split, arguments.seed
+    table, others = store_confusion(arguments.store, _references(arguments)[0], estimator, split=split, noise=noise, seed=seed)
+    about = {"store": arguments.store.name, "split": split, "seed": seed, "estimator": estimator.kind, "noise": noise}
+    content, folder = record(table, others, about), arguments.out or Path(CONFUSION)
+    title = f"{arguments.store.name}: {verdict(content)}"
+    drawn = _drawn(lambda: {"confusion.png": lambda: png(confusion_figure(content["counts"], content["classes"], title))})
+    text = as_text(content, drawn)
+    _write(folder, content, text, drawn)
+    console.out(text.split("\n![")[0].rstrip())
+    console.out(f"report in {folder}")
+    return 0
+
+
+def _drawn(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> dict[str, bytes]:
+    """File name -> PNG; a figure that cannot be drawn never costs the numbers."""
     try:
-        return {name: draw() for name, draw in ranking_figures(content).items()}
+        return {name: draw() for name, draw in drawings().items()}
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
         console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {error}")
         return {}
 
 
-def _write(folder: Path, files: dict[str, bytes]) -> None:
+def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping[str, bytes]) -> None:
+    """Writes report.json, in which every number is finite, report.md and the figures."""
     from tactsim.results.storage import naming, replace_file
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        replace_file(folder / name, content)
+    record = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode()
+    for name, written in {"report.json": record, "report.md": text.encode(), **figures}.items():
+        replace_file(folder / name, written)
 
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
     """The samples that are judged or trained on, as the options say."""
     from tactsim.dataset.ranking_source import judged_samples, stored_experiment
-    from tactsim.errors import InputError
-    from tactsim.units import parse_quantity
 
+    references, noise = _references(arguments), _noise(arguments)
+    source: Source = arguments.readings or ("read_force" if stored_experiment(arguments.store).readout else "taxel_force")
+    chosen = arguments.split or split
+    return judged_samples(arguments.store, references, split=chosen, source=source, noise=noise)
+
+
+def _references(arguments: argparse.Namespace) -> list[str]:
+    """Folders of plain grasps, at least one."""
     if not arguments.reference:
         raise InputError(f"{arguments.action}: --reference is missing; give the result of the same grasp without a lump")
+    references: list[str] = arguments.reference
+    return references
+
+
+def _noise(arguments: argparse.Namespace) -> float | None:
+    """What is added to the readings in N, None if nothing is said of it."""
+    from tactsim.units import parse_quantity
+
     noise = None if arguments.noise is None else float(parse_quantity(arguments.noise, "N"))
     if noise is not None and not 0 <= noise < float("inf"):
         raise InputError(f"--noise {arguments.noise}; allowed: a finite force that is not negative, such as '2 mN'")
-    source: Source = arguments.readings or ("read_force" if stored_experiment(arguments.store).readout else "taxel_force")
-    chosen = arguments.split or split
-    return judged_samples(arguments.store, arguments.reference, split=chosen, source=source, noise=noise)
+    return noise
 
 
 def _train(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.training import trained
-    from tactsim.errors import InputError
     from tactsim.experiments.response_store import stored_response
     from tactsim.results.storage import replace_file
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -63,11 +62,6 @@ def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
             if own is not None and other is not None and other["value"] > 0:
                 told[one.name][name] = own["value"] / other["value"]
     return told
-
-
-def as_json(content: Mapping[str, Any]) -> bytes:
-    """The record as a file; a number that is not finite is an error."""
-    return (json.dumps(content, indent=1, allow_nan=False) + "\n").encode()
 
 
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -22,13 +23,16 @@ class ConfusionFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``confusion.png``, if anything was counted."""
-        return {"confusion.png": lambda: png(confusion_figure(result))} if "confusion" in result.quantities else {}
+        if "confusion" not in result.quantities:
+            return {}
+        title = f"{str(result.details.get('title') or '') or 'Confusion table'}: {result.reason}"
+        counts, classes = result.quantities["confusion"].value, result.details["classes"]
+        return {"confusion.png": lambda: png(confusion_figure(counts, classes, title))}
 
 
-def confusion_figure(result: Result) -> Figure:
-    """Counts in shades of their share of the true class; a true class that does not occur has no row."""
-    counts = np.array(result.quantities["confusion"].value)
-    names = [str(name).replace("_", " ") for name in result.details["classes"]]
+def confusion_figure(table: Sequence[Sequence[int]], classes: Sequence[str], title: str) -> Figure:
+    """Counts (true, estimated) in shades of their share of the true class; a true class that does not occur has no row."""
+    counts, names = np.array(table), [str(name).replace("_", " ") for name in classes]
     rows = np.flatnonzero(counts.sum(axis=1))
     shares = counts[rows] / counts[rows].sum(axis=1, keepdims=True)
     with styled():
@@ -42,6 +46,5 @@ def confusion_figure(result: Result) -> Figure:
         axis.set_yticks(range(len(rows)), [names[k] for k in rows])
         axis.set(xlabel="estimated", ylabel="true")
         axis.tick_params(length=0)
-        title = str(result.details.get("title") or "") or "Confusion table"
-        figure.suptitle(f"{title}: {result.reason}", x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
     return figure

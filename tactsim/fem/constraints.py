@@ -17,7 +17,7 @@ class Constraints:
         held = np.zeros(pattern.size, bool)
         held[self.fixed] = True
         rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
-        self._cleared = held[rows] | held[pattern.indices]
+        self._cleared = np.flatnonzero(held[rows] | held[pattern.indices])
         self._diagonal = pattern.positions(self.fixed, self.fixed)
 
     def apply(self, data: Array) -> Array:

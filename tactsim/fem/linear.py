@@ -30,6 +30,10 @@ INDEFINITE_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1, 20: 1}
 Bunch and Kaufman's pivots: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
 
 
+SINGLE_PRECISION = 27
+"""Which of Pardiso's settings asks for matrices and vectors in single precision."""
+
+
 class DirectSolver(Protocol):
     """Factors matrices of one sparse pattern; the symbolic analysis is made once."""
 
@@ -109,12 +113,37 @@ class SymmetricPardiso(Pardiso):
         return (matrix.data[self._upper] + matrix.data[self._mirror[self._upper]]) / 2
 
 
+class SinglePardiso(SymmetricPardiso):
+    """The symmetric factor in single precision: half the memory to read, so half the time, for solutions that guide an iteration.
+
+    What is not a number, or too large for it, must never reach MKL.
+    """
+
+    name = "pardiso_single"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._solver.iparm[SINGLE_PRECISION] = 1
+
+    def _entries(self, matrix: csr_matrix) -> Array:
+        entries = super()._entries(matrix)
+        if not np.abs(entries).max() < np.finfo(np.float32).max:
+            raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
+        return entries.astype(np.float32)
+
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
+        size = float(np.abs(right).max())
+        return size * super().solve(right / size) if size else np.zeros_like(right)
+
+
 def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array) -> Array:
     """One phase of Pardiso: 12 analyse and factor, 22 factor, 33 solve, -1 release; ``system`` is data, indptr and indices."""
-    right = np.ascontiguousarray(right, dtype=float)
+    single = bool(solver.iparm[SINGLE_PRECISION])
+    right = np.ascontiguousarray(right, dtype=np.float32 if single else np.float64)
     solution = np.zeros_like(right)
     error = ctypes.c_int32(0)
-    integer, real = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_double)
+    integer, real = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_float if single else ctypes.c_double)
 
     def number(value: int) -> Any:
         return ctypes.byref(ctypes.c_int32(value))
@@ -143,7 +172,7 @@ def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], r
     threads(ctypes.c_int(before))
     if error.value != 0:
         raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
-    return solution
+    return solution.astype(float, copy=False)
 
 
 def _fresh_binding(kind: int) -> Any:
@@ -221,7 +250,9 @@ def direct_solver(name: str | None = None) -> DirectSolver:
     if name is None:
         installed = importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
         name = "pardiso" if installed else "superlu"
-    kinds: dict[str, type[Pardiso] | type[SuperLU]] = {kind.name: kind for kind in (SymmetricPardiso, Pardiso, SuperLU)}
+    kinds: dict[str, type[Pardiso] | type[SuperLU]] = {
+        kind.name: kind for kind in (SinglePardiso, SymmetricPardiso, Pardiso, SuperLU)
+    }
     if name not in kinds:
         raise InputError(f"unknown linear solver {name!r}; allowed: {', '.join(kinds)}")
     return kinds[name]()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.body import Body
-from tactsim.fem.linear import DirectSolver, SymmetricPardiso, direct_solver
+from tactsim.fem.linear import DirectSolver, SinglePardiso, direct_solver
 from tactsim.fem.reused_factor import ReusedFactor
 
 LARGEST_FACTOR = 600_000
@@ -20,4 +20,4 @@ def solver_for(body: Body, *, largest_factor: int = LARGEST_FACTOR) -> DirectSol
     if body.space.size > largest_factor:
         return BlockPreconditioned(body)
     solver = direct_solver()
-    return ReusedFactor(direct_solver(SymmetricPardiso.name)) if solver.name == "pardiso" else solver
+    return ReusedFactor(direct_solver(SinglePardiso.name)) if solver.name == "pardiso" else solver

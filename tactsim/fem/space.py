@@ -44,13 +44,15 @@ class SurfacePoints:
     """Shape functions at the quadrature points of boundary facets, flattened to n = F * Q points.
 
     ``nodes`` (n, A) node numbers of the facet of each point, ``values`` (n, A) of the P2 functions, ``weights`` (n,) in m^2
-    of the reference surface, ``normals`` (d, n) outward in the reference configuration.
+    of the reference surface, ``normals`` (d, n) outward in the reference configuration. The ``per_facet`` points of a facet
+    follow one another and have the same places in every facet.
     """
 
     nodes: Array
     values: Array
     weights: Array
     normals: Array
+    per_facet: int
 
     def interpolate(self, nodal: Array) -> Array:
         """Values (d, n) at the points of a nodal field (n_nodes, d)."""
@@ -178,6 +180,7 @@ class TaylorHood:
             values=np.tile(values, (len(facets), 1)),
             weights=weights.ravel(),
             normals=(area_normal / area[..., None]).reshape(-1, self.dim).T,
+            per_facet=count,
         )
 
 

@@ -17,8 +17,12 @@ class SurfaceAssembly:
         self.points = points
         self.unknowns = (points.nodes[:, :, None] * dim + np.arange(dim)).reshape(len(points.nodes), -1)
         width = self.unknowns.shape[1]
-        rows = np.repeat(self.unknowns[:, :, None], width, axis=2)
-        self._positions = pattern.positions(rows, rows.transpose(0, 2, 1))
+        facets = self.unknowns[:: points.per_facet]
+        rows = np.repeat(facets[:, :, None], width, axis=2)
+        places = pattern.positions(rows, rows.transpose(0, 2, 1)).reshape(len(facets), width // dim, dim, width // dim, dim)
+        self._positions = places.transpose(2, 4, 0, 1, 3).ravel()
+        values = points.values[: points.per_facet]
+        self._products = np.einsum("qa,qb->qab", values, values).reshape(len(values), -1)
         self._entries = len(pattern.indices)
         self.size, self._dim = pattern.size, dim
 
@@ -34,9 +38,8 @@ class SurfaceAssembly:
 
     def stiffness(self, derivative: Array) -> Array:
         """Tangent entries, minus the derivative of the external force, for d(traction)/dx of shape (d, d, n) in Pa/m."""
-        values = self.points.values
-        blocks = np.einsum("n,na,nb,ijn->naibj", -self.points.weights, values, values, derivative, optimize=True)
-        return np.bincount(self._positions.ravel(), blocks.ravel(), self._entries)
+        weighted = (-self.points.weights * derivative).reshape(-1, self.points.per_facet)
+        return np.bincount(self._positions, (weighted @ self._products).ravel(), self._entries)
 
     def total(self, traction: Array) -> Array:
         """Resultant (d,) in N."""

@@ -18,7 +18,7 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SOLVERS = ["pardiso", "superlu"]
-ALL = [*SOLVERS, "pardiso_symmetric"]
+ALL = [*SOLVERS, "pardiso_symmetric", "pardiso_single"]
 
 
 def tangent_of(dim: int, *, axes: int, bulk_modulus: float | None = None) -> tuple[csr_matrix, np.ndarray]:
@@ -119,6 +119,30 @@ def test_the_symmetric_solver_is_as_exact(dim, bulk_modulus):
         assert_close(symmetric * (1 + 3e-9), general, 1e-9)
 
 
+def test_a_single_precision_factor_is_nearly_as_exact():
+    matrix, right = tangent_of(3, axes=3)
+    single, double = (solved(direct_solver(name), matrix, right) for name in ("pardiso_single", "pardiso_symmetric"))
+    assert_close(single, double, 1e-3)
+    with pytest.raises(AssertionError):
+        assert_close(single, double, 1e-9)  # it is not the double one
+
+
+@pytest.mark.parametrize("worst", [np.nan, np.inf, 1e39])
+def test_what_single_precision_cannot_hold_is_refused(worst):
+    matrix, _ = tangent_of(2, axes=2)
+    matrix.data[0] = worst
+    with pytest.raises(ConvergenceError, match="not finite, or too large"):
+        direct_solver("pardiso_single").factor(matrix)
+
+
+def test_the_size_of_the_right_hand_side_does_not_matter_in_single_precision():
+    matrix, right = tangent_of(2, axes=2)
+    solver = direct_solver("pardiso_single")
+    solver.factor(matrix)
+    assert_close(1e60 * solver.solve(1e-60 * right), solver.solve(right), 1e-5)
+    assert not solver.solve(0 * right).any()
+
+
 def changed(matrix, amount, *, skew=0.0):
     """The matrix with its entries changed at random, symmetrically and not, in the same pattern."""
     noise = np.random.default_rng(4).normal(size=matrix.shape[0])
@@ -127,10 +151,11 @@ def changed(matrix, amount, *, skew=0.0):
     return csr_matrix((matrix.data * factors, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
+@pytest.mark.parametrize("kind", ["pardiso_symmetric", "pardiso_single"])
 @pytest.mark.parametrize("skew", [0.0, 2e-3])
-def test_an_old_factor_solves_what_changed_little_to_the_accuracy(skew):
+def test_an_old_factor_solves_what_changed_little_to_the_accuracy(kind, skew):
     matrix, right = tangent_of(3, axes=3)
-    solver = ReusedFactor(direct_solver("pardiso_symmetric"))
+    solver = ReusedFactor(direct_solver(kind))
     for amount in (0.0, 1e-3, 3e-3):
         now = changed(matrix, amount, skew=skew if amount else 0.0)
         found = solved(solver, now, right, 1e-8)
@@ -138,6 +163,13 @@ def test_an_old_factor_solves_what_changed_little_to_the_accuracy(skew):
         assert_close(found, solved(direct_solver("pardiso"), now, right), 1e-4)  # accuracy times condition number
     assert solver.factorisations <= 2
     assert solver.solutions > 3
+
+
+def test_an_iteration_refuses_forces_that_are_not_finite():
+    matrix, right = tangent_of(2, axes=2)
+    right[0] = np.nan
+    with pytest.raises(ConvergenceError, match="not finite"):
+        solved(ReusedFactor(direct_solver("pardiso_single")), matrix, right)
 
 
 def test_a_factor_too_old_is_made_again_and_closing_forgets_it():

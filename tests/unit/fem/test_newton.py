@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -102,3 +103,52 @@ def test_newton_converges_quadratically_under_a_follower_pressure(dim):
     contraction = [later / earlier**2 for earlier, later in itertools.pairwise(history) if 1e-6 < earlier < 1e-1]
     assert contraction
     assert max(contraction) < 100  # linear convergence would make it grow without bound
+
+
+class Snaps:
+    """Springs at a surface whose force in Pa is the arc tangent of how far beyond a place the points are, over a width in m."""
+
+    def __init__(self, surface, *, strength=100.0, place=0.05, width=0.01):
+        self.surface, self._strength, self._place, self._width = surface, strength, place, width
+
+    def start(self):
+        return None
+
+    def settled(self, displacement):
+        return None
+
+    def advanced(self, now, carried, step, damping):
+        return None
+
+    def converged(self, displacement):
+        traction = np.zeros_like(displacement)
+        traction[-1] = -self._strength * np.arctan((displacement[-1] - self._place) / self._width)
+        return traction
+
+    def rounding(self, displacement):
+        return np.zeros(displacement.shape[1])
+
+    def linearised(self, displacement, carried):
+        derivative = np.zeros((len(displacement), *displacement.shape))
+        derivative[-1, -1] = -self._strength / self._width / (1 + ((displacement[-1] - self._place) / self._width) ** 2)
+        return SimpleNamespace(traction=self.converged(displacement), derivative=derivative, coupling=np.zeros_like(derivative))
+
+
+def snapped(dim, halvings):
+    """Newton's solution under springs between whose branches it jumps to and fro, with so many halvings of a step at most."""
+    body, fixed, _ = block(dim, MATERIALS["linear"], held_axes=range(dim))
+    mesh = box([1.0] * dim, [2] * dim, jitter=0.1)
+    points = body.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
+    problem = Problem(body, fixed, options=NewtonOptions(search_halvings=halvings))
+    return problem.solve(np.zeros(body.space.size), interfaces=[Snaps(SurfaceAssembly(points, body.pattern, dim))])
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_forces_that_jump_to_and_fro_are_caught_by_shorter_steps(dim):
+    assert snapped(dim, NewtonOptions().search_halvings).history[-1] < NewtonOptions().tolerance
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_without_shorter_steps_they_jump_for_ever(dim):
+    with pytest.raises(ConvergenceError, match="did not converge"):
+        snapped(dim, 0)

@@ -1,0 +1,96 @@
+"""Made-up grasps of a store, counted by their true and their estimated class."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_grasps import CLOSINGS, made_forces, made_store, plain_result, response, truths
+
+from tactsim.cli.entry import main
+from tactsim.dataset import confusion
+from tactsim.dataset.confusion import store_confusion
+from tactsim.dataset.confusion_report import as_text, record, verdict
+from tactsim.dataset.store import Store
+from tactsim.errors import InputError
+from tactsim.localization.confusion import ConfusionTable
+from tactsim.localization.estimators.hypotheses import HypothesesEstimator
+
+CLOSING = float(CLOSINGS[-1])
+QUIET = "0.1 mN"
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Forty grasps that close alike, every eighth without a lump."""
+    place = made_store(tmp_path_factory.mktemp("made"), response())
+    group = Store.open(place, writing=True).group
+    told = tuple(replace(truth, closing=CLOSING) for truth in truths(40))
+    group["closing"][...] = np.full(40, CLOSING)
+    group["taxel_force"][...] = made_forces(told, response())[:, None].astype(group["taxel_force"].dtype)
+    return place
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return plain_result(tmp_path_factory.mktemp("plain") / "plain")
+
+
+def test_the_command_counts_and_writes(
+    store: Path, plain: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(confusion, "stored_response", lambda reference: response())
+    out = tmp_path / "table"
+    command = ["data", "confusion", str(store), "--reference", plain, "--split", "test", "--noise", QUIET, "--out", str(out)]
+    assert main(command) == 0
+    told = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    counts = np.array(told["counts"])
+    assert counts.sum() == told["samples"] == 10
+    assert counts[0].sum() == 1  # sample 32
+    assert counts[0, 0] == 1
+    assert counts[1, 0] == 0  # no lump is missed
+    assert told["recalls"]["artery"] is None
+    assert told["share_right"] == pytest.approx(np.trace(counts) / 10)
+    assert (out / "confusion.png").read_bytes()[:4] == b"\x89PNG"
+    assert "![confusion.png]" in (out / "report.md").read_text(encoding="utf-8")
+    assert "| lump |" in capsys.readouterr().out
+
+
+def test_a_noise_that_is_not_stated_is_taken_for_lumps(store: Path, plain: str) -> None:
+    table, others = store_confusion(store, plain, HypothesesEstimator(classes=("lump",)), noise=1e-9, response=response())
+    assert (table.total, others) == (40, 0)
+    assert table.counts[0, 0] == 5  # those without a lump differ in rounding alone
+    loud, _ = store_confusion(store, plain, HypothesesEstimator(classes=("lump",)), noise=1.0, response=response())
+    assert loud.counts[1, 1] < table.counts[1, 1]
+
+
+def test_other_closings_than_the_reference_are_refused(store: Path, tmp_path: Path) -> None:
+    other = plain_result(tmp_path / "other", CLOSINGS[:2])
+    with pytest.raises(InputError, match="needed: the same"):
+        store_confusion(store, other, HypothesesEstimator(), response=response())
+
+
+@pytest.mark.parametrize("extra", [["--reference", "y"], ["--readings", "read_force"], ["--learned", "x.npz"]])
+def test_options_that_do_not_fit_are_refused(store: Path, plain: str, extra: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["data", "confusion", str(store), "--reference", plain, *extra]) == 2
+    assert "takes one --reference" in capsys.readouterr().err
+
+
+def test_no_reference_is_an_error(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["data", "confusion", str(store)]) == 2
+    assert "--reference is missing" in capsys.readouterr().err
+
+
+def test_a_table_in_words_has_a_row_for_every_class_that_occurs() -> None:
+    table = ConfusionTable()
+    for true, told in (("lump", "lump"), ("lump", "none"), ("artery", "artery")):
+        table.add(true, told)
+    content = record(table, 2, {"estimator": "hypotheses", "noise": 1e-3})
+    text = as_text(content, {})
+    assert verdict(content) == "2 of 3 grasps told right"
+    assert "| lump | 1 | 1 | 0 | 0 | 0 | 50% |" in text
+    assert "| none | " not in text.split("---")[-1]
+    assert "2 samples belong to no class" in text
