@@ -2,7 +2,7 @@
 
 python benchmarks/data_sets.py [--held]
 
-With --held (an hour) also the error of the grasps' mesh: 20 samples that no sweep draws, against a fine mesh in four load steps.
+With --held (half an hour) the error of the mesh instead: 20 samples that no sweep draws, against a fine one in two steps.
 """
 
 from __future__ import annotations
@@ -35,8 +35,9 @@ STANDARD = (
 OPENING = "import time; import xarray; t = time.perf_counter(); xarray.open_zarr({!r}); print(time.perf_counter() - t)"
 """The first opening in a new process."""
 HELD, HELD_SEED = 20, 77
-FINE = {"size": 4e-3, "inclusion_size": 2.5e-3, "edge_size": 1e-3, "growth": 0.7}
-FINE_STEPS = 4
+FINE = {"size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 1.3e-3, "growth": 0.6}
+"""Some 45 000 unknowns; much thinner cells at the faces need many load steps where a lump is near."""
+FINE_STEPS = 2
 
 
 def measure() -> dict[str, float]:

@@ -74,7 +74,9 @@ def test_other_closings_than_the_reference_are_refused(store: Path, tmp_path: Pa
 
 
 @pytest.mark.parametrize("extra", [["--reference", "y"], ["--readings", "read_force"], ["--learned", "x.npz"]])
-def test_options_that_do_not_fit_are_refused(store: Path, plain: str, extra: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_that_do_not_fit_are_refused(
+    store: Path, plain: str, extra: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["data", "confusion", str(store), "--reference", plain, *extra]) == 2
     assert "takes one --reference" in capsys.readouterr().err
 

@@ -1,0 +1,55 @@
+"""Few cells suffice around a hard ball near a jaw, but not three across: no corner then lies above its pole."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from tactsim.experiments.grasp import Grasp
+from tactsim.mesh import graded_block
+
+SHARE = 0.03
+"""Difference allowed of a taxel's force over the largest taxel's."""
+FINE, COARSE = 1.5e-3, 5e-3
+"""Cells at the ball in m: five across, and the default."""
+
+
+@functools.cache
+def taxels(size: float, least: int) -> np.ndarray:
+    """Forces (jaw, row, column) in N after a closing of 0.1 mm, with cells of ``size`` in m and at ``least`` so many across."""
+    before, graded_block.LEAST_ACROSS = graded_block.LEAST_ACROSS, least
+    try:
+        result = Grasp.model_validate(
+            {
+                "block": {"size": (24e-3, 24e-3, 20e-3), "tissue": "icf_stable"},
+                "inclusions": [
+                    {
+                        "shape": {"kind": "sphere", "center": (11e-3, 12.5e-3, 8.1e-3), "radius": 4.7e-3},
+                        "material": {"kind": "neo_hookean", "c10": 226e3},
+                    }
+                ],
+                "matrix": {"rows": 3, "columns": 3, "pitch": 8e-3, "size": 7e-3},
+                "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-4, "duration": 1.0}]},
+                "mesh": {"kind": "graded", "inclusion_size": size, "edge_size": 2.2e-3},
+                "time": {"steps": 1},
+            }
+        ).run(lambda step: None)
+    finally:
+        graded_block.LEAST_ACROSS = before
+    assert result.status == "converged"
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+
+
+def difference(least: int) -> float:
+    """Of the default cells from fine ones, over the largest taxel."""
+    fine = taxels(FINE, graded_block.LEAST_ACROSS)
+    return float(np.abs(taxels(COARSE, least) - fine).max() / fine.max())
+
+
+def test_a_hard_ball_near_a_jaw_is_felt_right():
+    assert difference(graded_block.LEAST_ACROSS) < SHARE
+
+
+def test_three_cells_across_would_miss_the_peak():
+    assert difference(3) > 2 * SHARE
