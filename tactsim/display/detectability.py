@@ -19,6 +19,8 @@ from tactsim.units import format_quantity
 Array = np.ndarray
 PANELS = {"smallest_radius": "same noise on every taxel", "smallest_radius_by_area": "noise in proportion to the taxel's area"}
 STYLES: tuple[Any, ...] = ("-", "--", ":", "-.")
+FILLS: tuple[Any, ...] = ("full", "none", "left", "top")
+"""Of lines and markers, by stiffness: a lump found at one depth only has no line."""
 MARKERS = "osD^vP*X"
 NEVER = "#d0d7de"
 """Colour of the radii that do not fit at a depth."""
@@ -58,6 +60,7 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
             "color": colours[matrix],
             "linestyle": STYLES[ratio % len(STYLES)],
             "marker": MARKERS[matrix % len(MARKERS)],
+            "fillstyle": FILLS[ratio % len(FILLS)],
         }
         axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=3.5, **style)
     found = 1e3 * radii[np.isfinite(radii)]
@@ -74,7 +77,16 @@ def _legend(values: Any, colours: Array) -> list[Any]:
         for k, (count, colour) in enumerate(zip(values["matrices"], colours, strict=True))
     ]
     handles += [
-        Line2D([], [], color="k", linestyle=STYLES[k % len(STYLES)], label=f"{ratio:g} times the tissue's shear modulus")
+        Line2D(
+            [],
+            [],
+            color="k",
+            linestyle=STYLES[k % len(STYLES)],
+            marker="o",
+            markersize=4,
+            fillstyle=FILLS[k % len(FILLS)],
+            label=f"{ratio:g} times the tissue's shear modulus",
+        )
         for k, ratio in enumerate(values["shear_ratios"])
     ]
     return [*handles, Patch(color=NEVER, label="reaches the upper face")]

@@ -38,6 +38,11 @@ class SourcedBlock:
     origin: str
 
 
+def _sizes(source: BlockMeshSettings) -> BlockMeshSettings:
+    """The element sizes of a source alone, by which meshes are named."""
+    return BlockMeshSettings.model_validate(source.model_dump(exclude={"kind"}))
+
+
 class TetrahedraSource(BlockMeshSettings):
     """Tetrahedra that follow the inclusions, made once and kept."""
 
@@ -45,8 +50,7 @@ class TetrahedraSource(BlockMeshSettings):
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m, shipped, from the cache, or made now."""
-        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
-        stored = stored_block_mesh(size, inclusions, settings)
+        stored = stored_block_mesh(size, inclusions, _sizes(self))
         return SourcedBlock(stored.block, stored.content, stored.origin)
 
 
@@ -59,8 +63,7 @@ class LayersSource(BlockMeshSettings):
         """The mesh of a block of this size in m around its only inclusion."""
         if len(inclusions) != 1:
             raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
-        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
-        block = morphed_block(size, inclusions[0], settings)
+        block = morphed_block(size, inclusions[0], _sizes(self))
         return SourcedBlock(block, content_hash(block.mesh), "built in layers")
 
 
@@ -86,8 +89,7 @@ class GradedSource(BlockMeshSettings):
         """The mesh of a block of this size in m around its only inclusion, if any."""
         if len(inclusions) > 1:
             raise InputError(f"mesh.kind: graded serves one inclusion or none, not {len(inclusions)}; take kind: tetrahedra")
-        settings = BlockMeshSettings.model_validate(self.model_dump(exclude={"kind"}))
-        block = graded_block(size, inclusions[0] if inclusions else None, settings)
+        block = graded_block(size, inclusions[0] if inclusions else None, _sizes(self))
         return SourcedBlock(block, content_hash(block.mesh), "graded cells")
 
 
