@@ -21,7 +21,7 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp_model import GraspModel
 from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.linear import SymmetricPardiso, resolved
+from tactsim.fem.linear import SinglePardiso, resolved
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mesh.quadratic import QuadraticMesh, from_skfem
@@ -90,7 +90,7 @@ def child(kind: str, cells: int) -> dict[str, float]:
     The direct one factors in the solve, and iterates for the skew part that friction makes.
     """
     body, matrix, nearby, right = first_system(cells)
-    solver = ReusedFactor(SymmetricPardiso()) if kind == "direct" else BlockPreconditioned(body)
+    solver = ReusedFactor(SinglePardiso()) if kind == "direct" else BlockPreconditioned(body)
     begin = time.perf_counter()
     solver.factor(matrix, nearby)
     ready = time.perf_counter()

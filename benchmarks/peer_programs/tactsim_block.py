@@ -12,7 +12,7 @@ from block_problem import read
 
 import tactsim
 from tactsim.fem.body import Body
-from tactsim.fem.linear import SymmetricPardiso, solved
+from tactsim.fem.linear import SinglePardiso, solved
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.fem.space import TaylorHood
@@ -47,7 +47,7 @@ def solve(problem: dict[str, Array]) -> dict[str, object]:
     begin = time.perf_counter()
     body = body_of(problem)
     fixed = (3 * np.concatenate([problem["bottom"], problem["top"]])[:, None] + np.arange(3)).ravel()
-    solver = ReusedFactor(SymmetricPardiso())
+    solver = ReusedFactor(SinglePardiso())
     posed = Problem(body, fixed, solver=solver, options=NewtonOptions(tolerance=float(problem["tolerance"])))
     setup, seconds, iterations = time.perf_counter() - begin, [], []
     path = [np.zeros(body.space.size)]

@@ -25,7 +25,7 @@ Array = np.ndarray
 Size = tuple[float, float, float]
 FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
-GAP_SHARE = 0.1
+GAP_SHARE = 0.25
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
 
@@ -73,8 +73,8 @@ class GradedSource(BlockMeshSettings):
     kind: Literal["graded"]
     size: Positive = 6e-3
     """Edge length far from the inclusion and the faces."""
-    inclusion_size: Positive = 5e-3
-    """Edge length at the inclusion, at most."""
+    inclusion_size: Positive = 2e-3
+    """Edge length at the inclusion, about; four cells across it at least."""
     edge_size: Positive | None = 1.6e-3
     """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.7

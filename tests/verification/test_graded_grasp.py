@@ -12,7 +12,7 @@ from tactsim.mesh import graded_block
 SHARE = 0.03
 """Difference allowed of a taxel's force over the largest taxel's."""
 FINE, COARSE = 1.5e-3, 5e-3
-"""Cells at the ball in m: five across, and the default."""
+"""Cells at the ball in m: five across, and as few as there may be."""
 
 
 @functools.cache
