@@ -57,7 +57,7 @@ class HypothesesEstimator(Estimator):
     """Least distance of a body from the faces of the block that it does not leave through."""
     contrast_spread: Annotated[float, Field(gt=0)] = 5.0
     """Standard deviation of the contrast beforehand."""
-    model_error: Annotated[float, Field(ge=0, le=1)] = 0.12
+    model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
