@@ -21,6 +21,8 @@ MANY_ITERATIONS = 60
 """Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
 TOUCH = 0.1
 """First guess of a closing under a force in penetration tolerances, so that the jaws touch."""
+LUMEN = "lumen:"
+"""Beginning of the names of facets inside a hollow tube."""
 PRESSED = 0.1
 """Largest penetration of the first guess of a closing, over the closing, so that the jaws touch."""
 
@@ -34,11 +36,16 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
 
 
 class GraspedBlock:
-    """Answers the closing in m or the force in N of each jaw, and the pressure in Pa of each lumen."""
+    """Answers the closing in m or the force in N of each jaw, and the pressure in Pa of each lumen.
+
+    The first guess of a closing is a uniform compression, unless a tube is hollow: its wall gives way, and Newton does not find
+    back from there.
+    """
 
     def __init__(self, experiment: GraspSetup, model: GraspModel):
         self._model, self._touch, self._tolerance = model, TOUCH * experiment.tolerance, experiment.tolerance
         self._by_force = experiment.loading.control == "force"
+        self._hollow = any(name.startswith(LUMEN) for name in model.facets)
         facets = [model.facets[f"lumen:{number}"] for number in experiment.lumens]
         self._walls = [FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets]
 
@@ -53,7 +60,7 @@ class GraspedBlock:
         """The equilibrium under a closing or force and pressures; jaws without a force stay where they are."""
         model, pressures = self._model, [wall.at(p) for wall, p in zip(self._walls, loads[1:], strict=True)]
         if not self._by_force:
-            if loads[0] > now.load and not now.unknowns.any():
+            if loads[0] > now.load and not now.unknowns.any() and not self._hollow:
                 guess = np.append(model.compressed(loads[0] + min(self._tolerance, PRESSED * loads[0])), loads[0])
             return model.equilibrium(now, loads[0], guess[:-1], past=past, loads=pressures)
         if loads[0] == 0:
