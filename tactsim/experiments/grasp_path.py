@@ -46,7 +46,7 @@ class GraspedBlock:
         self._model, self._touch, self._tolerance = model, TOUCH * experiment.tolerance, experiment.tolerance
         self._by_force = experiment.loading.control == "force"
         self._hollow = any(name.startswith(LUMEN) for name in model.facets)
-        facets = [model.facets[f"lumen:{number}"] for number in experiment.lumens]
+        facets = [model.facets[f"{LUMEN}{number}"] for number in experiment.lumens]
         self._walls = [FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets]
 
     @property
