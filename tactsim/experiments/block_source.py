@@ -25,7 +25,7 @@ Array = np.ndarray
 Size = tuple[float, float, float]
 FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
-GAP_SHARE = 0.25
+GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
 
@@ -74,11 +74,11 @@ class GradedSource(BlockMeshSettings):
     size: Positive = 6e-3
     """Edge length far from the inclusion and the faces."""
     inclusion_size: Positive = 2e-3
-    """Edge length at the inclusion, about; four cells across it at least."""
+    """Edge length at the inclusion, about; three or four cells across it at least."""
     edge_size: Positive | None = 1.6e-3
     """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.7
-    """Growth of the edge length per distance from the faces."""
+    """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
     @property
     def least_gap(self) -> float:

@@ -26,7 +26,7 @@ STALLED = 0.1
 """Residual below which Newton was near."""
 HELD_ROUNDS = 6
 """How often limits of friction are held before a step counts as failed."""
-COARSE = 1e-2
+COARSE = 3e-2
 """Residual that suffices between augmentations."""
 
 

@@ -25,25 +25,32 @@ from tactsim.mesh.tetrahedra import mesh_key
 Array = np.ndarray
 EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that far away, where none is given."""
-ROOM = 0.6
+ROOM = 0.4
 """How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
-NEAR = 1.5
+NEAR = 1.2
 """Gaps below which the box reaches to a face that a jaw presses, over the thickness of cells at the faces."""
 REACH = 2.0
 """Half width of the box over that of the lump, at most."""
-LEAST_ACROSS = 4
-"""Cells across the box, at least: with three no corner lies above the pole of a ball, and the pressure over a hard one 3 mm from
-a jaw is 8 to 18 % too low; two miss the volume by 0.6 %. An even number keeps a middle plane free of cells."""
+LEAST_BETWEEN = 3
+"""Cells across the box from jaw to jaw, at least; two miss the volume of a ball by 0.6 %."""
+LEAST_ALONG, LEAST_ALONG_NEAR = 4, 5
+"""Cells across the box along the jaws, at least, and where it reaches to a jaw. With three no corner lies above the pole of a
+ball, and the pressure over a hard one 3 mm from a jaw is 8 to 18 % too low; with four at a jaw, it is wrong by 4 to 6 %."""
+THIN = 1 / 3
+"""Height over the block's below which three cells along the jaws suffice for a lump that is not near: it is felt little."""
+NEAREST = 0.5
+"""Part of a cell that must be left before it is added to those from a face to the box."""
 ATTEMPTS = 3
 """Numbers of cells across that are tried, each one more than the last, until the shapes suit."""
 
 
 @dataclass(frozen=True)
 class _Line:
-    """Ascending coordinates in m from face to face, and the first of those in the box of rounded cells."""
+    """Ascending coordinates in m from face to face, and the first of those of the ``across`` rounded cells of the box."""
 
     places: Array
     first: int
+    across: int
 
 
 def graded_block(
@@ -52,7 +59,7 @@ def graded_block(
     """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the lump, if there is one.
 
     A sphere or an ellipsoid may lie anywhere in the block. Cells are wanted ``edge_size`` thick at the faces (by default a third
-    of ``size``), growing from there by ``growth`` up to ``size``; on the lump they are at most about ``inclusion_size`` long,
+    of ``size``), each next one longer by ``growth`` up to ``size``; on the lump they are at most about ``inclusion_size`` long,
     shorter where it comes so near to a face that longer ones would be badly curved.
 
     Raises
@@ -68,16 +75,15 @@ def graded_block(
     key = f"graded-{mesh_key(size, held, settings)}"
     finished = partial(fitted, size=extent, inclusions=held, key=key, started=started, slide=False, smooth=False)
     if inclusion is None:
-        lines = [_Line(_spaced(0.0, float(length), settings, (True, True)), 0) for length in extent]
-        corners, cells = _tensor(lines, 0)
+        lines = [_Line(_mirrored_line(float(length), settings), 0, 0) for length in extent]
+        corners, cells = _tensor(lines)
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
     solid = inclusion.solids(extent)[0]
     if not isinstance(solid, EllipsoidSolid):
         raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
-    across = max(LEAST_ACROSS, round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size))
     for finer in range(ATTEMPTS):
-        corners, cells, labels = _around(solid, _lines(solid, extent, settings, across + finer), across + finer)
+        corners, cells, labels = _around(solid, _lines(solid, extent, settings, finer))
         simplices = _sixths(cells, _mirrored_places(corners, solid.center, solid.stretch))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
@@ -87,15 +93,15 @@ def graded_block(
     raise AssertionError("every attempt returns or raises")
 
 
-def _around(solid: EllipsoidSolid, lines: Sequence[_Line], across: int) -> tuple[Array, Array, Array]:
+def _around(solid: EllipsoidSolid, lines: Sequence[_Line]) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
-    corners, outside = _tensor(lines, across)
-    logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, across + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    core = grid((across,) * 3)
+    corners, outside = _tensor(lines)
+    logical = _product([np.linspace(-1, 1, line.across + 1) for line in lines])
+    core = grid([line.across for line in lines])
     shell, quads = skin(core, logical)
     inner = solid.center + blown(logical) @ solid.stretch
     wall = solid.center + directions(logical[shell]) @ solid.stretch
-    steps = np.stack(np.unravel_index(shell, (across + 1,) * 3)) + np.array([[line.first] for line in lines])
+    steps = np.stack(np.unravel_index(shell, [line.across + 1 for line in lines])) + np.array([[line.first] for line in lines])
     on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.places) for line in lines))
     added, rounded, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
     numbers = np.concatenate([len(corners) + np.arange(len(inner) + len(shell)), on_box])
@@ -106,18 +112,21 @@ def _around(solid: EllipsoidSolid, lines: Sequence[_Line], across: int) -> tuple
     return points[used], compact.reshape(cells.shape), labels
 
 
-def _lines(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, across: int) -> list[_Line]:
+def _lines(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, finer: int) -> list[_Line]:
     """For each axis: places graded from a face to the box, even through the box to its middle, and on to the other face."""
     lines = []
+    wanted = round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size)
+    along = _least_along(solid.bounds()[:, 2], float(extent[2]), settings)
     for axis, ((low, high), center, length) in enumerate(zip(solid.bounds().T, solid.center, extent, strict=True)):
         half = (high - low) / 2
         below, above = (_left(gap, settings, pressed=axis == 2) for gap in (low, length - high))
         begin = max(center - REACH * half, below)
         end = min(center + REACH * half, length - above)
-        before = _spaced(0.0, begin, settings, (True, False))
-        after = _spaced(end, length, settings, (False, True))
+        across = max(LEAST_BETWEEN if axis == 2 else along, wanted) + finer
+        before = _spaced(begin, settings)
+        after = length - _spaced(length - end, settings)[::-1]
         within = np.interp(np.linspace(-1, 1, across + 1), [-1, 0, 1], [begin, center, end])
-        lines.append(_Line(np.concatenate([before[:-1], within, after[1:]]), len(before) - 1))
+        lines.append(_Line(np.concatenate([before[:-1], within, after[1:]]), len(before) - 1, across))
     return lines
 
 
@@ -131,37 +140,54 @@ def _left(gap: float, settings: BlockMeshSettings, *, pressed: bool) -> float:
     return (1 - ROOM) * gap
 
 
+def _least_along(heights: Array, height: float, settings: BlockMeshSettings) -> int:
+    """Least number of cells across the box along the jaws around a lump between two heights in m."""
+    low, high = heights
+    if min(low, height - high) < NEAR * _edge(settings):
+        return LEAST_ALONG_NEAR
+    return LEAST_BETWEEN if high - low < THIN * height else LEAST_ALONG
+
+
 def _edge(settings: BlockMeshSettings) -> float:
     """Thickness of cells at the faces in m."""
     return min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
 
 
-def _spaced(begin: float, end: float, settings: BlockMeshSettings, at_face: tuple[bool, bool]) -> Array:
-    """Ascending places in m between two, spaced by ``edge_size`` at a face and growing up to ``size``."""
-    if end <= begin:
-        return np.array([begin])
-    edge = _edge(settings)
-    fine = np.linspace(begin, end, 400)
-    wanted = np.full(fine.shape, settings.size)
-    for there, away in zip(at_face, (fine - begin, end - fine), strict=True):
-        if there:
-            wanted = np.minimum(wanted, edge + settings.growth * away)
-    density = 1 / wanted
-    passed = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(fine))])
-    count = max(1, round(passed[-1]))
-    places = np.interp(np.linspace(0, passed[-1], count + 1), passed, fine)
-    places[0], places[-1] = begin, end
-    return places
+def _spaced(length: float, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit."""
+    if length <= 0:
+        return np.zeros(1)
+    thickness = [_edge(settings)]
+    while True:
+        further = min(thickness[-1] * (1 + settings.growth), settings.size)
+        if sum(thickness) + NEAREST * further > length:
+            break
+        thickness.append(further)
+    steps = np.array(thickness)
+    if len(steps) == 1:
+        return np.array([0.0, length])
+    steps[1:] *= (length - steps[0]) / steps[1:].sum()
+    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), length)
 
 
-def _tensor(lines: Sequence[_Line], across: int) -> tuple[Array, Array]:
-    """Corners (n, 3) of a grid, and its cells (H, 8) outside the box of ``across``^3 cells."""
-    corners = np.stack(np.meshgrid(*[line.places for line in lines], indexing="ij"), axis=-1).reshape(-1, 3)
+def _mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from face to face, those of one half the mirror image of the others."""
+    half = _spaced(length / 2, settings)
+    return np.concatenate([half, length - half[-2::-1]])
+
+
+def _product(lines: Sequence[Array]) -> Array:
+    """Points (n, 3) of a grid of coordinates, the last one running fastest."""
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _tensor(lines: Sequence[_Line]) -> tuple[Array, Array]:
+    """Corners (n, 3) of a grid, and its cells (H, 8) outside the box."""
     counts = [len(line.places) - 1 for line in lines]
-    place = np.stack(np.meshgrid(*[np.arange(count) for count in counts], indexing="ij"), axis=-1)
+    place = _product([np.arange(count) for count in counts])
     first = np.array([line.first for line in lines])
-    inside = ((place >= first) & (place < first + across)).all(axis=-1).ravel()
-    return corners, grid(counts)[~inside]
+    inside = ((place >= first) & (place < first + [line.across for line in lines])).all(axis=1)
+    return _product([line.places for line in lines]), grid(counts)[~inside]
 
 
 def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:
