@@ -120,6 +120,11 @@ class ContactPair:
             return self.held_limit
         return np.where(self.grip == 0, 0.0, self.law.traction_limit(pressure))
 
+    @property
+    def rubs(self) -> bool:
+        """Whether friction may act at any point."""
+        return bool(self.traction_limit(np.ones(1)).any())
+
     def limit_slope(self, pressure: Array) -> Array:
         """How the limit (n,) grows with the pressure."""
         if self.held_limit is not None:

@@ -77,7 +77,7 @@ class GradedSource(BlockMeshSettings):
     """Edge length at the inclusion, about; three or four cells across it at least."""
     edge_size: Positive | None = 1.6e-3
     """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
-    growth: Annotated[float, Field(gt=0, le=2)] = 0.7
+    growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
     @property

@@ -14,7 +14,7 @@ from tactsim.experiments.contact_equilibrium import ContactEquilibrium, contact_
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.external_forces import FollowerLoad
-from tactsim.fem.newton import Problem
+from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
@@ -32,6 +32,8 @@ CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0
 """Directions in which the jaws close."""
 TOUCH = 1e-15
 """Gap at touch over the size of the block."""
+START_PATIENCE = 4
+"""Iterations in which Newton halves the residual where it finds to the equilibrium; in 36 of 40 closings three did."""
 LEAST_STRETCH = 0.5
 """Of a first guess."""
 MOST_APPROACHES = 1000
@@ -68,7 +70,8 @@ class GraspModel:
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}
         self.references = {side: points[side].interpolate(mesh.nodes) for side in SIDES}
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(SIDES, offsets, strict=True)}
-        self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body))
+        options = NewtonOptions(start_patience=START_PATIENCE)
+        self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
         self.hold = WeakHold(self.body)
 
     def touching_place(self, side: str) -> Array:

@@ -46,6 +46,9 @@ class NewtonOptions:
     """How often a step is halved for a smaller residual, once the residual has moved in circles."""
     patience: int = 8
     """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
+    start_patience: int | None = None
+    """Newton gives up when the first so many iterations have not halved the residual: a shorter load step is cheaper. None means
+    ``patience`` alone."""
     most_halvings: int = 10
     """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
     volume_floor: float = 0.2
@@ -197,8 +200,10 @@ class Problem:
         return len(history) > CYCLE_AFTER and history[-1] > CYCLE_RATIO * min(history[-5:-1])
 
     def _stagnates(self, history: list[float]) -> bool:
-        """Whether the last iterations brought nothing, as when contact points switch to and fro."""
-        patience = self.options.patience
+        """Whether the last iterations brought nothing, as when contact points switch to and fro, or the first ones."""
+        patience, start = self.options.patience, self.options.start_patience
+        if start is not None and len(history) > start and min(history) > 0.5 * history[0]:
+            return True
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
     def _nodal(self, unknowns: Array, loads: Sequence[FollowerLoad], nodal_force: Array | None) -> Array:

@@ -17,8 +17,9 @@ FINE, COARSE = 1.5e-3, 5e-3
 
 @functools.cache
 def taxels(size: float, least: int) -> np.ndarray:
-    """Forces (jaw, row, column) in N after a closing of 0.1 mm, with cells of ``size`` in m and at ``least`` so many across."""
-    before, graded_block.LEAST_ACROSS = graded_block.LEAST_ACROSS, least
+    """Forces (jaw, row, column) in N after a closing of 0.1 mm, with cells of ``size`` in m and at ``least`` so many across
+    along the jaws."""
+    before, graded_block.LEAST_ALONG = graded_block.LEAST_ALONG, least
     try:
         result = Grasp.model_validate(
             {
@@ -36,19 +37,19 @@ def taxels(size: float, least: int) -> np.ndarray:
             }
         ).run(lambda step: None)
     finally:
-        graded_block.LEAST_ACROSS = before
+        graded_block.LEAST_ALONG = before
     assert result.status == "converged"
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 
 
 def difference(least: int) -> float:
     """Of the default cells from fine ones, over the largest taxel."""
-    fine = taxels(FINE, graded_block.LEAST_ACROSS)
+    fine = taxels(FINE, graded_block.LEAST_ALONG)
     return float(np.abs(taxels(COARSE, least) - fine).max() / fine.max())
 
 
 def test_a_hard_ball_near_a_jaw_is_felt_right():
-    assert difference(graded_block.LEAST_ACROSS) < SHARE
+    assert difference(graded_block.LEAST_ALONG) < SHARE
 
 
 def test_three_cells_across_would_miss_the_peak():

@@ -16,7 +16,7 @@ from tactsim.mesh.mesh_store import content_hash
 
 SIZE = (40e-3, 40e-3, 20e-3)
 CENTRED = Sphere(center=(20e-3, 20e-3, 10e-3), radius=5e-3)
-COARSE = BlockMeshSettings(size=6e-3, inclusion_size=5e-3, edge_size=1.6e-3, growth=0.7)
+COARSE = BlockMeshSettings(size=6e-3, inclusion_size=5e-3, edge_size=1.6e-3, growth=1.0)
 
 
 def mirrored(mesh, axis):
@@ -44,30 +44,30 @@ def test_lumps_anywhere_are_meshed_soundly():
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02
         assert block.quality.curvature > 0
-        assert 8_000 < block.unknowns < 30_000
+        assert 8_000 < block.unknowns < 32_000
 
 
 def test_cells_are_thin_at_the_faces_and_thicker_inside():
     block = graded_block(SIZE, None, COARSE)
     for axis in range(3):
         steps = np.diff(np.unique(block.mesh.nodes[:, axis].round(12)))[::2] * 2
-        assert steps[0] < 1.6 * COARSE.edge_size
+        assert steps[0] == pytest.approx(COARSE.edge_size)
         assert steps[len(steps) // 2] > 1.5 * steps[0]
         np.testing.assert_allclose(steps, steps[::-1], rtol=1e-6)
     assert block.region_names == ("tissue",)
 
 
-@pytest.mark.parametrize(("gap", "layers"), [(0.7e-3, 0), (2.3e-3, 0), (2.5e-3, 1)])
+@pytest.mark.parametrize(("gap", "layers"), [(0.7e-3, 0), (1.8e-3, 0), (2.1e-3, 1)])
 def test_no_thin_layer_of_cells_is_left_between_a_box_and_a_pressed_face(gap, layers):
     lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
     nodes = graded_block(SIZE, lump, COARSE).mesh.nodes
     edge = np.unique(nodes[(nodes[:, 0] == 0) & (nodes[:, 1] == 0), 2].round(9))
-    assert (edge < 0.41 * gap).sum() == 1 + 2 * layers  # the face itself, middles and far corners
+    assert (edge < 0.61 * gap).sum() == 1 + 2 * layers  # the face itself, middles and far corners
     assert np.diff(edge[::2]).min() > 0.9e-3
 
 
 def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
-    even = graded_block(SIZE, CENTRED, COARSE).mesh
+    even = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
     assert all(mirrored(even, axis) for axis in range(3))
     odd = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
     assert not all(mirrored(odd, axis) for axis in range(3))
