@@ -112,3 +112,13 @@ def test_a_held_limit_does_not_follow_the_pressure(grip):
     np.testing.assert_allclose(held.traction_limit(10 * pressures), grip * 0.5 * pressures)
     np.testing.assert_array_equal(held.limit_slope(pressures), 0)
     np.testing.assert_allclose(pair.limit_slope(pressures), grip * 0.5)
+
+
+def test_a_pair_rubs_where_its_law_has_friction_and_its_grip_lets_it():
+    plane = BODIES["plane"].example()
+    rough, smooth = LAWS["coulomb"](friction=0.5), LAWS["coulomb"](friction=0.0)
+    assert ContactPair(plane, rough).rubs
+    assert ContactPair(plane, LAWS["stick"].example()).rubs
+    assert ContactPair(plane, rough, grip=np.array([0.0, 1.0])).rubs
+    assert not ContactPair(plane, rough, grip=np.zeros(2)).rubs
+    assert not ContactPair(plane, smooth).rubs

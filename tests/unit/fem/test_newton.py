@@ -134,12 +134,12 @@ class Snaps:
         return SimpleNamespace(traction=self.converged(displacement), derivative=derivative, coupling=np.zeros_like(derivative))
 
 
-def snapped(dim, halvings):
+def snapped(dim, halvings, start_patience=None):
     """Newton's solution under springs between whose branches it jumps to and fro, with so many halvings of a step at most."""
     body, fixed, _ = block(dim, MATERIALS["linear"], held_axes=range(dim))
     mesh = box([1.0] * dim, [2] * dim, jitter=0.1)
     points = body.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
-    problem = Problem(body, fixed, options=NewtonOptions(search_halvings=halvings))
+    problem = Problem(body, fixed, options=NewtonOptions(search_halvings=halvings, start_patience=start_patience))
     return problem.solve(np.zeros(body.space.size), interfaces=[Snaps(SurfaceAssembly(points, body.pattern, dim))])
 
 
@@ -152,3 +152,13 @@ def test_forces_that_jump_to_and_fro_are_caught_by_shorter_steps(dim):
 def test_without_shorter_steps_they_jump_for_ever(dim):
     with pytest.raises(ConvergenceError, match="did not converge"):
         snapped(dim, 0)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_newton_gives_up_a_start_that_brings_nothing_if_asked(dim):
+    with pytest.raises(ConvergenceError) as patient:
+        snapped(dim, 0)
+    with pytest.raises(ConvergenceError) as hasty:
+        snapped(dim, 0, start_patience=3)
+    assert len(hasty.value.history) == 4 < len(patient.value.history)
+    assert min(hasty.value.history) > 0.5 * hasty.value.history[0]
