@@ -126,11 +126,9 @@ def test_a_lump_of_the_tissues_own_material_is_none() -> None:
 
 
 @pytest.mark.slow
-def test_a_grasp_is_stored_with_clean_and_noisy_readings(tmp_path: Path) -> None:
-    text = (CASES / "sweep_lumps.yaml").read_text(encoding="utf-8")
-    small = tmp_path / "small.yaml"
-    small.write_text(text.replace("{kind: graded}", "{kind: structured, cells: [10, 10, 6]}"), encoding="utf-8")
-    block = decoded(computed(load_sweep(small, ("experiment.matrix.rows=2",)).text, [0]))
+def test_a_grasp_is_stored_with_clean_and_noisy_readings() -> None:
+    smaller = ("experiment.matrix.rows=2", "experiment.mesh={kind: structured, cells: [10, 10, 6]}")
+    block = decoded(computed(load_sweep(CASES / "sweep_lumps.yaml", smaller).text, [0]))
     assert block["status"].tolist() == [1], block["reason"]
     assert block["taxel_force"].shape == (1, 1, 2, 2, 3)
     total = block["taxel_force"][0, 0].sum(axis=(1, 2)) + block["outside_force"][0]
