@@ -74,16 +74,9 @@ def _swept(case: Path, store: Path, samples: int, *options: str) -> float:
 
 def held_errors(samples: range = range(HELD)) -> dict[str, float | None]:
     """Differences of the taxels from those of the fine mesh, over the largest taxel, by held sample; None if it failed."""
-    sweep = load_sweep(CASES / "sweep_lumps.yaml", (f"sweep.seed={HELD_SEED}", "sweep.samples=60", *STANDARD))
     errors: dict[str, float | None] = {}
     for number in samples:
-        case = drawn_specimen(sweep, number)[0].case
-        assert case is not None
-        grasp = case.experiment
-        assert isinstance(grasp, Grasp)
-        fine = FINE | {"inclusion_size": FINE_SHARE * grasp.inclusions[0].shape.radius}
-        finer = {"mesh": grasp.mesh.model_copy(update=fine), "time": grasp.time.model_copy(update={"steps": FINE_STEPS})}
-        found = [_taxels_in_time(grasp), _taxels_in_time(grasp.model_copy(update=finer))]
+        found = [_taxels_in_time(number, fine) for fine in (False, True)]
         error = float(np.abs(found[0] - found[1]).max() / found[1].max())
         errors[f"held_{number}"] = error if np.isfinite(error) else None
         sys.stderr.write(f"{number} {error:.4f}\n")
@@ -91,19 +84,30 @@ def held_errors(samples: range = range(HELD)) -> dict[str, float | None]:
     return errors | {"held_median": float(np.median(known)), "held_largest": max(known), "held_known": float(len(known))}
 
 
-def _taxels_in_time(grasp: Grasp) -> np.ndarray:
+def _taxels_in_time(number: int, fine: bool) -> np.ndarray:
     """Forces in N on the taxels of both jaws, NaN if the grasp did not converge within the limit."""
     with get_context("spawn").Pool(1) as pool:
         try:
-            return pool.apply_async(_taxels, (grasp,)).get(LIMIT)
+            return pool.apply_async(_taxels, (number, fine)).get(LIMIT)
         except TimeoutError:
             return np.array(np.nan)
 
 
-def _taxels(grasp: Grasp) -> np.ndarray:
+def _taxels(number: int, fine: bool) -> np.ndarray:
+    """Forces in N on the taxels of both jaws in a held sample; drawn here, as grasps do not travel between processes."""
+    sweep = load_sweep(CASES / "sweep_lumps.yaml", (f"sweep.seed={HELD_SEED}", f"sweep.samples={3 * HELD}", *STANDARD))
+    case = drawn_specimen(sweep, number)[0].case
+    assert case is not None
+    grasp = case.experiment
+    assert isinstance(grasp, Grasp)
+    if fine:
+        mesh = FINE | {"inclusion_size": FINE_SHARE * grasp.inclusions[0].shape.radius}
+        time = grasp.time.model_copy(update={"steps": FINE_STEPS})
+        grasp = grasp.model_copy(update={"mesh": grasp.mesh.model_copy(update=mesh), "time": time})
     result = grasp.run(lambda record: None)
-    forces = np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
-    return forces if result.status is Status.CONVERGED else forces * np.nan
+    if result.status is not Status.CONVERGED:
+        return np.array(np.nan)
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that far away, where none is given."""
 ROOM = 0.4
 """How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
-NEAR = 1.2
+NEAR = 1.1
 """Gaps below which the box reaches to a face that a jaw presses, over the thickness of cells at the faces."""
 REACH = 2.0
 """Half width of the box over that of the lump, at most."""
