@@ -135,15 +135,18 @@ def _left(gap: float, settings: BlockMeshSettings, *, pressed: bool) -> float:
 
     Thin cells along the edges of a pressed face turn inside out when the free faces roll onto the jaw.
     """
-    if pressed and gap < NEAR * _edge(settings):
-        return 0.0
-    return (1 - ROOM) * gap
+    return 0.0 if pressed and _near(gap, settings) else (1 - ROOM) * gap
+
+
+def _near(gap: float, settings: BlockMeshSettings) -> bool:
+    """Whether the box reaches over a gap in m to a face that a jaw presses."""
+    return gap < NEAR * _edge(settings)
 
 
 def _least_along(heights: Array, height: float, settings: BlockMeshSettings) -> int:
     """Least number of cells across the box along the jaws around a lump between two heights in m."""
     low, high = heights
-    if min(low, height - high) < NEAR * _edge(settings):
+    if _near(min(low, height - high), settings):
         return LEAST_ALONG_NEAR
     return LEAST_BETWEEN if high - low < THIN * height else LEAST_ALONG
 
@@ -154,7 +157,8 @@ def _edge(settings: BlockMeshSettings) -> float:
 
 
 def _spaced(length: float, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit."""
+    """Ascending places in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit; or
+    one cell, if most of a second one would not find room."""
     if length <= 0:
         return np.zeros(1)
     thickness = [_edge(settings)]
