@@ -33,7 +33,7 @@ CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0
 TOUCH = 1e-15
 """Gap at touch over the size of the block."""
 START_PATIENCE = 6
-"""Iterations in which Newton halves the residual where it finds to the equilibrium: three in 36 of 40 closings, five in few cells."""
+"""Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""
 LEAST_STRETCH = 0.5
 """Of a first guess."""
 MOST_APPROACHES = 1000
