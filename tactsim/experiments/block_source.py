@@ -74,7 +74,7 @@ class GradedSource(BlockMeshSettings):
     size: Positive = 6e-3
     """Edge length far from the inclusion and the faces."""
     inclusion_size: Positive = 2e-3
-    """Edge length at the inclusion, about; three or four cells across it at least."""
+    """Edge length at the inclusion, about; three to five cells across it at least, by its size and place."""
     edge_size: Positive | None = 1.6e-3
     """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0

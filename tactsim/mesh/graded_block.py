@@ -19,7 +19,7 @@ from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 from tactsim.mesh.solid import Inclusion
-from tactsim.mesh.structured_block import SIDES, blown, directions, grid, ranks, skin, stacked
+from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
 Array = np.ndarray
@@ -96,7 +96,7 @@ def graded_block(
 def _around(solid: EllipsoidSolid, lines: Sequence[_Line]) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
     corners, outside = _tensor(lines)
-    logical = _product([np.linspace(-1, 1, line.across + 1) for line in lines])
+    logical = product([np.linspace(-1, 1, line.across + 1) for line in lines])
     core = grid([line.across for line in lines])
     shell, quads = skin(core, logical)
     inner = solid.center + blown(logical) @ solid.stretch
@@ -162,10 +162,7 @@ def _spaced(length: float, settings: BlockMeshSettings) -> Array:
     if length <= 0:
         return np.zeros(1)
     thickness = [_edge(settings)]
-    while True:
-        further = min(thickness[-1] * (1 + settings.growth), settings.size)
-        if sum(thickness) + NEAREST * further > length:
-            break
+    while sum(thickness) + NEAREST * (further := min(thickness[-1] * (1 + settings.growth), settings.size)) <= length:
         thickness.append(further)
     steps = np.array(thickness)
     if len(steps) == 1:
@@ -180,18 +177,13 @@ def _mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
     return np.concatenate([half, length - half[-2::-1]])
 
 
-def _product(lines: Sequence[Array]) -> Array:
-    """Points (n, 3) of a grid of coordinates, the last one running fastest."""
-    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
 def _tensor(lines: Sequence[_Line]) -> tuple[Array, Array]:
     """Corners (n, 3) of a grid, and its cells (H, 8) outside the box."""
     counts = [len(line.places) - 1 for line in lines]
-    place = _product([np.arange(count) for count in counts])
+    place = product([np.arange(count) for count in counts])
     first = np.array([line.first for line in lines])
     inside = ((place >= first) & (place < first + [line.across for line in lines])).all(axis=1)
-    return _product([line.places for line in lines]), grid(counts)[~inside]
+    return product([line.places for line in lines]), grid(counts)[~inside]
 
 
 def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:

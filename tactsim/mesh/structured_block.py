@@ -57,7 +57,7 @@ def structured_block(
         if len(line) != cells[axis] + 1 or not (np.diff(line) > 0).all() or line[0] != 0 or line[-1] != extent[axis]:
             raise InputError(f"the lines along axis {axis} must ascend from 0 to {extent[axis]:g} m in {cells[axis]} steps")
     check_inclusions(extent, inclusions, 0.0)
-    corners = np.stack(np.meshgrid(*spaced, indexing="ij"), axis=-1).reshape(-1, 3)
+    corners = product(spaced)
     simplices = grid(cells)[:, _KUHN].reshape(-1, 4)
     surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
     labels = surfaces.labels(corners[simplices].mean(axis=1))
@@ -90,7 +90,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     cell = np.pi / 2 * radius / around
     within = max(1, round((1 - CORE) * radius / cell))
     beyond = outer_steps(max(cell, float(extent.mean()) / 2 - radius) / 2, cell, settings)
-    logical = np.stack(np.meshgrid(*[np.linspace(-1, 1, around + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    logical = product([np.linspace(-1, 1, around + 1)] * 3)
     core = grid((around,) * 3)
     shell, quads = skin(core, logical)
     inner = solid.center + blown(logical) @ solid.stretch
@@ -111,6 +111,11 @@ def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Ar
     while sum(steps) < distance:
         steps.append(min(settings.size, steps[-1] * (1 + settings.growth)))
     return np.cumsum(steps) / np.sum(steps)
+
+
+def product(lines: Sequence[Array]) -> Array:
+    """Points (n, 3) of a grid of coordinates, the last one running fastest."""
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def grid(cells: Sequence[int]) -> Array:
