@@ -20,7 +20,7 @@ Array = np.ndarray
 
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
-AUGMENTATIONS = 12
+AUGMENTATIONS = 20
 """How often with better multipliers."""
 STALLED = 0.1
 """Residual below which Newton was near."""
@@ -86,17 +86,16 @@ def contact_equilibrium(
         slips = [r.elastic_slip(contact.state, contact.pair) for r, contact in zip(results, contacts, strict=True)]
         within = regularisation.holds(deepest, max(float(slip.max()) for slip in slips))
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
-        if within and coarse:
-            coarse = 0.0
-            before = tuple(old.resumed(result) for old, result in zip(before, results, strict=True))
-        elif within:
+        if within and not coarse:
             committed = tuple(c.committed(d) for c, d in zip(contacts, displacements, strict=True))
             way = load - state.load
             committed = tuple(c.grown(start, way) for c, start in zip(committed, state.contacts, strict=True))
             return ContactEquilibrium(
                 load, solved.unknowns, iterations, solved.history[-1], committed, regularisation, solved.kinematics
             )
-        elif regularisation.augments:
+        if within:
+            coarse = 0.0
+        if regularisation.augments:
             before = tuple(old.augmented(result) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
     raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {regularisation.tolerance:.2e} m")

@@ -19,12 +19,13 @@ SMALLEST_LOAD_STEP = 1e-3
 """Smallest load step of elastic tissue, as a part of the largest."""
 MANY_ITERATIONS = 60
 """Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
-TOUCH = 0.1
-"""First guess of a closing under a force in penetration tolerances, so that the jaws touch."""
+TOUCH = 0.02
+"""First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
 """Beginning of the names of facets inside a hollow tube."""
-PRESSED = 0.1
-"""Largest penetration of the first guess of a closing, over the closing, so that the jaws touch."""
+CLEAR, PART_CLEAR = 0.2, 0.1
+"""Gap to either jaw in the first guess of a closing, over the penetration without multipliers and at most over the closing:
+Newton chooses from there which points touch and stick; where all touch at once, friction holds them too far out."""
 
 
 def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
@@ -43,7 +44,7 @@ class GraspedBlock:
     """
 
     def __init__(self, experiment: GraspSetup, model: GraspModel):
-        self._model, self._touch, self._tolerance = model, TOUCH * experiment.tolerance, experiment.tolerance
+        self._model, self._touch, self._clear = model, TOUCH * experiment.softness, CLEAR * experiment.softness
         self._by_force = experiment.loading.control == "force"
         self._hollow = any(name.startswith(LUMEN) for name in model.facets)
         facets = [model.facets[f"{LUMEN}{number}"] for number in experiment.lumens]
@@ -61,7 +62,7 @@ class GraspedBlock:
         model, pressures = self._model, [wall.at(p) for wall, p in zip(self._walls, loads[1:], strict=True)]
         if not self._by_force:
             if loads[0] > now.load and not now.unknowns.any() and not self._hollow:
-                guess = np.append(model.compressed(loads[0] + min(self._tolerance, PRESSED * loads[0])), loads[0])
+                guess = np.append(model.compressed(loads[0] + min(self._clear, PART_CLEAR * loads[0])), loads[0])
             return model.equilibrium(now, loads[0], guess[:-1], past=past, loads=pressures)
         if loads[0] == 0:
             return model.equilibrium(now, now.load, guess[:-1], past=past, loads=pressures)

@@ -32,10 +32,10 @@ Array = np.ndarray
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
-PENETRATION = 5e-4
-"""Largest penetration over the height of the block, where none is given: with both jaws, 1 % of a closing by a tenth each."""
-SOFTNESS = 5.0
-"""Penetration that the contact would have without multipliers, over the tolerance."""
+PENETRATION = 2e-4
+"""Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
+SOFTNESS, SOFTEST = 25.0, 2.5e-3
+"""Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SWITCH_LENGTH = 1e-3
 """Length in m over which the state of a surface point may change its mind."""
 
@@ -119,7 +119,7 @@ class GraspSetup(FrozenModel):
     loading: AnyLoading
     """What both jaws follow: closing from first touch, each by that much, or force, each by that much."""
     penetration_tolerance: Positive | None = None
-    """Largest penetration at any surface quadrature point; by default 5e-4 of the block's height."""
+    """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height."""
     mesh: AnyBlockSource = TetrahedraSource()
     """Where the mesh comes from."""
     time: GraspTimeSettings = GraspTimeSettings()
@@ -131,6 +131,11 @@ class GraspSetup(FrozenModel):
     def tolerance(self) -> float:
         """Largest penetration in m."""
         return self.penetration_tolerance or PENETRATION * self.block.size[2]
+
+    @property
+    def softness(self) -> float:
+        """Penetration in m that the contact would have without multipliers."""
+        return min(SOFTNESS * self.tolerance, SOFTEST * self.block.size[2])
 
     @property
     def shapes(self) -> tuple[Inclusion, ...]:
@@ -174,7 +179,7 @@ class GraspSetup(FrozenModel):
     def regularisation(self) -> Augmentation:
         """How stiff the contact is."""
         softest = shear_relaxation(self.block.tissue).instantaneous_modulus
-        return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=SOFTNESS * self.tolerance)
+        return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=self.softness)
 
     def sourced(self) -> SourcedBlock:
         """The mesh, finer at the edges of jaws that are smaller than the block and in its middle."""

@@ -29,7 +29,7 @@ class Model:
 
 @pytest.mark.parametrize(("facets", "first"), [(("upper", "lower"), 1.0), (("upper", "lower", "lumen:1"), 0.0)])
 def test_a_hollow_tube_is_not_squeezed_by_the_first_guess(facets, first):
-    experiment = SimpleNamespace(tolerance=1e-5, loading=SimpleNamespace(control="displacement"), lumens=())
+    experiment = SimpleNamespace(softness=5e-5, loading=SimpleNamespace(control="displacement"), lumens=())
     rest = SimpleNamespace(load=0.0, unknowns=np.zeros(4))
     found = GraspedBlock(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
     assert (found == first).all()
