@@ -1,9 +1,10 @@
 """Linear systems that change little: an old factor preconditions the next systems until it no longer pays.
 
-Factoring a sparse matrix of tissue in space costs as much as ten to thirty solutions with the factor. GMRES needs fewer than
-that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do.
+Factoring a sparse matrix of tissue in space costs as much as some thirty solutions with the factor. GMRES needs fewer than
+that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do. A factor
+is replaced once the solutions with it have cost as much as a new one: at worst twice what the best choice of moments costs.
 
-Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES).
+Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES); Karlin et al. 1988, doi:10.1007/BF01762111 (whether to rent or to buy).
 """
 
 from __future__ import annotations
@@ -17,8 +18,12 @@ from tactsim.fem.linear import DirectSolver
 
 Array = np.ndarray
 
-WORTH_A_FACTOR = 24
-"""Solutions with a factor that cost as much as a new one; a system that needs more is factored."""
+WORTH_A_FACTOR = 30
+"""Solutions with a factor that cost as much as a new one; the system after them is factored."""
+MOST_OF_ONE = 24
+"""Solutions that one system may take with an old factor; if it needs more, it is factored."""
+FIRST_FACTORS = 2
+"""First systems that are factored whatever came before: from a first guess, Newton's first step changes the tangent most."""
 MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
 FINEST = 1e-12
@@ -31,11 +36,13 @@ class ReusedFactor:
     def __init__(self, direct: DirectSolver):
         self.name = f"{direct.name}, reused"
         self.factorisations = self.solutions = 0
-        self._direct, self._matrix, self._nearby, self._stale = direct, None, None, True
+        self._direct, self._matrix, self._nearby = direct, None, None
+        self._current, self._spent = False, 0
 
     def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
         """Keep the matrix; it, or the one nearby, is factored only if the last factor no longer helps."""
         self._matrix, self._nearby = matrix, matrix if nearby is None else nearby
+        self._current = False
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``."""
@@ -45,29 +52,31 @@ class ReusedFactor:
             raise ConvergenceError("the right-hand side holds numbers that are not finite")
         if not right.any():
             return np.zeros_like(right)
-        if not self._stale:
+        if not self._current and self.factorisations >= FIRST_FACTORS and self._spent < WORTH_A_FACTOR:
             solution, reached = self._iterated(right, max(accuracy, FINEST), cycles=1)
             if reached:
                 return solution
-        self._direct.factor(self._nearby)
-        self.factorisations += 1
-        self._stale = False
+        if not self._current:
+            self._direct.factor(self._nearby)
+            self.factorisations += 1
+            self._current, self._spent = True, 0
         solution, _ = self._iterated(right, max(accuracy, FINEST), cycles=MOST_CYCLES)
         return solution
 
     def close(self) -> None:
         """Release the factor's memory."""
         self._direct.close()
-        self._matrix, self._nearby, self._stale = None, None, True
+        self._matrix, self._nearby, self._current, self._spent = None, None, False, WORTH_A_FACTOR
 
     def _iterated(self, right: Array, accuracy: float, *, cycles: int) -> tuple[Array, bool]:
         """Flexible GMRES, which judges the true residual although the factor is rounded; whether it got there."""
         guide = LinearOperator((len(right), len(right)), matvec=self._counted, dtype=float)
-        restart = WORTH_A_FACTOR - 1  # and one more direction instead of those of the cycle before
+        restart = MOST_OF_ONE - 1  # and one more direction instead of those of the cycle before
         solution, _ = gcrotmk(self._matrix, right, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)
         left = np.linalg.norm(self._matrix @ solution - right) / np.linalg.norm(right)
         return solution, bool(left <= 2 * accuracy)
 
     def _counted(self, vector: Array) -> Array:
         self.solutions += 1
+        self._spent += 1
         return self._direct.solve(vector)
