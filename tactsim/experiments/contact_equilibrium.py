@@ -26,7 +26,7 @@ STALLED = 0.1
 """Residual below which Newton was near."""
 HELD_ROUNDS = 6
 """How often limits of friction are held before a step counts as failed."""
-COARSE = 3e-2
+COARSE = 4.5e-2
 """Residual that suffices between augmentations, with friction: without it Newton is as fast to the end."""
 SHARPER = 0.3
 """Factor of that residual once an augmentation has not raised the residual above it."""
