@@ -34,6 +34,9 @@ ENVELOPE = 0.03
 """Distance that the mesher's surface may keep from the given one, in element sizes; projection then removes it."""
 FACET_SIZE = 0.6
 """Edge length of the triangles given to the mesher, in element sizes."""
+ATTEMPTS = (1.0, 0.8, 0.64)
+"""Parts of the element size at inclusions that are tried by turns until a mesh keeps its bounds: the mesher gives another mesh
+every time, and of 33 meshes of spheres of 3 to 4.5 mm two missed the volume by 0.56 %, the others by 0.3 % at most."""
 REVISION = 1
 """Raised when the same input shall give another mesh."""
 MODULE = "tactsim.mesh.tetrahedra"
@@ -51,16 +54,31 @@ def block_mesh(
     InputError
         If inclusions overlap, touch, protrude or do not suit the block.
     ConvergenceError
-        If the mesher fails or takes too long, or the mesh misses the volumes, the flatness or the shape asked for.
+        If the mesher fails or takes too long, or every mesh misses the volumes, the flatness or the shape asked for.
     """
     started = time.perf_counter()
     settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
     check_inclusions(extent, inclusions, settings.least_gap)
-    vertices, triangles = input_surface(extent, inclusions, settings)
+    surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
+    key = mesh_key(size, inclusions, settings)
+    for part in ATTEMPTS:
+        finer = settings.model_copy(update={"inclusion_size": part * settings.inclusion_size})
+        corners, simplices = tetrahedra_in_child(_request(extent, inclusions, finer), settings.time_limit)
+        labels = tidied(simplices, surfaces.labels(corners[simplices].mean(axis=1)))
+        try:
+            return fitted(corners, simplices, labels, size=extent, inclusions=inclusions, key=key, started=started)
+        except ConvergenceError as error:
+            missed = error
+    raise missed
+
+
+def _request(size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> dict[str, Array]:
+    """What the mesher needs: the surfaces, and the element sizes on a background mesh."""
+    vertices, triangles = input_surface(size, inclusions, settings)
     bounds = np.array([vertices.min(axis=0), vertices.max(axis=0)])
     finest = min([settings.inclusion_size, *(inclusion.refine(settings.inclusion_size) for inclusion in inclusions)])
-    points, cells, wanted = background(bounds, extent, inclusions, settings)
-    request = {
+    points, cells, wanted = background(bounds, size, inclusions, settings)
+    return {
         "vertices": vertices,
         "faces": triangles.astype(np.int32),
         "edge_length_abs": np.array(settings.size),
@@ -70,11 +88,6 @@ def block_mesh(
         "bg_tets": cells,
         "bg_values": wanted,
     }
-    corners, simplices = tetrahedra_in_child(request, settings.time_limit)
-    surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
-    labels = tidied(simplices, surfaces.labels(corners[simplices].mean(axis=1)))
-    key = mesh_key(size, inclusions, settings)
-    return fitted(corners, simplices, labels, size=extent, inclusions=inclusions, key=key, started=started)
 
 
 def mesh_key(size: Sequence[float], inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> str:

@@ -175,6 +175,28 @@ def test_a_mesher_that_dies_is_reported(program, reason, monkeypatch):
         block_mesh(SIZE, [LUMP], COARSE)
 
 
+@pytest.mark.parametrize("misses", [0, 1, 3])
+def test_a_mesh_that_misses_a_bound_is_made_again_on_finer_elements(misses, monkeypatch):
+    finest, fitted = [], []
+    monkeypatch.setattr(tetrahedra, "background", lambda *given: finest.append(given[-1].inclusion_size) or (0, 0, 0))
+    monkeypatch.setattr(tetrahedra, "tetrahedra_in_child", lambda request, limit: (np.zeros((4, 3)), np.zeros((1, 4), int)))
+
+    def fit(*given, key, **settings):
+        fitted.append(key)
+        if len(fitted) <= misses:
+            raise ConvergenceError(f"the mesh misses its volume, {len(fitted)}")
+        return "mesh"
+
+    monkeypatch.setattr(tetrahedra, "fitted", fit)
+    if misses == len(tetrahedra.ATTEMPTS):
+        with pytest.raises(ConvergenceError, match="misses its volume, 3"):
+            block_mesh(SIZE, [LUMP], COARSE)
+    else:
+        assert block_mesh(SIZE, [LUMP], COARSE) == "mesh"
+    assert fitted == [tetrahedra.mesh_key(SIZE, [LUMP], COARSE)] * min(misses + 1, 3)
+    assert_close(finest, [part * COARSE.inclusion_size for part in tetrahedra.ATTEMPTS[: len(fitted)]], 1e-12)
+
+
 def test_an_absent_mesher_is_named(monkeypatch):
     run, program = subprocess.run, "import sys; sys.exit(\"ModuleNotFoundError: No module named 'pytetwild'\")"
     monkeypatch.setattr(tetrahedra.subprocess, "run", lambda command, **how: run([sys.executable, "-c", program], **how))
