@@ -34,7 +34,7 @@ OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
 PENETRATION = 2e-4
 """Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
-SOFTNESS, SOFTEST = 25.0, 2.5e-3
+SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SWITCH_LENGTH = 1e-3
 """Length in m over which the state of a surface point may change its mind."""
@@ -135,7 +135,7 @@ class GraspSetup(FrozenModel):
     @property
     def softness(self) -> float:
         """Penetration in m that the contact would have without multipliers."""
-        return min(SOFTNESS * self.tolerance, SOFTEST * self.block.size[2])
+        return min(SOFTNESS * self.tolerance, SOFTNESS_OF_HEIGHT * self.block.size[2])
 
     @property
     def shapes(self) -> tuple[Inclusion, ...]:

@@ -2,7 +2,7 @@
 
 Factoring a sparse matrix of tissue in space costs as much as some thirty solutions with the factor. GMRES needs fewer than
 that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do. A factor
-is replaced once the solutions with it have cost as much as a new one: at worst twice what the best choice of moments costs.
+is replaced once the solutions with it have cost as much as a new one: at worst twice what the best moments would cost.
 
 Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES); Karlin et al. 1988, doi:10.1007/BF01762111 (whether to rent or to buy).
 """
@@ -22,8 +22,6 @@ WORTH_A_FACTOR = 30
 """Solutions with a factor that cost as much as a new one; the system after them is factored."""
 MOST_OF_ONE = 24
 """Solutions that one system may take with an old factor; if it needs more, it is factored."""
-FIRST_FACTORS = 2
-"""First systems that are factored whatever came before: from a first guess, Newton's first step changes the tangent most."""
 MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
 FINEST = 1e-12
@@ -37,7 +35,7 @@ class ReusedFactor:
         self.name = f"{direct.name}, reused"
         self.factorisations = self.solutions = 0
         self._direct, self._matrix, self._nearby = direct, None, None
-        self._current, self._spent = False, 0
+        self._current, self._spent = False, WORTH_A_FACTOR
 
     def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
         """Keep the matrix; it, or the one nearby, is factored only if the last factor no longer helps."""
@@ -52,7 +50,7 @@ class ReusedFactor:
             raise ConvergenceError("the right-hand side holds numbers that are not finite")
         if not right.any():
             return np.zeros_like(right)
-        if not self._current and self.factorisations >= FIRST_FACTORS and self._spent < WORTH_A_FACTOR:
+        if not self._current and self._spent < WORTH_A_FACTOR:
             solution, reached = self._iterated(right, max(accuracy, FINEST), cycles=1)
             if reached:
                 return solution

@@ -156,13 +156,13 @@ def changed(matrix, amount, *, skew=0.0):
 def test_an_old_factor_solves_what_changed_little_to_the_accuracy(kind, skew):
     matrix, right = tangent_of(3, axes=3)
     solver = ReusedFactor(direct_solver(kind))
-    for amount in (0.0, 0.0, 1e-3, 3e-3):
+    for amount in (0.0, 1e-3, 3e-3):
         now = changed(matrix, amount, skew=skew if amount else 0.0)
         found = solved(solver, now, right, 1e-8)
         assert np.linalg.norm(now @ found - right) <= 2e-8 * np.linalg.norm(right)
         assert_close(found, solved(direct_solver("pardiso"), now, right), 1e-4)  # accuracy times condition number
-    assert solver.factorisations == 2
-    assert solver.solutions > 4
+    assert solver.factorisations == 1
+    assert solver.solutions > 3
 
 
 def test_an_iteration_refuses_forces_that_are_not_finite():
@@ -175,20 +175,19 @@ def test_an_iteration_refuses_forces_that_are_not_finite():
 def test_a_factor_is_made_again_once_what_it_did_has_cost_as_much():
     matrix, right = tangent_of(3, axes=3)
     solver, factorisations = ReusedFactor(direct_solver("pardiso_symmetric")), []
-    for amount in (0.0, 0.0, *[3e-3] * 20):
+    for amount in (0.0, *[3e-3] * 20):
         solved(solver, changed(matrix, amount), right, 1e-8)
         factorisations.append(solver.factorisations)
-    assert factorisations[:4] == [1, 2, 2, 2]
-    assert factorisations[-1] == 3
+    assert factorisations[:3] == [1, 1, 1]
+    assert factorisations[-1] == 2
 
 
 def test_a_factor_too_old_is_made_again_and_closing_forgets_it():
     matrix, right = tangent_of(3, axes=3)
     solver = ReusedFactor(direct_solver("pardiso_symmetric"))
-    for _ in range(2):
-        solved(solver, matrix, right, 1e-8)
+    solved(solver, matrix, right, 1e-8)
     solved(solver, changed(matrix, 0.2), right, 1e-8)
-    assert solver.factorisations == 3
+    assert solver.factorisations == 2
     assert not solved(solver, matrix, 0 * right, 1e-8).any()
     solver.close()
     with pytest.raises(InputError, match="factor a matrix"):
