@@ -25,7 +25,7 @@ from tactsim.experiments.grasp import Grasp
 from tactsim.results.result import Status
 
 CASES = Path(__file__).parents[1] / "cases"
-GRASPS, FAST = 120, 10_000
+GRASPS, FAST = 60, 10_000
 STANDARD = (
     "experiment.contact.friction=0.6",
     "experiment.loading.pieces.0.to=1 mm",
