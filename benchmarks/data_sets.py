@@ -2,7 +2,7 @@
 
 python benchmarks/data_sets.py [--held]
 
-With --held (half an hour) the error of the mesh instead: 20 samples that no sweep draws, against a fine one in two steps.
+With --held (a quarter of an hour) the error of the mesh instead: 20 samples that no sweep draws, against a fine one in two steps.
 """
 
 from __future__ import annotations

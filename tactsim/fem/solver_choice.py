@@ -11,9 +11,9 @@ LARGEST_FACTOR = 600_000
 """Unknowns up to which a body is factored.
 
 For one system the iteration is as fast from 110 000 unknowns on (28 s each) and 3.5 times faster at 295 000 (33 s and 2.4 GiB
-against 114 s and 5.1 GiB), but it may need hundreds of steps and fail (``benchmarks/solvers.py``); a grasp solves some 25
-systems with one factor. Memory is the bound: it grows like the unknowns to the power 1.2, to 12 GiB at this size. All this was
-measured with factors in double precision; those in single precision take half."""
+against 114 s and 5.1 GiB), but it may need hundreds of steps and fail (``benchmarks/solvers.py``); a grasp solves some
+thirteen systems with four factors. Memory is the bound: it grows like the unknowns to the power 1.2, to 12 GiB at this size. All
+this was measured with factors in double precision; those in single precision take half."""
 
 
 def solver_for(body: Body, *, largest_factor: int = LARGEST_FACTOR) -> DirectSolver:
