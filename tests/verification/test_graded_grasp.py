@@ -7,7 +7,7 @@ import functools
 import numpy as np
 
 from tactsim.experiments.grasp import Grasp
-from tactsim.mesh import graded_block
+from tactsim.mesh import graded_lines
 
 SHARE = 0.03
 """Difference allowed of a taxel's force over the largest taxel's."""
@@ -19,7 +19,7 @@ FINE, COARSE = 1.5e-3, 5e-3
 def taxels(size: float, least: int) -> np.ndarray:
     """Forces (jaw, row, column) in N after a closing of 0.1 mm, with cells of ``size`` in m and at ``least`` so many across
     along the jaws."""
-    before, graded_block.LEAST_ALONG = graded_block.LEAST_ALONG, least
+    before, graded_lines.LEAST_ALONG = graded_lines.LEAST_ALONG, least
     try:
         result = Grasp.model_validate(
             {
@@ -37,19 +37,19 @@ def taxels(size: float, least: int) -> np.ndarray:
             }
         ).run(lambda step: None)
     finally:
-        graded_block.LEAST_ALONG = before
+        graded_lines.LEAST_ALONG = before
     assert result.status == "converged"
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 
 
 def difference(least: int) -> float:
     """Of the default cells from fine ones, over the largest taxel."""
-    fine = taxels(FINE, graded_block.LEAST_ALONG)
+    fine = taxels(FINE, graded_lines.LEAST_ALONG)
     return float(np.abs(taxels(COARSE, least) - fine).max() / fine.max())
 
 
 def test_a_hard_ball_near_a_jaw_is_felt_right():
-    assert difference(graded_block.LEAST_ALONG) < SHARE
+    assert difference(graded_lines.LEAST_ALONG) < SHARE
 
 
 def test_three_cells_across_would_miss_the_peak():

@@ -57,13 +57,27 @@ def test_cells_are_thin_at_the_faces_and_thicker_inside():
     assert block.region_names == ("tissue",)
 
 
-@pytest.mark.parametrize(("gap", "layers"), [(0.7e-3, 0), (1.7e-3, 0), (1.9e-3, 1)])
-def test_no_thin_layer_of_cells_is_left_between_a_box_and_a_pressed_face(gap, layers):
+def first_corner(points, x):
+    """Height of the lowest corner or middle above the bottom at ``x`` m on the face ``y = 0``, and that of the next."""
+    column = points[(np.abs(points[:, 0] - x) < 1e-9) & (points[:, 1] == 0), 2]
+    return np.unique(column.round(9))[1:3]
+
+
+@pytest.mark.parametrize("gap", [0.7e-3, 1.2e-3, 1.4e-3, 1.9e-3])
+def test_no_layer_of_cells_at_the_edge_of_a_pressed_face_is_thinner_than_elsewhere(gap):
     lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
     nodes = graded_block(SIZE, lump, COARSE).mesh.nodes
-    edge = np.unique(nodes[(nodes[:, 0] == 0) & (nodes[:, 1] == 0), 2].round(9))
-    assert (edge < 0.61 * gap).sum() == 1 + 2 * layers  # the face itself, middles and far corners
-    assert np.diff(edge[::2]).min() > 0.9e-3
+    _, top = first_corner(nodes, 0.0)
+    assert top > COARSE.edge_size - 1e-9
+
+
+@pytest.mark.parametrize(("gap", "cells"), [(1.2e-3, 1), (1.4e-3, 2), (1.9e-3, 2)])
+def test_the_gap_between_a_jaw_and_a_lump_has_two_cells_unless_it_is_thin(gap, cells):
+    lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
+    even = COARSE.model_copy(update={"inclusion_size": 1.3e-3})  # six across, so that a corner lies on the pole
+    nodes = graded_block(SIZE, lump, even).mesh.nodes
+    above = np.unique(nodes[(np.abs(nodes[:, :2] - 20e-3) < 1e-9).all(axis=1), 2].round(9))
+    assert (above <= gap + 1e-9).sum() == 1 + 2 * cells  # corners and middles
 
 
 def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
