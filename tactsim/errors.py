@@ -8,6 +8,7 @@
     |   |-- InvalidQuantity       a number out of its range, or without its unit
     |   `-- UnknownName           a name that is not registered
     |-- ConvergenceError      3   the solver gave up; carries its history
+    |-- OutOfTime             3   the time allowed for solving has passed
     |-- ValidationError       4   a validation row left its recorded state
     |-- StorageError          5   a file or folder cannot be read or written
     `-- Interrupted         130   stopped by the user or the system
@@ -57,6 +58,12 @@ class ConvergenceError(TactsimError):
     def __init__(self, reason: str, history: Iterable[float] = ()):
         super().__init__(reason)
         self.history = tuple(history)
+
+
+class OutOfTime(TactsimError):
+    """The time allowed for solving has passed; a shorter load step would not help, so that it is no ConvergenceError."""
+
+    exit_code = 3
 
 
 class ValidationError(TactsimError):

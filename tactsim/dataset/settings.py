@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from tactsim.dataset.designs import DesignName
 from tactsim.dataset.force_reading import ForceReading
-from tactsim.units import FrozenModel
+from tactsim.units import FrozenModel, Time
 
 SCHEMA = "tactsim/sweep/1"
 MOST_SAMPLES = 10_000_000
@@ -77,6 +77,8 @@ class SweepSettings(FrozenModel):
     """Key paths that are drawn anew for each sample of a specimen, such as experiment.loading.pieces.0.to."""
     redraws: Annotated[int, Field(ge=0, le=100_000)] = 100
     """How often a specimen is drawn again because its case was refused, before its samples are marked failed."""
+    time_limit: Annotated[Time, Field(gt=0)] | None = None
+    """Longest time that solving a sample may take, before it is marked failed; null allows any. It depends on the machine."""
     times: Annotated[int, Field(ge=1, le=100_000)] = 1
     """Stored times of a history, evenly spaced up to its end; 1 stores the end."""
     quantities: dict[str, str] | None = None

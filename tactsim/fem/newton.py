@@ -11,6 +11,7 @@ import numpy as np
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
+from tactsim.fem.deadline import check_time
 from tactsim.fem.external_forces import FollowerLoad, Interface
 from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
@@ -125,6 +126,8 @@ class Problem:
         ------
         ConvergenceError
             If Newton does not converge or an element would turn inside out; the history is in the error.
+        OutOfTime
+            If the time allowed has passed.
         """
         options, history = self.options, []
         tolerance = max(options.tolerance, coarse)
@@ -144,6 +147,7 @@ class Problem:
             exhausted = iteration == options.max_iterations or halvings > options.most_halvings
             if exhausted or not np.isfinite(history[-1]) or self._stagnates(history):
                 break
+            check_time()
             if searching := searching or self._cycles(history):
                 carried = [i.settled(d) for i, d in zip(interfaces, state.moved, strict=True)]
             now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.moved, carried, strict=True)]

@@ -16,6 +16,7 @@ from tactsim.dataset.recorder import PACKAGE, Recorder, recorder_for
 from tactsim.dataset.recorders.grasp import GraspRecorder
 from tactsim.dataset.settings import SweepSettings
 from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.variable import FAILED
 from tactsim.experiments.grasp import Grasp
 from tactsim.registry import kinds
 from tactsim.results.result import Quantity, Result, Status, StepRecord
@@ -135,3 +136,11 @@ def test_a_grasp_is_stored_with_clean_and_noisy_readings() -> None:
     np.testing.assert_allclose(total[0], block["reaction_force"][0, 0], rtol=1e-8)
     assert np.corrcoef(block["taxel_force"].ravel(), block["read_force"].ravel())[0, 1] > 0.95
     assert json.dumps(block["reason"].tolist()) == '["end of the history"]'
+
+
+def test_a_sample_that_takes_longer_than_it_may_is_marked_failed() -> None:
+    sweep = load_sweep(CASES / "sweep_lumps.yaml", ("sweep.samples=3", "sweep.time_limit=1 us"))
+    block = decoded(computed(sweep.text, [0]))
+    assert block["status"].tolist() == [FAILED]
+    assert block["reason"].tolist() == ["OutOfTime: took longer than the 1e-06 s that it was given"]
+    assert np.isfinite(block["inclusion_radius"][0, 0])

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from solids import body_of, box, facets_where, held, on_plane
 
-from tactsim.errors import ConvergenceError
+from tactsim.errors import ConvergenceError, OutOfTime
+from tactsim.fem.deadline import time_limit
 from tactsim.fem.linear import direct_solver
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.pressure import FollowerPressure
@@ -162,3 +163,14 @@ def test_newton_gives_up_a_start_that_brings_nothing_if_asked(dim):
         snapped(dim, 0, start_patience=3)
     assert len(hasty.value.history) == 4 < len(patient.value.history)
     assert min(hasty.value.history) > 0.5 * hasty.value.history[0]
+
+
+def test_solving_ends_with_an_error_once_its_time_has_passed_and_only_then():
+    body, fixed, force = block(2, MATERIALS["incompressible"], held_axes=range(2))
+    problem = Problem(body, fixed)
+    with pytest.raises(OutOfTime, match=r"took longer than the 1e-09 s"), time_limit(1e-9):
+        problem.solve(np.zeros(body.space.size), nodal_force=force)
+    with time_limit(1e-9), time_limit(None):
+        inside = problem.solve(np.zeros(body.space.size), nodal_force=force)
+    after = problem.solve(np.zeros(body.space.size), nodal_force=force)
+    np.testing.assert_array_equal(inside.unknowns, after.unknowns)
