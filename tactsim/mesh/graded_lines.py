@@ -16,20 +16,24 @@ ROOM = 0.4
 """How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
 NEAR = 0.8
 """Gaps below which the box reaches to a face that a jaw presses, over the thickness of cells at the faces: two cells in so thin a
-gap are too flat for their width, and the pressure over a hard lump is wrong by 4 to 11 %; one has an error of 1.5 %."""
+gap are too flat for their width."""
 REACH = 2.0
 """Half width of the box over that of the lump, at most."""
 CORE_ROOM = 0.5
 """Half width of the box over that of the lump, at least where the lines lie away from it."""
 LEAST_BETWEEN = 3
 """Cells across the box from jaw to jaw, at least; two miss the volume of a ball by 0.6 %."""
-LEAST_ALONG, LEAST_ALONG_LARGE = 4, 5
-"""Cells across the box along the jaws, at least, and around a lump that is large or where the box reaches to a jaw. With three no
-corner lies above the pole of a ball, and the pressure over a hard one 3 mm from a jaw is 8 to 18 % too low; with four it is
-wrong by 4 to 6 % at a jaw, and by up to 8 % above a ball of two thirds of the height."""
-SMALL, LARGE = 1 / 3, 0.55
-"""Height over the block's below which three cells along the jaws suffice for a lump that is not near: it is felt little; and
-above which four do not."""
+LEAST_ALONG, LEAST_ALONG_CLOSE, PAIRED = 4, 6, 2
+"""Cells across the box along the jaws, at least, and around a lump that is close to a jaw. Their number is even, so that a corner
+lies above the pole of the lump: with five the pressure over a hard ball of two thirds of the height, 2 mm from a jaw, is 12 % too
+low, with seven 5 %, with four 6 %, with six 2 %."""
+CLOSE = 0.42
+"""Gap to a jaw over the half width of the lump below which it is close: the peak of pressure between a hard ball and a jaw is
+about as wide as the root of twice the product of radius and gap."""
+SMALL, FAR = 1 / 3, 0.9
+"""Height over the block's below which, and gap over the half width above which three cells suffice: the lump is felt little."""
+GATHER = 0.2
+"""How far the lines around a close lump gather at its middle, where the pressure is largest; 0 leaves them even."""
 NEAREST = 0.5
 """Part of a cell that must be left before it is added to those from a face to the box."""
 
@@ -57,19 +61,22 @@ class Line:
 
 
 def lines_around(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, finer: int) -> list[Line]:
-    """For each axis: places graded from a face to the box, even through the box to its middle, and on to the other face; with
-    ``finer`` cells across the box more than needed."""
+    """For each axis: places graded from a face to the box, through the box to its middle, and on to the other face.
+
+    ``finer`` counts how often cells across the box were added.
+    """
     lines = []
     wanted = round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size)
-    along = _least_along(solid.bounds()[:, 2], float(extent[2]), settings)
+    along = _cells_along(solid.bounds(), float(extent[2]), wanted, finer)
     for axis, ((low, high), center, length) in enumerate(zip(solid.bounds().T, solid.center, extent, strict=True)):
         half = (high - low) / 2
         gaps = np.array([low, length - high])
         left = np.maximum(np.array([center, length - center]) - REACH * half, _left(gaps, settings, pressed=axis == 2))
         least = np.minimum(_edge(settings), np.array([center, length - center]) - CORE_ROOM * half)
-        across = max(LEAST_BETWEEN if axis == 2 else along, wanted) + finer
-        near = _through(left, center, length, across, settings)
-        far = _through(np.where(left > 0, np.maximum(left, least), 0.0), center, length, across, settings)
+        across = max(LEAST_BETWEEN, wanted) + finer if axis == 2 else along
+        shares = _shares(across, GATHER if along >= LEAST_ALONG_CLOSE and axis < 2 else 0.0)
+        near = _through(left, center, length, shares, settings)
+        far = _through(np.where(left > 0, np.maximum(left, least), 0.0), center, length, shares, settings)
         lines.append(Line(near, far, len(_spaced(left[0], settings)) - 1, across))
     return lines
 
@@ -80,10 +87,16 @@ def mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
     return np.concatenate([half, length - half[-2::-1]])
 
 
-def _through(left: Array, center: float, length: float, across: int, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from face to face: ``left`` (2,) in m before and after a box of ``across`` cells around a centre."""
+def _shares(across: int, gather: float) -> Array:
+    """Ascending parts of the way from the middle of the box to its sides, -1 to 1, at which its ``across`` cells end."""
+    even = np.linspace(-1, 1, across + 1)
+    return (1 - gather) * even + gather * even**3
+
+
+def _through(left: Array, center: float, length: float, shares: Array, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from face to face: ``left`` (2,) in m before and after a box of cells around a centre."""
     before, after = (_spaced(float(way), settings) for way in left)
-    within = np.interp(np.linspace(-1, 1, across + 1), [-1, 0, 1], [left[0], center, length - left[1]])
+    within = np.interp(shares, [-1, 0, 1], [left[0], center, length - left[1]])
     return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
 
 
@@ -97,12 +110,13 @@ def _near(gaps: Array, settings: BlockMeshSettings) -> Array:
     return gaps < NEAR * _edge(settings)
 
 
-def _least_along(heights: Array, height: float, settings: BlockMeshSettings) -> int:
-    """Least number of cells across the box along the jaws around a lump between two heights in m."""
-    low, high = heights
-    if high - low > LARGE * height or _near(min(low, height - high), settings):
-        return LEAST_ALONG_LARGE
-    return LEAST_BETWEEN if high - low < SMALL * height else LEAST_ALONG
+def _cells_along(bounds: Array, height: float, wanted: int, finer: int) -> int:
+    """Number of cells across the box along the jaws around a lump between two corners (2, 3) in m, ``wanted`` at least."""
+    gap, half = min(bounds[0, 2], height - bounds[1, 2]), np.diff(bounds[:, :2], axis=0).max() / 2
+    if wanted <= LEAST_BETWEEN and gap > FAR * half and bounds[1, 2] - bounds[0, 2] < SMALL * height:
+        return LEAST_BETWEEN + finer
+    least = LEAST_ALONG_CLOSE if gap < CLOSE * half else LEAST_ALONG
+    return PAIRED * (-(-max(least, wanted) // PAIRED) + finer)
 
 
 def _edge(settings: BlockMeshSettings) -> float:

@@ -11,15 +11,16 @@ from tactsim.mesh import graded_lines
 
 SHARE = 0.03
 """Difference allowed of a taxel's force over the largest taxel's."""
-FINE, COARSE = 1.5e-3, 5e-3
-"""Cells at the ball in m: five across, and as few as there may be."""
+FINE, COARSE = 1.2e-3, 5e-3
+"""Cells at the ball in m: six across, and as few as there may be."""
 
 
 @functools.cache
 def taxels(size: float, least: int) -> np.ndarray:
     """Forces (jaw, row, column) in N after a closing of 0.1 mm, with cells of ``size`` in m and at ``least`` so many across
     along the jaws."""
-    before, graded_lines.LEAST_ALONG = graded_lines.LEAST_ALONG, least
+    before = graded_lines.LEAST_ALONG, graded_lines.PAIRED
+    graded_lines.LEAST_ALONG, graded_lines.PAIRED = least, 1 if least % 2 else 2
     try:
         result = Grasp.model_validate(
             {
@@ -37,7 +38,7 @@ def taxels(size: float, least: int) -> np.ndarray:
             }
         ).run(lambda step: None)
     finally:
-        graded_lines.LEAST_ALONG = before
+        graded_lines.LEAST_ALONG, graded_lines.PAIRED = before
     assert result.status == "converged"
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 

@@ -44,7 +44,7 @@ def test_lumps_anywhere_are_meshed_soundly():
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02
         assert block.quality.curvature > 0
-        assert 8_000 < block.unknowns < 32_000
+        assert 8_000 < block.unknowns < 40_000
 
 
 def test_cells_are_thin_at_the_faces_and_thicker_inside():
