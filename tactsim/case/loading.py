@@ -21,6 +21,10 @@ LARGEST_FILE = 1024 * 1024
 Place = Callable[[Problem], str]
 
 
+SWEEPS = "tactsim/sweep/"
+"""How the schema of a file begins that `tactsim sweep` reads."""
+
+
 def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
     """The validated case in a file, after the overrides ``path.to.key=value``.
 
@@ -113,6 +117,8 @@ def _check_version(document: Document, place: Place) -> None:
         message = f"missing; the file must begin with 'schema: {SCHEMA}'"
     else:
         message = f"the version {as_written(version)} is not supported; this tactsim reads {SCHEMA!r}"
+        if str(version).startswith(SWEEPS):
+            message = "this is a sweep of many cases; compute it with: tactsim sweep"
     raise case_error([Problem(("schema",), document.line(("schema",)), message)], place)
 
 

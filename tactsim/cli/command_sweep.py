@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -76,19 +77,19 @@ def run(arguments: argparse.Namespace) -> int:
             raise InputError(f"--{name} {given} is out of range; must be at least 1")
     with interruptible() as interruption:
         sweep = load_sweep(arguments.case, tuple(arguments.set), arguments.samples)
+        executor = _executor(sweep, arguments)  # before anything is written: a scheduler may not answer
         changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}
-        with opened_run(sweep, arguments.out, **changes) as going:
+        with closing(executor), opened_run(sweep, arguments.out, **changes) as going:
             write_card(going.store, sweep, going.layout)
-            stopped = _computed(going, sweep, arguments)
+            stopped = _computed(going, executor, arguments)
             with interruption.deferred():
                 _draw(arguments.out)
                 write_card(going.store, sweep, going.layout)
                 return _finish(going, arguments, stopped or interruption.requested)
 
 
-def _computed(going: SweepRun, sweep: Sweep, arguments: argparse.Namespace) -> bool:
+def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace) -> bool:
     """Computes until the end or the first signal; whether there was one."""
-    executor = _executor(sweep, arguments)
     try:
         going.compute(executor, _progress(arguments))
     except KeyboardInterrupt:

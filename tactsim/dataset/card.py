@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from tactsim.dataset.description import failures, ranges, split_counts, status_counts, variable_rows
+from tactsim.dataset.description import failures, ranges, redrawn, split_counts, status_counts, variable_rows
 from tactsim.dataset.layout import Layout
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import Sweep
@@ -16,7 +16,7 @@ CARD = "README.md"
 FIGURES = "figures"
 GENERAL_LIMITS = (
     "Simulated, not measured: the sensor's film and electronics are models, and tissue is homogeneous but for what is named.",
-    "Failed samples are not random: they gather where the tissue is squeezed most; see the table of failures before training.",
+    "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
 )
 
@@ -51,12 +51,12 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
     versions = ", ".join(f"{name} {number}" for name, number in told["versions"].items())
     shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
     hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
-    redrawn = int((store.read("redraws") > 0).sum())
+    specimens, draws = redrawn(store)
     return [
         "## How it was made",
         f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
         f"Sample k depends on the seed and on k only{hypercube}.",
-        f"Draws whose case is impossible are drawn again: {redrawn} samples, {int(store.read('redraws').sum())} refused draws.",
+        f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
         f"Computed by tactsim {', '.join(told['codes'])}; {versions}.",
         "",
     ]
@@ -65,7 +65,7 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
 def _counts(store: Store) -> list[str]:
     rows = [(name, str(count)) for name, count in status_counts(store).items()]
     splits = [(name, str(count)) for name, count in split_counts(store).items()]
-    told = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples"), splits)
+    told = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
     failed = [(reason, str(count)) for reason, count in failures(store)]
     return told + (_table("Failures", ("reason", "samples"), failed) if failed else [])
 
@@ -101,7 +101,7 @@ def _use(layout: Layout) -> list[str]:
         "loader = DataLoader(samples, batch_size=64, shuffle=True, num_workers=8)",
         "```",
         "Split by `split` (numbers: attribute flag_meanings), never by sample: samples may share a specimen.",
-        "Variables without noise say so; voltage and read_force have it.",
+        "The meanings of variables below say which have noise; `_clean` are the same readings without it.",
         "",
     ]
 
@@ -111,7 +111,7 @@ def _names(layout: Layout, role: str) -> list[str]:
 
 
 def _limits(own: str) -> list[str]:
-    return ["## Known limits", *(f"- {line}" for line in (*GENERAL_LIMITS, *own.splitlines()) if line), ""]
+    return ["## Known limits", *(f"- {line}" for line in GENERAL_LIMITS), *(["", own.strip()] if own.strip() else []), ""]
 
 
 def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:

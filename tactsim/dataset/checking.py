@@ -125,7 +125,12 @@ def _values(store: Store, layout: Layout, status: Array) -> list[Finding]:
             for name in _not_finite(sample, layout):
                 infinite.setdefault(name, []).append(number)
             for variable in _readings(layout):
-                if variable.sizes and np.prod(variable.sizes) > 1 and np.ptp(sample[variable.name]) == 0:
+                if (
+                    not variable.prescribed
+                    and variable.sizes
+                    and np.prod(variable.sizes) > 1
+                    and np.ptp(sample[variable.name]) == 0
+                ):
                     constant.setdefault(variable.name, []).append(number)
             key = b"".join(np.ascontiguousarray(sample[v.name]).tobytes() for v in _readings(layout))
             equal += [number] if key in seen else []

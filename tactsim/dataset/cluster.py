@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import time
 from typing import Any
 
 from tactsim.dataset.executor import Executor, Outcome
-from tactsim.errors import InputError, StorageError
+from tactsim.errors import CaseError, InputError, StorageError, shown
 
+ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
+"""What Dask prints as the address of a scheduler."""
 CONNECTING = 30.0
 """Seconds to wait for the scheduler."""
 TASKS_PER_THREAD = 2
@@ -22,6 +25,8 @@ class Cluster(Executor):
             import distributed
         except ImportError:
             raise InputError("--scheduler needs Dask; install it with: pip install 'tactsim[cluster]'") from None
+        if not ADDRESS.fullmatch(address):
+            raise InputError(f"--scheduler {shown(address)} is no address; expected HOST:PORT, such as tcp://host:8786")
         try:
             self._client: Any = distributed.Client(address, timeout=CONNECTING, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
@@ -57,6 +62,7 @@ class Cluster(Executor):
     def close(self) -> None:
         """Leaves the cluster."""
         self._client.cancel(list(self._tasks))
+        self._tasks = {}
         self._client.close()
 
     def _outcome(self, future: Any, samples: tuple[int, ...]) -> Outcome:
@@ -67,4 +73,6 @@ class Cluster(Executor):
         error = future.exception() if future.status == "error" else None
         if error is None or isinstance(error, KilledWorker):
             return Outcome(samples, None, "its Dask worker was lost")
+        if isinstance(error, CaseError):
+            raise error
         raise StorageError(f"the cluster cannot compute samples {samples[0]} to {samples[-1]}: {type(error).__name__}: {error}")

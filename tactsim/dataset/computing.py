@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from tactsim.dataset.block import checksum, encoded, stacked
-from tactsim.dataset.drawing import Drawn, drawn_specimen, noise_generator, noise_seed
+from tactsim.dataset.drawing import Drawn, drawn_specimen, noise_generator, used_seed
 from tactsim.dataset.layout import Layout, layout_of, split_of
 from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.dataset.variable import DONE, FAILED
-from tactsim.errors import InvalidQuantity, TactsimError
+from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.fem.deadline import time_limit
 from tactsim.results.result import Status
 
@@ -49,7 +49,7 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
         "sample": drawn.sample,
         "specimen": drawn.specimen,
         "split": split,
-        "seed": noise_seed(sweep, drawn.sample),
+        "seed": used_seed(sweep, drawn),
         "redraws": drawn.redraws,
         "code": 0,
         "case_id": drawn.case.case_id if drawn.case else "",
@@ -78,6 +78,8 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
         found = layout.recorder.numbers(result) | readings
         _check(found, layout)
+    except CaseError:
+        raise  # what the sweep stores is wrong for every sample
     except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
         return FAILED, f"{type(error).__name__}: {error}", {}
     return DONE, result.reason, found

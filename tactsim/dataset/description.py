@@ -8,7 +8,7 @@ import numpy as np
 
 from tactsim.dataset.progress import kind_of
 from tactsim.dataset.store import Store
-from tactsim.dataset.variable import FAILED, PENDING, STATUS
+from tactsim.dataset.variable import DONE, FAILED, PENDING, STATUS
 
 Array = np.ndarray
 
@@ -30,10 +30,19 @@ def status_counts(store: Store) -> dict[str, int]:
 
 
 def split_counts(store: Store) -> dict[str, int]:
-    """Computed samples by split."""
+    """Samples that are done by split."""
     split, status = store.read("split"), store.read("status")
     names = str(store.group["split"].attrs["flag_meanings"]).split()
-    return {name: int(((split == number) & (status != PENDING)).sum()) for number, name in enumerate(names)}
+    return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
+
+
+def redrawn(store: Store) -> tuple[int, int]:
+    """How many specimens were drawn again because a draw was refused, and the refused draws of all specimens."""
+    computed = store.read("status") != PENDING
+    _, first = np.unique(store.read("specimen")[computed], return_index=True)
+    draws = store.read("redraws")[computed][first].astype(int)
+    refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
+    return int((refused > 0).sum()), int(refused.sum())
 
 
 def failures(store: Store) -> list[tuple[str, int]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Path
 from tactsim.dataset.designs import design_point, grid_point, redrawn_point
 from tactsim.dataset.places import Place, filled
+from tactsim.dataset.recorder import seed_place
 from tactsim.dataset.sweep import Sweep, sizes_of
 from tactsim.errors import InputError
 
@@ -79,8 +81,27 @@ def _accepted(sweep: Sweep, specimen: int, sample: int, attempt: int) -> Drawn:
     drawn = _values(sweep, SPECIMENS, sweep.specimen_places, specimen, attempt)
     drawn |= _values(sweep, SAMPLES, sweep.sample_places, within, attempt)
     used: dict[Path, float] = {}
-    document = replace(sweep.document, value=filled(sweep.document.value, (), drawn, used))
+    value = filled(sweep.document.value, (), drawn, used)
+    _seed_noise(value["experiment"], seed_place(sweep.kind), noise_seed(sweep, sample))
+    document = replace(sweep.document, value=value)
     return Drawn(sample, specimen, validated_case(document, sweep.where), used, attempt)
+
+
+def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
+    """Gives the noise of an experiment a seed, if it has noise and its file names none: samples must not share their noise."""
+    *way, last = place or ("",)
+    for key in way:
+        experiment = experiment.get(key) if isinstance(experiment, dict) else None
+    if last and isinstance(experiment, dict):
+        experiment.setdefault(last, seed)
+
+
+def used_seed(sweep: Sweep, drawn: Drawn) -> int:
+    """The seed from which the noise of a sample was drawn."""
+    found: Any = drawn.case.experiment if drawn.case and seed_place(sweep.kind) else None
+    for key in seed_place(sweep.kind):
+        found = getattr(found, key, None)
+    return noise_seed(sweep, drawn.sample) if found is None else int(found)
 
 
 def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict:

@@ -9,17 +9,32 @@ from tactsim.sensors.force_electronics import ForceElectronics
 Array = np.ndarray
 
 
+CLEAN = "_clean"
+"""How the names of readings without noise end."""
+
+
 class ForceReading(ForceElectronics):
     """A sensor under the whole force of a history."""
 
     def read(self, time: Array, force: Array, at: Array, generator: np.random.Generator) -> dict[str, Array]:
-        """``voltage`` in V after the low pass and ``read_force`` in N at the times ``at`` in s.
+        """``voltage`` in V after the low pass and ``read_force`` in N at times ``at`` in s, and both without noise (``_clean``).
 
         Forces (n,) in N at times (n,) in s are linear between these; a sensor cannot be pulled, so pulls read as no force.
         """
-        found = self.sensed(time, force, generator)
-        sample = latest(found.time, at)
-        return {"voltage": found.recording.filtered[sample], "read_force": found.force[sample]}
+        read: dict[str, Array] = {}
+        for electronics, ending in ((self, ""), (self.quiet, CLEAN)):
+            found = electronics.sensed(time, force, generator)
+            sample = latest(found.time, at)
+            read |= {f"voltage{ending}": found.recording.filtered[sample], f"read_force{ending}": found.force[sample]}
+        return read
+
+
+def read_variables(voltage: str, force: str) -> dict[str, tuple[str, str]]:
+    """Unit and description by name of what is read, with noise and without."""
+    told: dict[str, tuple[str, str]] = {}
+    for ending, words in (("", "with noise"), (CLEAN, "without noise: what film, electronics and calibration alone make of it")):
+        told |= {f"voltage{ending}": ("V", f"{voltage}, {words}"), f"read_force{ending}": ("N", f"{force}, {words}")}
+    return told
 
 
 def latest(times: Array, at: Array) -> Array:

@@ -8,20 +8,21 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.case.model import experiment_kinds
 from tactsim.dataset.distributions import Listed
 from tactsim.dataset.drawing import Drawn, drawn_specimen, fault_of
 from tactsim.dataset.places import is_distribution
 from tactsim.dataset.recorder import Recorder, Values, recorder_for
 from tactsim.dataset.settings import Condition
-from tactsim.dataset.sweep import Sweep
+from tactsim.dataset.sweep import SECTION, Sweep
 from tactsim.dataset.variable import Variable, index_variables
 from tactsim.errors import CaseError, suggestion
 
 Array = np.ndarray
 SPLITTING = 3
 """Stream of random numbers that deals specimens to splits."""
-TRIED_SPECIMENS = 3
-"""First specimens of which one must be possible."""
+TRIED_SPECIMENS, TRIED_OF_GRID = 3, 1000
+"""First specimens of which one must be possible; those of a grid are drawn once each."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,10 @@ def layout_of(sweep: Sweep) -> Layout:
     CaseError
         If no case is possible, nothing can be stored, or a split asks for a label that there is not.
     """
+    known = experiment_kinds()
+    if sweep.kind not in known:
+        told = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
+        raise sweep.error(("experiment", "kind"), told)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
     first = _first_case(sweep)
     index, own = index_variables(sweep.settings.splits.names), recorder.variables(first.case.experiment)  # type: ignore[union-attr]
@@ -63,7 +68,8 @@ def _first_case(sweep: Sweep) -> Drawn:
     fault, last = fault_of(sweep), None
     if fault:
         raise CaseError(fault)
-    for specimen in range(min(TRIED_SPECIMENS, -(-sweep.samples // sweep.per_specimen))):
+    tried = TRIED_OF_GRID if sweep.settings.design == "grid" else TRIED_SPECIMENS
+    for specimen in range(min(tried, -(-sweep.samples // sweep.per_specimen))):
         last = drawn_specimen(sweep, specimen)[0]
         if last.case is not None:
             return last
@@ -121,9 +127,9 @@ def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
     known = {variable.name: variable for variable in labels}
     for split, conditions in sweep.settings.splits.out_of_distribution.items():
         for name, condition in conditions.items():
-            place = f"sweep.splits.out_of_distribution.{split}.{name}"
+            place = (SECTION, "splits", "out_of_distribution", split, name)
             if name not in known:
-                raise CaseError(f"{place}: unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
+                raise sweep.error(place, f"unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
             meanings = known[name].meanings
             if isinstance(condition.equal, str) and condition.equal not in meanings:
-                raise CaseError(f"{place}.equal: {condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")
+                raise sweep.error((*place, "equal"), f"{condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")

@@ -15,7 +15,7 @@ from multiprocessing.context import SpawnProcess
 
 from tactsim.dataset.child_environment import child_environment
 from tactsim.dataset.executor import Executor, Outcome
-from tactsim.errors import TactsimError
+from tactsim.errors import CaseError, TactsimError
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 ORPHANED = 1.0
@@ -83,6 +83,8 @@ class LocalWorkers(Executor):
             self._workers.remove(worker)
             return Outcome(task, None, f"its process ended ({_ending(worker.process.exitcode)})")
         worker.task = None
+        if answer[:1] == b"?":
+            raise CaseError(answer[1:].decode(errors="replace"))
         if answer[:1] == b"!":
             raise TactsimError(f"a worker failed at samples {task[0]} to {task[-1]}: {answer[1:].decode(errors='replace')}")
         return Outcome(task, answer[1:])
@@ -124,6 +126,8 @@ def serve(connection: Connection, text: str) -> None:
             task = json.loads(connection.recv_bytes())
             try:
                 answer = b"=" + computed(text, task)
+            except CaseError as error:
+                answer = f"?{error}".encode()
             except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process
                 answer = f"!{type(error).__name__}: {error}".encode()
             connection.send_bytes(answer)

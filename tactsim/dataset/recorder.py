@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.dataset.force_reading import ForceReading
 from tactsim.dataset.settings import SweepSettings
 from tactsim.dataset.variable import Variable, reading
-from tactsim.errors import CaseError, InvalidQuantity
+from tactsim.errors import CaseError
 from tactsim.interfaces import Experiment
 from tactsim.registry import kinds
 from tactsim.results.result import Result
@@ -33,6 +33,12 @@ class Recorder(FrozenModel, ABC):
     """Name of a number of the result -> unit and description; stored as they are."""
     optional: ClassVar[tuple[str, ...]] = ()
     """Those of them that a result may lack."""
+    noise_seed: ClassVar[tuple[str, ...]] = ()
+    """Where such an experiment keeps the seed of its noise; one that keeps none is read with noise of the sweep's own."""
+    histories: ClassVar[bool] = False
+    """Whether `readings` are stored at several times."""
+    reads_force: ClassVar[bool] = False
+    """Whether a force is read through the sensor of the sweep."""
 
     def variables(self, experiment: Experiment) -> list[Variable]:
         """Labels, then readings; sizes as those of this experiment."""
@@ -59,8 +65,8 @@ class Recorder(FrozenModel, ABC):
 
         Raises
         ------
-        InvalidQuantity
-            If the result calls one by another unit, or it is not one number.
+        CaseError
+            If the result has none of that name, calls it by another unit, or it is not one number.
         """
         return {variable.name: self._number(variable, result) for variable in self._scalars()}
 
@@ -76,12 +82,12 @@ class Recorder(FrozenModel, ABC):
         if found is None or found.value is None:
             if found is None and self.settings.quantities is not None:
                 known = ", ".join(sorted(result.quantities)) or "none"
-                raise InvalidQuantity(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
+                raise CaseError(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
             return np.array(np.nan)
         value = np.asarray(found.value, dtype=float)
         if value.size != 1 or found.unit != variable.unit:
             told = f"{value.size} values in {found.unit}"
-            raise InvalidQuantity(f"sweep.quantities.{variable.name}: {told}; needed: one number in {variable.unit}")
+            raise CaseError(f"sweep.quantities.{variable.name}: {told}; needed: one number in {variable.unit}")
         return value.reshape(())
 
     def history(self, result: Result) -> tuple[Array, dict[str, Array]]:
@@ -107,6 +113,11 @@ class Recorder(FrozenModel, ABC):
         """What is simulated, for the card of the data set."""
 
 
+def recorders() -> dict[str, type[Recorder]]:
+    """Recorder by kind of experiment."""
+    return kinds(PACKAGE, Recorder)
+
+
 def recorder_for(kind: str, settings: SweepSettings, most_inclusions: int = 0) -> Recorder:
     """The recorder of a kind of experiment; a kind without one needs ``sweep.quantities``.
 
@@ -115,13 +126,27 @@ def recorder_for(kind: str, settings: SweepSettings, most_inclusions: int = 0) -
     CaseError
         If the kind has no recorder and no quantities are named.
     """
-    known = kinds(PACKAGE, Recorder)
+    known = recorders()
     if kind not in known and settings.quantities is None:
         raise CaseError(
             f"sweep.quantities: missing; an experiment of kind {kind} stores what you name, such as quantities: "
             f"{{max_penetration: m}}; kinds that need none: {', '.join(sorted(known))}"
         )
-    return known.get(kind, NamedQuantities)(kind=kind, settings=settings, most_inclusions=most_inclusions)
+    recorder = known.get(kind, NamedQuantities)
+    if settings.times > 1 and not recorder.histories:
+        raise CaseError(
+            f"sweep.times: {settings.times}, but of an experiment of kind {kind} only the end is stored; leave it out"
+        )
+    if settings.reading is not None and not recorder.reads_force:
+        able = ", ".join(sorted(name for name, one in known.items() if one.reads_force))
+        raise CaseError(f"sweep.reading: an experiment of kind {kind} has no force for it; leave it out; kinds that have: {able}")
+    return recorder(kind=kind, settings=settings, most_inclusions=most_inclusions)
+
+
+def seed_place(kind: str) -> tuple[str, ...]:
+    """Where an experiment of a kind keeps the seed of its noise; empty if it keeps none."""
+    known = recorders()
+    return known[kind].noise_seed if kind in known else ()
 
 
 class NamedQuantities(Recorder):

@@ -54,6 +54,8 @@ class Splits(FrozenModel):
         for name in self.out_of_distribution:
             if name in ("train", "validation", "test", NO_SPLIT) or not name.isidentifier():
                 raise ValueError(f"out_of_distribution.{name}: a split needs a name of letters, digits and _ that is not taken")
+            if not self.out_of_distribution[name]:
+                raise ValueError(f"out_of_distribution.{name}: no condition, so that every specimen would belong to it; name one")
         return self
 
     @property

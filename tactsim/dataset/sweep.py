@@ -15,11 +15,11 @@ from tactsim.case.explaining import as_written, problems_of
 from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
-from tactsim.case.yaml_reading import Document, Problem, YamlProblems
+from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
 from tactsim.dataset.designs import grid_size
 from tactsim.dataset.places import Place, places_of
 from tactsim.dataset.settings import MOST_SAMPLES, SCHEMA, SweepSettings
-from tactsim.errors import suggestion
+from tactsim.errors import CaseError, suggestion
 
 SECTION = "sweep"
 
@@ -62,6 +62,10 @@ class Sweep:
         if self.extendable:
             content[SECTION].pop("samples")
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+    def error(self, path: Path, message: str) -> CaseError:
+        """An error at a key path of the file, with its line."""
+        return case_error([Problem(path, self.document.line(path), message)], self.where)
 
     @property
     def extendable(self) -> bool:

@@ -28,6 +28,9 @@ class Variable:
     optional: bool = False
     """Whether a sample that is done may lack it: NaN then says that there is none, such as a threshold that is not reached."""
 
+    prescribed: bool = False
+    """Whether the case prescribes it, so that it may well be constant."""
+
     @property
     def fill(self) -> float | int | str:
         """What stands for a sample without a value."""
@@ -45,9 +48,12 @@ class Variable:
         return np.full((samples, *self.sizes), self.fill, dtype="U1" if self.dtype == "str" else self.dtype)
 
 
-def reading(name: str, unit: str, description: str, *, optional: bool = False, **sizes: int) -> Variable:
+def reading(
+    name: str, unit: str, description: str, *, optional: bool = False, prescribed: bool = False, **sizes: int
+) -> Variable:
     """A reading with these dimensions."""
-    return Variable(name, unit, description, "reading", tuple(sizes), tuple(sizes.values()), optional=optional)
+    shape = (tuple(sizes), tuple(sizes.values()))
+    return Variable(name, unit, description, "reading", *shape, optional=optional, prescribed=prescribed)
 
 
 def label(name: str, unit: str, description: str, **sizes: int) -> Variable:
@@ -67,7 +73,7 @@ def index_variables(splits: tuple[str, ...]) -> list[Variable]:
         Variable("reason", "1", "how the computation ended", "index", dtype="str"),
         Variable("specimen", "1", "number of the specimen, which samples may share", "index", dtype="int64"),
         Variable("split", "1", "part of the data set, by specimen", "index", dtype="uint8", meanings=splits),
-        Variable("seed", "1", "seed of the noise of the sample's force reading", "index", dtype="uint64"),
+        Variable("seed", "1", "seed of the noise of the sample, where it has noise", "index", dtype="uint64"),
         Variable("redraws", "1", "draws of the specimen that were refused before", "index", dtype="uint32"),
         Variable("wall_time", "s", "time that the sample took", "index"),
         Variable("case_id", "1", "hash of the sample's resolved case", "index", dtype="str"),

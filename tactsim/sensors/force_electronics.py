@@ -13,6 +13,7 @@ from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_calibration import film_line
 from tactsim.sensors.low_pass import LowPass
+from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, FrozenModel, check_increasing
 
@@ -48,6 +49,11 @@ class ForceElectronics(FrozenModel):
     def _rising(self) -> Self:
         check_increasing(calibration_forces=self.calibration_forces)
         return self
+
+    @property
+    def quiet(self) -> Self:
+        """The same without noise."""
+        return self.model_copy(update={"chain": self.chain.model_copy(update={"noise": Noise()})})
 
     def line_of(self, film: Film) -> LinearCalibration:
         """The calibration of sensors with this film."""

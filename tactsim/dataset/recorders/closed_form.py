@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from tactsim.dataset.force_reading import read_variables
 from tactsim.dataset.recorder import Recorder, Values
 from tactsim.dataset.variable import Variable, label, reading
 from tactsim.experiments.closed_form import ClosedForm
@@ -14,13 +15,15 @@ from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.results.result import Result
 
 HISTORY = {"displacement": ("m", "displacement of the annulus"), "force": ("N", "force on the annulus, without noise")}
-READ = {"voltage": ("V", "voltage after the low pass, with noise"), "read_force": ("N", "force by the calibration, with noise")}
+READ = read_variables("voltage after the low pass", "force by the calibration")
 
 
 class ClosedFormRecorder(Recorder):
     """Geometry and moduli; displacement and force over time, and what a sensor reads of the force."""
 
     kind: Literal["closed_form"] = "closed_form"
+    histories: ClassVar = True
+    reads_force: ClassVar = True
     quantities: ClassVar = {
         "largest_displacement": ("m", "largest displacement"),
         "largest_force": ("N", "largest force"),
@@ -50,10 +53,11 @@ class ClosedFormRecorder(Recorder):
         )
         return {v.name: np.array(value) for v, value in zip(self.labels_of(experiment), told, strict=True)}
 
-    def readings_of(self, experiment: Experiment) -> list[Variable]:
+    def readings_of(self, experiment: Any) -> list[Variable]:
         """Histories."""
         told = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.reading else {})}
-        return [reading(name, unit, words, time=self.settings.times) for name, (unit, words) in told.items()]
+        times, given = self.settings.times, experiment.loading.control
+        return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in told.items()]
 
     def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the times that the experiment sampled."""

@@ -6,12 +6,13 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tactsim.dataset.force_reading import latest
+from tactsim.dataset.force_reading import CLEAN, latest, read_variables
 from tactsim.dataset.recorder import Recorder, Values
 from tactsim.dataset.variable import Variable, label, reading
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp import Grasp
 from tactsim.experiments.grasp_model import SIDES
+from tactsim.experiments.lumen_pressure import lumen_history
 from tactsim.interfaces import Experiment
 from tactsim.results.result import Result
 
@@ -20,6 +21,7 @@ KINDS = ("none", "sphere", "ellipsoid", "tube", "surface")
 PER_INCLUSION = {
     "inclusion_radius": ("m", "radius of a sphere, outer radius of a tube, that of a ball of equal volume of others"),
     "inclusion_wall": ("m", "wall of a tube"),
+    "inclusion_lumen_pressure": ("Pa", "pressure in the empty space of a tube at the end, 0 without"),
     "inclusion_depth": ("m", "distance of the highest point from the upper face"),
     "inclusion_shear_modulus": ("Pa", "small-strain shear modulus"),
     "inclusion_contrast": ("1", "shear modulus over that of the tissue"),
@@ -33,10 +35,7 @@ TAXELS = {
     "taxel_force": ("N", "force pressing on each taxel, without noise"),
     "taxel_pressure": ("Pa", "force over area of each taxel, without noise"),
 }
-READ = {
-    "voltage": ("V", "voltage of each taxel after the low pass, with noise"),
-    "read_force": ("N", "force of each taxel by the calibration, with noise"),
-}
+READ = read_variables("voltage of each taxel after the low pass", "force of each taxel by the calibration")
 JAWS = {"displacement": ("m", "closing of each jaw"), "reaction_force": ("N", "force pressing into the face of the upper jaw")}
 
 
@@ -44,6 +43,8 @@ class GraspRecorder(Recorder):
     """Inclusions, closing and tissue; forces, pressures, voltages and read forces of all taxels over time."""
 
     kind: Literal["grasp"] = "grasp"
+    noise_seed: ClassVar = ("readout", "seed")
+    histories: ClassVar = True
     quantities: ClassVar = {
         "max_penetration": ("m", "largest penetration at any surface point in any step"),
         "min_volume_ratio": ("1", "least local volume ratio in any step"),
@@ -64,6 +65,7 @@ class GraspRecorder(Recorder):
 
     def labels(self, experiment: Grasp) -> Values:
         """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none."""
+        end = experiment.duration
         size, tissue = np.array(experiment.block.size), experiment.block.tissue.shear_modulus
         closing = experiment.loading.least_and_most()[1] if experiment.loading.control == "displacement" else np.nan
         there = [one for one in experiment.inclusions if one.shape.kind == "tube" or one.material != experiment.block.tissue]
@@ -75,6 +77,9 @@ class GraspRecorder(Recorder):
         for number, embedded in enumerate(there):
             modulus = embedded.material.shear_modulus
             told = _geometry(embedded.shape, size)
+            if embedded.shape.kind == "tube":
+                lumen = embedded.lumen
+                told["inclusion_lumen_pressure"] = float(lumen_history(lumen, end).value(end)) if lumen else 0.0
             told |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
             for name, value in told.items():
                 padded[name][number] = value
@@ -84,7 +89,11 @@ class GraspRecorder(Recorder):
         """Histories at the stored times."""
         layout, times = experiment.matrix, self.settings.times
         told = [reading("time_s", "s", "time since first touch", time=times)]
-        told += [reading(name, unit, words, time=times) for name, (unit, words) in JAWS.items()]
+        given = experiment.loading.control
+        told += [
+            reading(name, unit, words, prescribed=name.startswith((given, f"reaction_{given}")), time=times)
+            for name, (unit, words) in JAWS.items()
+        ]
         sizes = {"time": times, "jaw": 2, "row": layout.rows, "column": layout.columns}
         taxels = TAXELS | (READ if experiment.readout is not None else {})
         told += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
@@ -104,9 +113,11 @@ class GraspRecorder(Recorder):
         if experiment.readout is not None:
             quantities = result.quantities
             sample = latest(np.asarray(quantities["readout_time"].value), at)
-            for name in READ:
+            for name in ("voltage", "read_force"):
                 sides = [np.asarray(quantities[f"{name}_{side}_history"].value) for side in SIDES]
                 found[name] = np.stack(sides, axis=1)[sample]
+            clean = experiment.readout.quiet.read(times, force, experiment.matrix.area)
+            found |= {f"voltage{CLEAN}": clean.filtered[sample], f"read_force{CLEAN}": clean.force[sample]}
         return found
 
     def describe(self) -> str:

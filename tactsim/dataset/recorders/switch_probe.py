@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class SwitchProbeRecorder(Recorder):
     """Rate and moduli of one touch; when its switches closed, at which force, and the rate that is read from them."""
 
     kind: Literal["switch_probe"] = "switch_probe"
+    noise_seed: ClassVar = ("seed",)
 
     def labels_of(self, experiment: Experiment) -> list[Variable]:
         """Rate, depth and moduli."""

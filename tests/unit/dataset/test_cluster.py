@@ -20,7 +20,7 @@ from tactsim.dataset import running
 from tactsim.dataset.cluster import Cluster
 from tactsim.dataset.running import opened_run
 from tactsim.dataset.sweep import load_sweep
-from tactsim.errors import StorageError
+from tactsim.errors import InputError, StorageError
 
 ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 QUIET = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
@@ -85,5 +85,5 @@ def test_a_scheduler_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatc
     monkeypatch.setattr("tactsim.dataset.cluster.CONNECTING", 0.3)
     with pytest.raises(StorageError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         Cluster(load_sweep(sweep_file(tmp_path)).text, "tcp://127.0.0.1:9")
-    with pytest.raises(StorageError, match="no Dask scheduler answers at nonsense"):
-        Cluster("", "nonsense://x")
+    with pytest.raises(InputError, match="'nonsense' is no address; expected HOST:PORT"):
+        Cluster("", "nonsense")

@@ -144,3 +144,12 @@ def test_a_sample_that_takes_longer_than_it_may_is_marked_failed() -> None:
     assert block["status"].tolist() == [FAILED]
     assert block["reason"].tolist() == ["OutOfTime: took longer than the 1e-06 s that it was given"]
     assert np.isfinite(block["inclusion_radius"][0, 0])
+
+
+def test_the_pressure_in_an_artery_is_a_label() -> None:
+    sweep = load_sweep(CASES / "sweep_arteries.yaml", ("experiment.inclusions.weights=[1,0,0,0,0]", "sweep.samples=3"))
+    drawn = drawn_specimen(sweep, 0)[0]
+    labels = layout_of(sweep).recorder.labels(drawn.case.experiment)
+    pressure = drawn.case.experiment.inclusions[0].lumen.pieces[0].to
+    np.testing.assert_allclose(labels["inclusion_lumen_pressure"], [pressure, np.nan])
+    assert 8e3 < pressure < 16e3

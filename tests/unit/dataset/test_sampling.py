@@ -17,6 +17,8 @@ from tactsim.dataset.layout import layout_of
 from tactsim.dataset.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.errors import CaseError
 
+CASES = Path(__file__).parents[3] / "cases"
+
 GRID = """\
 schema: tactsim/sweep/1
 experiment:
@@ -142,6 +144,9 @@ def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
         ("white: 1 mV", "white: 1", "has no unit"),
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", "unknown label"),
         ("{below: 4000}", "{}", "a condition needs above, below or equal"),
+        ("{softer: {instantaneous_shear_modulus: {below: 4000}}}", "{softer: {}}", "softer: no condition"),
+        ("instantaneous_shear_modulus: {below", "shear_modulus: {below", r"sweep.yaml:\d+: sweep.splits.out_of_distribution"),
+        ("kind: closed_form", "kind: closd_form", r"sweep.yaml:4: experiment.kind: .*did you mean 'closed_form'"),
         ("train: 0.5", "train: 0.9", "add up to more than 1"),
         ("seed: 7", "design: grid", "a grid takes lists"),
     ],
@@ -161,3 +166,29 @@ def test_a_kind_without_recorder_needs_names(tmp_path: Path) -> None:
 def test_a_file_without_places_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="nothing varies"):
         sweep_of(tmp_path, "schema: tactsim/sweep/1\nexperiment: {kind: closed_form}\nsweep: {samples: 3}\n")
+
+
+def test_what_a_kind_does_not_use_is_refused() -> None:
+    for part, words in (
+        ("times: 3", r"sweep\.times: 3, but .* only the end"),
+        ("reading: {}", r"sweep\.reading: .* closed_form"),
+    ):
+        name, value = part.split(": ")
+        with pytest.raises(CaseError, match=words):
+            layout_of(load_sweep(CASES / "sweep_rates.yaml", (f"sweep.{name}={value}",)))
+
+
+def test_a_grid_may_begin_with_impossible_cases(tmp_path: Path) -> None:
+    text = TEXT.replace("{uniform: [1 mm, 2.5 mm]}", "[3.5 mm, 1 mm]").replace(
+        "{uniform: [2 mm, 4 mm]}", "{values: [2 mm, 2.5 mm, 3 mm, 3.9 mm]}"
+    )
+    text = text.replace("[3.5 mm, 1 mm]", "{values: [3.5 mm, 1 mm]}").replace("{log_uniform: [1 kPa, 20 kPa]}", "2 kPa")
+    text = (
+        text.replace("{uniform: [0.1 mm, 0.2 mm]}", "0.1 mm")
+        .replace("  samples_per_specimen: 3\n", "")
+        .replace("  samples: 24\n", "  design: grid\n")
+    )
+    text = text.replace("  within_specimen: [experiment.loading.pieces.0.to]\n", "")
+    sweep = sweep_of(tmp_path, text)
+    assert layout_of(sweep).variables
+    assert sum(drawn_specimen(sweep, k)[0].case is not None for k in range(8)) == 5

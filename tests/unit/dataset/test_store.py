@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -21,14 +23,16 @@ from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, s
 from tactsim import code_identity
 from tactsim.dataset import running
 from tactsim.dataset.checking import check
+from tactsim.dataset.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers
 from tactsim.dataset.running import opened_run
 from tactsim.dataset.store import Store, chunk_samples
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import Variable
-from tactsim.errors import StorageError, TactsimError
+from tactsim.errors import CaseError, StorageError, TactsimError
 
+CASES = Path(__file__).parents[3] / "cases"
 SCRIPT = Path(__file__).parents[2] / "sweeps.py"
 
 
@@ -239,12 +243,32 @@ def test_workers_that_always_die_end_the_sweep_and_mark_little(tmp_path: Path) -
     assert (Store.open(tmp_path / "s.zarr").read("status") == 2).sum() <= 30
 
 
-def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
-    text = TEXT.replace("times: 4", "times: 4\n  quantities: {largest_force: Pa}")
-    place = small_store(tmp_path, text)
-    store = Store.open(place)
-    assert (store.read("status") == 2).all()
-    assert "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa" in store.read("reason")[0]
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ("largest_force: Pa", "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa"),
+        ("largest_froce: N", "sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force"),
+    ],
+)
+def test_a_quantity_that_no_result_has_ends_the_sweep_at_once(tmp_path: Path, asked: str, words: str) -> None:
+    sweep = load_sweep(sweep_file(tmp_path, TEXT.replace("times: 4", f"times: 4\n  quantities: {{{asked}}}")))
+    workers = LocalWorkers(sweep.text, 1)
+    with opened_run(sweep, tmp_path / "s.zarr") as going, closing(workers), pytest.raises(CaseError, match=words):
+        going.compute(workers, lambda tally: None)
+    assert (Store.open(tmp_path / "s.zarr").read("status") == 0).all()
+
+
+def test_noise_differs_from_sample_to_sample_without_a_word_in_the_file(tmp_path: Path) -> None:
+    sweep = load_sweep(CASES / "sweep_lumps.yaml", ("sweep.samples=6",))
+    drawn = [drawn_specimen(sweep, specimen)[0] for specimen in range(2)]
+    assert [used_seed(sweep, one) for one in drawn] == [one.case.experiment.readout.seed for one in drawn]
+    text = re.sub(r"\n.*readout\.seed|\n +seed: \{integer: .*", "", (CASES / "sweep_lumps.yaml").read_text())
+    (tmp_path / "unseeded.yaml").write_text(text)
+    unseeded = load_sweep(tmp_path / "unseeded.yaml", ("sweep.samples=6",))
+    drawn = drawn_specimen(unseeded, 0) + drawn_specimen(unseeded, 1)
+    seeds = [one.case.experiment.readout.seed for one in drawn]
+    assert seeds == [noise_seed(unseeded, one.sample) for one in drawn] == [used_seed(unseeded, one) for one in drawn]
+    assert len(set(seeds)) == 6
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 import shutil
 import signal
 import subprocess
@@ -81,9 +82,9 @@ def changed(store: Store, name: str, number: int, value: object) -> None:
 
 
 def copied(store: Store) -> None:
-    for name in ("force", "displacement", "read_force", "voltage", "time_s", "largest_force", "largest_displacement"):
+    for name in ("force", "displacement", "read_force", "read_force_clean", "voltage", "voltage_clean", "time_s"):
         store.group[name][4] = store.group[name][2]
-    for name in ("tissue_rise_axis", "force_factor", "rise_factor"):
+    for name in ("largest_force", "largest_displacement", "tissue_rise_axis", "force_factor", "rise_factor"):
         store.group[name][4] = store.group[name][2]
     summed_again(store, 4)
 
@@ -275,3 +276,38 @@ def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Sig
     computed = int((Store.open(place).read("status") == 1).sum())
     assert 0 < computed < 3000
     assert f"| done | {computed} |" in (place / "README.md").read_text(encoding="utf-8")
+
+
+def test_an_export_goes_on_after_one_that_was_broken_off(kept: Path, tmp_path: Path) -> None:
+    (tmp_path / ".flat.partial").mkdir()
+    (tmp_path / ".whole.h5.partial").write_text("half")
+    for name in ("flat", "whole.h5"):
+        assert main(["data", "export", str(kept), "--to", str(tmp_path / name)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["flat", "whole.h5"]
+
+
+@pytest.mark.parametrize("name", ["flat", "whole.h5"])
+def test_an_export_to_a_full_disk_is_an_error_and_leaves_nothing(kept: Path, tmp_path: Path, name: str) -> None:
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    command = [sys.executable, "-m", "tactsim.cli", "data", "export", str(kept), "--to", str(tmp_path / name)]
+    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=small, check=False)
+    assert done.returncode == 5
+    assert "cannot write" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_scheduler_that_is_not_there_leaves_no_store(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", str(sweep_file(tmp_path)), "--out", str(tmp_path / "s.zarr"), "--scheduler", "nowhere"]) == 2
+    assert "--scheduler 'nowhere' is no address" in capsys.readouterr().err
+    assert not (tmp_path / "s.zarr").exists()
+
+
+def test_readings_without_noise_are_stored_beside_those_with(kept: Path) -> None:
+    data = load(kept)
+    noise = (data["voltage"] - data["voltage_clean"]).values
+    assert 0.5e-3 * 0.3 < noise.std() < 2e-3  # 1 mV before the low pass
+    assert abs(noise.mean()) < 4 * noise.std() / np.sqrt(noise.size)
+    assert "without noise" in data["read_force_clean"].attrs["long_name"]
