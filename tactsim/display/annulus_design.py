@@ -58,7 +58,7 @@ def annulus_design_figure(result: Result) -> Figure:
         bar.set_label("constant force with which the tissue touches, in N")
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
-        figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

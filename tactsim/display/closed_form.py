@@ -47,5 +47,5 @@ def closed_form_figure(result: Result) -> Figure:
             axes[0].legend(fontsize=8, loc="upper left")
         axes[-1].set(xlabel="time in s", xlim=(0, time[-1]))
         title = str(result.details.get("title") or "") or "Annulus on viscoelastic tissue, closed form"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure

@@ -46,5 +46,5 @@ def confusion_figure(table: Sequence[Sequence[int]], classes: Sequence[str], tit
         axis.set_yticks(range(len(rows)), [names[k] for k in rows])
         axis.set(xlabel="estimated", ylabel="true")
         axis.tick_params(length=0)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
     return figure

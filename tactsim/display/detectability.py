@@ -49,7 +49,7 @@ def detectability_figure(result: Result) -> Figure:
             axis.set_title(words, loc="left")
         axes[0].set_ylabel("smallest radius found in mm")
         figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
-        figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

@@ -45,7 +45,7 @@ def dma_identification_figure(result: Result) -> Figure:
         axes[1, 0].set_ylabel(f"relative to {METHODS[_first(result)][0]}, %")
         axes[0, 1].legend(loc="lower left", handlelength=2.6)
         title = str(result.details.get("title") or "Generalized Kelvin model from dynamic mechanical analysis")
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
         _draw_foot(figure, result)
     return figure
 

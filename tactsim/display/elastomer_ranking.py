@@ -44,7 +44,7 @@ def elastomer_ranking_figure(result: Result) -> Figure:
         _draw_moduli(axes[1], result, colours)
         _draw_ranks(axes[2], result, colours)
         title = str(result.details.get("title") or "") or "Elastomers by durometer, hand and sensor"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
             words = f"{str(result.status).upper()}: {result.reason}"[:150]
             figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")

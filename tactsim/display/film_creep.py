@@ -38,7 +38,7 @@ def film_creep_figure(result: Result) -> Figure:
         for axis in (creep, coefficients):
             despined(axis)
         title = str(result.details.get("title") or "Creep of a piezoresistive film")
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

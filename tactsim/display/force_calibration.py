@@ -36,7 +36,7 @@ def force_calibration_figure(result: Result) -> Figure:
         _draw_line(upper, result)
         _draw_errors(lower, result)
         title = str(result.details.get("title") or "") or "Calibration of a force sensor"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

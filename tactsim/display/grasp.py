@@ -101,7 +101,9 @@ def history_figure(result: Result) -> Figure:
 
 def _entitle(figure: Figure, result: Result) -> None:
     """The title, and across the foot of a run that did not end as it should its status and reason."""
-    figure.suptitle(str(result.details.get("title") or "") or "Grasp", x=0.01, ha="left", fontsize=11, fontweight="bold")
+    figure.suptitle(
+        str(result.details.get("title") or "") or "Grasp", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold"
+    )
     if result.status is not Status.CONVERGED:
         words = f"{str(result.status).upper()}; the last accepted step is shown: {result.reason}"
         lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=2, placeholder=" …")

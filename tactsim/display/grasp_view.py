@@ -78,7 +78,7 @@ def view_figure(result: Result) -> Figure:
         bar.outline.set_linewidth(0.5)
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
         title = str(result.details.get("title") or "") or "Grasp"
-        figure.suptitle(f"{title}: {ending(result)}{status}", x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(f"{title}: {ending(result)}{status}", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

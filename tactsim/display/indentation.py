@@ -44,7 +44,7 @@ def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: 
         if has_section:
             draw_contact_section(axes[0], result, result.frames[-1].time)
         draw(axes[-1], result)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
             mark_failure(figure, result)
     return figure

@@ -68,7 +68,7 @@ def space_figure(result: Result) -> Figure:
             axis.set_title(words if inside else f"{words}: none", loc="left")
             annotate(axis, grasp, camera)
         _scale(figure, axes, grasp, shown)
-        figure.suptitle(_title(result), x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

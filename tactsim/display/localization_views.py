@@ -83,7 +83,7 @@ def views_figure(result: Result, shown: Shown = "force") -> Figure:
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp, result, shown)
         title = str(result.details.get("title") or "") or "Three views of the grasp"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

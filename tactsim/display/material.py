@@ -44,7 +44,7 @@ def material_figure(material: Material, name: str) -> Figure:
     labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
     volume = ", incompressible" if isinstance(material, Hyperelastic) else ""
-    figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}")
+    figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}", parse_math=False)
     return figure
 
 

@@ -50,5 +50,5 @@ def sensor_response_figure(result: Result) -> Figure:
         for axis in (above, below):
             despined(axis)
         title = str(result.details.get("title") or "Response of a piezoresistive sensor")
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure

@@ -38,7 +38,7 @@ def space_indentation_figure(result: Result) -> Figure:
         if around:
             _draw_around(figure.add_subplot(grid[1, -1]), result)
         title = str(result.details.get("title") or "") or "Indentation in space"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
         if result.status is not Status.CONVERGED:
             mark_failure(figure, result)
     return figure

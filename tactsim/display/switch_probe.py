@@ -144,4 +144,6 @@ def _finish(axis: Axes, result: Result, title: str) -> None:
 
 def _title(figure: Figure, result: Result, words: str) -> None:
     title = str(result.details.get("title") or "")
-    figure.suptitle(f"{title}\n{words}" if title else words, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+    figure.suptitle(
+        f"{title}\n{words}" if title else words, parse_math=False, x=0.01, ha="left", fontsize=10.5, fontweight="bold"
+    )

@@ -53,7 +53,7 @@ def voltages_figure(result: Result) -> Figure:
         for axis in axes.flat:
             despined(axis)
         title = str(result.details.get("title") or "Voltages of the matrices")
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
     return figure
 
 

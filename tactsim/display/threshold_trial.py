@@ -83,7 +83,7 @@ def threshold_error_figure(result: Result) -> Figure:
 
 def _headed(figure: Figure, result: Result, words: str) -> None:
     title = str(result.details.get("title") or "")
-    figure.suptitle(f"{title}\n{words}" if title else words, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    figure.suptitle(f"{title}\n{words}" if title else words, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
 
 
 def _draw_foot(figure: Figure, result: Result) -> None:

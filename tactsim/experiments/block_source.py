@@ -25,6 +25,8 @@ Array = np.ndarray
 Size = tuple[float, float, float]
 FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
+LEAST_SHARED = 0.5
+"""Least part that a region of a mesh from a file shares with the inclusion of the case, of what either fills."""
 GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
@@ -156,7 +158,33 @@ class FileSource(FrozenModel):
         surfaces = Surfaces(np.asarray(size, float), [inclusion.solids(np.asarray(size, float)) for inclusion in inclusions])
         content, seconds = content_hash(mesh), time.perf_counter() - started
         made = assembled(mesh, surfaces, inclusions, key=f"file-{content}", seconds=seconds, straightened=0, fitting=False)
+        _check_places(made, surfaces, self.path)
         return SourcedBlock(made, content, f"file {self.path}")
+
+
+def _check_places(block: BlockMesh, surfaces: Surfaces, path: str) -> None:
+    """Refuse a mesh whose regions lie elsewhere than the inclusions of the case, or that fills an empty space.
+
+    Raises
+    ------
+    InputError
+        Naming the inclusion, its volume in the case and the part that the region of the mesh shares with it.
+    """
+    points = block.mesh.nodes[block.mesh.elements[:, :4]]
+    volumes = np.abs(np.linalg.det(points[:, 1:] - points[:, :1])) / 6
+    meant = surfaces.labels(points.mean(axis=1))
+    for number, name in enumerate(block.region_names[1:], 1):
+        own, there = block.mesh.regions == number, meant == number
+        share = volumes[own & there].sum() / volumes[own | there].sum()
+        if share < LEAST_SHARED:
+            held, exact = (f"{1e9 * float(volume):.4g} mm^3" for volume in block.volumes[number])
+            raise InputError(
+                f"{path}: region {number} ({held}) shares {100 * share:.3g} % of its place with {name} of the case ({exact}); "
+                f"needed: {100 * LEAST_SHARED:g} %; are the tags in mesh.regions and the place in inclusions right?"
+            )
+    for name, facets in block.facets.items():
+        if not len(facets):
+            raise InputError(f"{path}: no facet of the mesh lies on {name}; an empty space must be left out of the mesh")
 
 
 def _tag(name: str) -> int | str:

@@ -28,6 +28,10 @@ MOST_LUMENS = 32
 AXES = "xyz"
 
 
+RAGGED, SUCTION = 0.05, 0.01
+"""Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is told."""
+
+
 class GraspRecord:
     """Collects accepted steps and turns them into a result."""
 
@@ -173,6 +177,7 @@ class GraspRecord:
             told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         if self._unread:
             told.append(self._unread)
+        told += [*self._ragged(), *self._suction()]
         share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
         if share == 0:
             return told
@@ -183,6 +188,24 @@ class GraspRecord:
             f"{share:.1%} of the volume left strong ellipticity, first at a closing of {at} per jaw: "
             "there the answer depends on the mesh; take a stable material set",
         ]
+
+    def _ragged(self) -> list[str]:
+        """Regions whose volume the mesh misses."""
+        block = self._sourced.block
+        return [
+            f"the mesh gives {name} {100 * error:+.0f} % of its volume too much or too little: take smaller elements"
+            for name, error in zip(block.region_names, block.volume_errors, strict=True)
+            if abs(error) > RAGGED
+        ]
+
+    def _suction(self) -> list[str]:
+        """Taxels that are pulled, which contact without adhesion cannot do."""
+        forces = [reading[side].taxels.taxels[2] for reading in self.readings for side in SIDES]
+        least, most = (min(map(np.min, forces)), max(map(np.max, forces))) if forces else (0.0, 0.0)
+        if least >= -SUCTION * most:
+            return []
+        pull = format_quantity(-float(least), "N")
+        return [f"a taxel is pulled by up to {pull}: it is smaller than the mesh resolves; take smaller elements at the faces"]
 
     def _frames(self) -> tuple[FieldFrame, ...]:
         """Fields of the kept states, by time."""

@@ -123,7 +123,12 @@ def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:
 
 
 def _taxels(result: Result, name: str) -> Array:
-    return np.array([result.quantities[f"{name}_{side}"].value for side in SIDES], dtype=float)
+    try:
+        return np.array([result.quantities[f"{name}_{side}"].value for side in SIDES], dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} of the two jaws of the result are not numbers in matrices of one shape; run the grasp again"
+        ) from None
 
 
 def _middle(details: dict[str, Any], layout: TaxelLayout) -> Array | None:

@@ -53,7 +53,7 @@ def _check_finite(readings: Array) -> None:
     jaw, row, column = (int(k) for k in np.argwhere(~np.isfinite(readings))[0])
     raise InvalidQuantity(
         f"taxel {taxel_name(jaw, row, column)} reads {readings[jaw, row, column]}; needed: a finite number, "
-        "or False for this taxel in the mask of valid taxels"
+        "or False for this taxel in the mask of valid taxels (key dead of a case)"
     )
 
 

@@ -28,6 +28,7 @@ SOFT = {"kind": "neo_hookean", "c10": C10}
 FADING = {"fractions": [0.5], "times": [1.0]}
 CLOSING = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
 ONE_STEP = {"steps": 1}
+RAMP = {"kind": "ramp", "to": 1e-4, "duration": 1.0}
 TUBE = {"kind": "tube", "centre_line": [(0.0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)], "inner_radius": 4e-3, "wall": 3e-3}
 BALL = {"kind": "sphere", "center": (20e-3, 20e-3, 10e-3), "radius": 5e-3}
 PULSE = {"kind": "pulse", "beats": 1}
@@ -267,6 +268,32 @@ def test_a_mesh_that_does_not_fit_the_case_is_refused(tube_file):
         run(mesh=tube_file | {"unit": "m"}, inclusions=[tube])
     with pytest.raises(InputError, match="too coarse: no element lies in sphere 1"):
         run(inclusions=[{"shape": BALL | {"radius": 0.5e-3}, "material": "lump"}])
+    with pytest.raises(InputError, match=r"region 1 .* shares .* of its place with tube 1"):
+        run(mesh=tube_file | {"regions": {"5": 1, "6": 0}}, inclusions=[tube])
+    elsewhere = TUBE | {"centre_line": [(0.0, 8e-3, 10e-3), (40e-3, 8e-3, 10e-3)]}
+    with pytest.raises(InputError, match=r"region 1 .* shares .* of its place with tube 1"):
+        run(mesh=tube_file, inclusions=[tube | {"shape": elsewhere}])
+
+
+def test_a_mesh_that_fills_the_lumen_is_refused(tmp_path):
+    block = structured_block(SIZE, (1, 16, 8), [Tube.model_validate(TUBE)])
+    full = structured_block(SIZE, (1, 16, 8))
+    regions = np.zeros(len(full.mesh.elements), int)
+    corners = full.mesh.nodes[full.mesh.elements[:, :4]].mean(axis=1)
+    wall = {tuple(place) for place in block.mesh.nodes[block.mesh.elements[block.mesh.regions == 1, :4]].mean(axis=1).round(9)}
+    regions[[tuple(place) in wall for place in corners.round(9)]] = 1
+    path, count = tmp_path / "full.vtu", full.mesh.corner_count
+    cells = meshio.CellBlock("tetra", full.mesh.elements[:, :4])
+    meshio.Mesh(full.mesh.nodes[:count], [cells], cell_data={"region": [regions]}).write(path)
+    mesh = {"kind": "file", "path": str(path), "unit": "m", "regions": {"0": 0, "1": 1}}
+    with pytest.raises(InputError, match=r"no facet of the mesh lies on lumen:1; an empty space must be left out"):
+        run(mesh=mesh, inclusions=[{"shape": TUBE, "material": "artery_wall"}])
+
+
+def test_a_ragged_lump_is_told():
+    lump = {"shape": BALL, "material": "lump"}
+    result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
+    assert any("the mesh gives sphere 1" in words for words in result.warnings)
 
 
 def aside():
