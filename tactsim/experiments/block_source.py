@@ -27,6 +27,8 @@ FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
 LEAST_SHARED = 0.5
 """Least part that a region of a mesh from a file shares with the inclusion of the case, of what either fills."""
+TOUCHING = 1e-6
+"""Distance in m below which bodies touch, where no mesh is made to follow them."""
 GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
@@ -105,7 +107,7 @@ class StructuredSource(FrozenModel):
     @property
     def least_gap(self) -> float:
         """Least distance in m between inclusions, and from faces."""
-        return 0.0
+        return TOUCHING
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m."""
@@ -135,7 +137,7 @@ class FileSource(FrozenModel):
     @property
     def least_gap(self) -> float:
         """Least distance in m between inclusions, and from faces."""
-        return 0.0
+        return TOUCHING
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh in the file, checked against the block and the number of inclusions."""

@@ -128,10 +128,3 @@ def test_a_bad_case_leaves_no_trace(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--set", "experiment.friction=9"]) == 2
     assert capsys.readouterr().err == "error: --set experiment.friction: 9 is out of range; must be at most 2.0\n"
     assert not Path("results").exists()
-
-
-def test_a_title_is_drawn_as_it_is_written_not_as_tex(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    case = Path(__file__).parents[3] / "cases" / "annulus_dynamic_load.yaml"
-    assert main(["run", str(case), "--out", str(tmp_path / "r"), "--set", r"title=$x_$ \frac{"]) == 0
-    assert list((tmp_path / "r").glob("*.png"))
-    assert "warning" not in capsys.readouterr().err

@@ -290,6 +290,12 @@ def test_a_mesh_that_fills_the_lumen_is_refused(tmp_path):
         run(mesh=mesh, inclusions=[{"shape": TUBE, "material": "artery_wall"}])
 
 
+def test_touching_lumps_are_refused_in_cells_too():
+    touching = [BALL | {"center": (x, 20e-3, 10e-3)} for x in (15e-3, 25e-3)]
+    with pytest.raises(ValidationError, match="sphere 1 and sphere 2 are 0 m apart; allowed: at least 1 µm|overlap"):
+        grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
+
+
 def test_a_ragged_lump_is_told():
     lump = {"shape": BALL, "material": "lump"}
     result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
