@@ -27,7 +27,7 @@ FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
 LEAST_SHARED = 0.5
 """Least part that a region of a mesh from a file shares with the inclusion of the case, of what either fills."""
-TOUCHING = 1e-6
+TOUCHING = 1e-5
 """Distance in m below which bodies touch, where no mesh is made to follow them."""
 GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""

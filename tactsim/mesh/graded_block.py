@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
@@ -61,9 +61,10 @@ def graded_block(
         simplices = _sixths(cells, _mirrored_places(corners, solid.center, solid.stretch))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
-        except ConvergenceError:
+        except ConvergenceError as error:
             if finer == ATTEMPTS - 1:
-                raise
+                name = inclusion_name(1, inclusion)
+                raise ConvergenceError(f"no graded cells suit {name}: {error}; take mesh.kind: tetrahedra") from None
     raise AssertionError("every attempt returns or raises")
 
 

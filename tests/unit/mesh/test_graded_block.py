@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactsim.errors import InputError, InvalidQuantity
+from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.experiments.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded_block import graded_block
@@ -104,6 +104,9 @@ def test_what_cannot_be_meshed_is_refused_by_name():
     tube = Tube(centre_line=((0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)), inner_radius=2e-3, wall=1e-3)
     with pytest.raises(InputError, match="a tube cannot be meshed in graded cells; allowed: sphere, ellipsoid"):
         graded_block(SIZE, tube, COARSE)
+    needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
+    with pytest.raises(ConvergenceError, match="no graded cells suit ellipsoid 1: .*; take mesh.kind: tetrahedra"):
+        graded_block(SIZE, needle, COARSE)
     with pytest.raises(InputError, match="one inclusion or none, not 2"):
         GradedSource(kind="graded").sourced(SIZE, [CENTRED, CENTRED])
     with pytest.raises(InvalidQuantity, match="protrudes"):
