@@ -79,7 +79,8 @@ def _draw_matrix(axis: Axes, grasp: Grasp, side: str, scale: tuple[float, Normal
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
         axis.text(x, y, f"{factor * pressure:#.3g}".rstrip("."), va="bottom", fontsize=large, fontweight="bold", **style)
-        axis.text(x, y - 0.06 * size, f"{grasp.forces[side][row, column]:#.2g} N", va="top", fontsize=0.72 * large, **style)
+        force = f"{grasp.forces[side][row, column]:#.2g}".rstrip(".")
+        axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
     right, back = _extent(grasp, side)[1] + BESIDE
     for number in _named(layout.rows):

@@ -24,6 +24,10 @@ LONGER = 1.2
 """An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
 GRID = 250
 """Points per direction on which a jaw is traced."""
+EVEN = 1e-4
+"""Spread of the pressure over its size below which it counts as even."""
+MOST_NAMED = 12
+"""Taxels along a cut of which each is named; of more, every so many."""
 TAXEL_COLOUR, INCLUSION_COLOUR = "#e69f00", "#000000"
 
 
@@ -71,7 +75,9 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     areas = np.repeat(cut.areas(), 3) / 3
     low, high = weighted_percentiles(cut.values.ravel(), areas, (1, 99))
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
-    low, high = (factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)
+    low, high = factor * low, factor * high
+    if high - low < EVEN * max(abs(low), abs(high), 1e-300):  # round-off is no pattern
+        low, high = low - 0.5 * abs(low) - 0.5 * (low == 0), high + 0.5 * abs(high) + 0.5 * (high == 0)
     values = factor * cut.values.ravel()
     corners = 1e3 * cut.triangles.reshape(-1, 2)
     mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))
@@ -138,12 +144,16 @@ def _draw_taxels(axis: Axes, grasp: Grasp, side: str, plane: tuple[int, float]) 
     passed = grasp.layout.borders("xy"[across])
     hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
     for index in hit:
-        for number, (low, high) in enumerate(grasp.layout.borders("yx"[across])):
+        borders = grasp.layout.borders("yx"[across])
+        every = -(-len(borders) // MOST_NAMED)
+        for number, (low, high) in enumerate(borders):
             corners = np.zeros((3, 4))
             corners[1 - across], corners[across] = [low, high, high, low], fixed
             corners[2] = np.array([0.0, 0.0, 1e-3, 1e-3]) * TAXEL_SHOWN
             shown = 1e3 * (jaw.rotation @ corners + place[:, None])
             axis.fill(shown[1 - across], shown[2], facecolor=TAXEL_COLOUR, edgecolor="#30363d", linewidth=0.5, zorder=4)
+            if number % every:
+                continue
             row, column = (index, number) if across == 1 else (number, index)
             above: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5}
             normal = 2.2 * TAXEL_SHOWN * jaw.rotation[2, 2]

@@ -292,7 +292,7 @@ def test_a_mesh_that_fills_the_lumen_is_refused(tmp_path):
 
 def test_touching_lumps_are_refused_in_cells_too():
     touching = [BALL | {"center": (x, 20e-3, 10e-3)} for x in (15e-3, 25e-3)]
-    with pytest.raises(ValidationError, match="sphere 1 and sphere 2 (are|overlap by) .*; allowed: at least 10 µm between"):
+    with pytest.raises(ValidationError, match=r"sphere 1 and sphere 2 (are|overlap by) .*; allowed: at least 10 µm between"):
         grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
 
 

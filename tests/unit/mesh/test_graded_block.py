@@ -105,7 +105,7 @@ def test_what_cannot_be_meshed_is_refused_by_name():
     with pytest.raises(InputError, match="a tube cannot be meshed in graded cells; allowed: sphere, ellipsoid"):
         graded_block(SIZE, tube, COARSE)
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
-    with pytest.raises(ConvergenceError, match="no graded cells suit ellipsoid 1: .*; take mesh.kind: tetrahedra"):
+    with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):
         graded_block(SIZE, needle, COARSE)
     with pytest.raises(InputError, match="one inclusion or none, not 2"):
         GradedSource(kind="graded").sourced(SIZE, [CENTRED, CENTRED])
