@@ -9,6 +9,7 @@ import webbrowser
 
 from tactsim.cli import console
 from tactsim.errors import InputError
+from tactsim.units import parse_quantity
 
 
 def run_page(arguments: argparse.Namespace) -> int:
@@ -31,9 +32,12 @@ def run_page(arguments: argparse.Namespace) -> int:
     port, host = arguments.port or 0, LOOPBACK if arguments.host is None else arguments.host
     if not 0 <= port <= 65535:
         raise InputError(f"--port {port}: not a port; allowed: 1 to 65535, or 0 for any that is free")
+    noise = None if arguments.noise is None else parse_quantity(arguments.noise, "N")
+    if noise is not None and noise <= 0:
+        raise InputError(f"--noise {arguments.noise}: allowed: more than 0 N")
     live = None if arguments.live is None else FeedPlace.of(arguments.live)
     feed = None if live is None else Feed(live.name)
-    content = opened_content(arguments.result, feed=feed, reference=arguments.reference)
+    content = opened_content(arguments.result, feed=feed, reference=arguments.reference, noise=noise)
     if not is_loopback(host):
         console.note(f"warning: the page is served on {host}: others on the network who learn its address can see it")
 

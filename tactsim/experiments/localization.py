@@ -99,6 +99,7 @@ class Localization(Experiment):
                     for found in estimate.inclusions
                 ],
                 "estimator": self.estimator.kind,
+                "noise": self.noise,
                 "valid": None if readings.valid is None else readings.valid.tolist(),
                 "words": [told(found) for found in estimate.inclusions],
             },

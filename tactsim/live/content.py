@@ -24,10 +24,14 @@ class Content:
     samples: Samples | None = None
     feed: Feed | None = None
     reference: Reference | None = None
+    noise: float | None = None
+    """Standard deviation in N of a reading, instead of what the data say."""
 
 
-def opened_content(place: Path | None, *, feed: Feed | None = None, reference: str | None = None) -> Content:
-    """The content of a result's folder or a data set, with a feed and a reference if they are given.
+def opened_content(
+    place: Path | None, *, feed: Feed | None = None, reference: str | None = None, noise: float | None = None
+) -> Content:
+    """The content of a result's folder or a data set, with a feed, a reference and a noise in N if they are given.
 
     Raises
     ------
@@ -40,8 +44,8 @@ def opened_content(place: Path | None, *, feed: Feed | None = None, reference: s
         raise InputError("nothing to show; name the folder of a result or a data set, or --live FILE, - or tcp://127.0.0.1:PORT")
     given = None if reference is None else Reference.open(reference)
     if place is not None and (place / "zarr.json").is_file():
-        return Content({}, Samples.open(place), feed, given)
-    return Content({} if place is None else result_recordings(_folder(place)), None, feed, given)
+        return Content({}, Samples.open(place), feed, given, noise)
+    return Content({} if place is None else result_recordings(_folder(place)), None, feed, given, noise)
 
 
 def _folder(place: Path) -> Path:

@@ -97,15 +97,17 @@ class Reference:
         return recording.at(float(np.interp(closing, way, recording.times))) if rising else last
 
 
-def frame_readings(scene: Scene, frame: Frame, choice: Choice, reference: Reference | None) -> Readings:
-    """Readings of a frame with what an estimator needs beside its model of the tissue.
+def frame_readings(
+    scene: Scene, frame: Frame, choice: Choice, reference: Reference | None, noise: float | None = None
+) -> Readings:
+    """Readings of a frame with what an estimator needs beside its model of the tissue; ``noise`` in N replaces the scene's.
 
     Raises
     ------
     InputError
         If there is no reference, or it is of another grasp.
     """
-    readings = frame.readings(scene)
+    readings = frame.readings(scene if noise is None else replace(scene, noise=noise))
     if not choice.needs_reference:
         return readings
     if reference is None:

@@ -54,6 +54,8 @@ def _scene(result: Result, title: str) -> Scene:
     size = np.asarray(details["block_size"], dtype=float)
     layout = TaxelLayout.model_validate(details["matrix"])
     known: dict[str, Any] = {"inclusions": true_inclusions(details), "notes": _notes(result)}
+    if details.get("noise"):
+        known["noise"] = float(details["noise"])
     if "jaws" in details:
         known["jaws"] = {side: Jaw.model_validate(details["jaws"][side]) for side in JAWS}
     if details.get("jaw_places"):

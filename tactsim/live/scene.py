@@ -33,6 +33,7 @@ class Scene:
     jaws : by side
     places : (2, 3) in m of the middle of each jaw's face, the upper jaw first, at the closing ``closing`` in m of each jaw
     notes : what the user must know about these data
+    noise : standard deviation of a reading in N
     """
 
     title: str
@@ -43,6 +44,7 @@ class Scene:
     places: Array
     closing: float = 0.0
     notes: tuple[str, ...] = ()
+    noise: float = ROUNDING_NOISE
 
     def places_at(self, closing: float | None) -> Array:
         """Middle (2, 3) in m of both faces when each jaw has closed by ``closing`` in m; None leaves them where they are."""
@@ -98,7 +100,7 @@ class Frame:
             self.forces,
             scene.layout,
             scene.size,
-            noise=ROUNDING_NOISE,
+            noise=scene.noise,
             valid=None if self.valid.all() else self.valid,
             middle=scene.places[:, :2].mean(axis=0),
             closing=self.closing,

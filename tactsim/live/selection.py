@@ -145,7 +145,7 @@ class Selection:
             assert recording is not None
             frame = recording.frame(int(step))
             try:
-                readings = frame_readings(recording.scene, frame, self.choice, self._content.reference)
+                readings = frame_readings(recording.scene, frame, self.choice, self._content.reference, self._content.noise)
             except TactsimError:
                 continue
             found.append((shown_signal(readings)[0], frame.forces))

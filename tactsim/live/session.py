@@ -159,16 +159,16 @@ class Session:
         self._thinking.shape(scene, shapes_message)
 
     async def _send_frame(self, scene: Scene, frame: Frame, recording: Recording | None) -> None:
-        choice, reference = self._chosen.choice, self._content.reference
+        choice, content = self._chosen.choice, self._content
         if recording is not None and not self._chosen.live and not self._scales.ends.any():
             self._scales.take_range(self._chosen.signals())
-        readings = readings_or_fault(lambda: frame_readings(scene, frame, choice, reference))
+        readings = readings_or_fault(lambda: frame_readings(scene, frame, choice, content.reference, content.noise))
         step = 0 if recording is None or frame.time is None else recording.step_at(frame.time)
         message = frame_message(scene, frame, readings, self._scales, step=step, playing=self._playback.playing)
         self._shown = frame
         self._in_flight += 1
         await self._socket.send_bytes(message)
-        self._thinking.estimate(scene, readings, choice, reference)
+        self._thinking.estimate(scene, readings, choice, content.reference)
 
     async def _tell_feed(self) -> None:
         """How the feed is doing, when that has changed."""

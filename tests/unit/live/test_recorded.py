@@ -10,6 +10,7 @@ import pytest
 from live_pages import grasp_folder, made_up_store, taxel_forces
 
 from tactsim.errors import InputError, StorageError
+from tactsim.live.content import opened_content
 from tactsim.live.estimating import BY_NAME, Reference, estimated, frame_readings, shown_signal
 from tactsim.live.messages import Scales, frame_message
 from tactsim.live.recorded import result_recordings
@@ -153,3 +154,14 @@ def test_samples_of_another_version_are_refused(tmp_path: Path) -> None:
     other = samples.data.assign(case_id=("sample", ["0" * 16] * 6))
     with pytest.raises(StorageError, match="another case than this version"):
         Samples(samples.place, other).recordings(0)
+
+
+def test_the_noise_is_that_of_the_result_unless_another_is_given(tmp_path: Path) -> None:
+    rounded = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
+    folder = change(grasp_folder(tmp_path / "b"), ("details", "noise"), 1e-3)
+    told = result_recordings(folder)["taxel_force"]
+    thesis = BY_NAME["thesis"]
+    assert frame_readings(rounded.scene, rounded.frame(0), thesis, None).noise == pytest.approx(0.1 / 12**0.5)
+    assert frame_readings(told.scene, told.frame(0), thesis, None).noise == 1e-3
+    assert frame_readings(told.scene, told.frame(0), thesis, None, 5e-3).noise == 5e-3
+    assert opened_content(folder, noise=2e-3).noise == 2e-3
