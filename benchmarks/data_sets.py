@@ -2,7 +2,7 @@
 
 python benchmarks/data_sets.py [--held]
 
-With --held (a quarter of an hour) the error of the mesh instead: 20 samples that no sweep draws, against a fine one in two steps.
+With --held (over half an hour) the error of the mesh instead: 20 samples that no sweep draws, against a fine one in two steps.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ OPENING = "import time; import xarray; t = time.perf_counter(); xarray.open_zarr
 HELD, HELD_SEED = 20, 81
 FINE = {"size": 4e-3, "edge_size": 1.6e-3, "growth": 0.6}
 FINE_SHARE = 0.2
-"""Cells at the lump over its radius: eight across. Some 75 000 unknowns in all."""
+"""Cells at the lump over its radius: eight across. Some 75 000 to 120 000 unknowns in all."""
 FINE_STEPS, LIMIT = 2, 1200.0
 """Time in s after which a fine grasp counts as failed: it needs many load steps where a lump is near a jaw."""
 

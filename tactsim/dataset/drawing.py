@@ -89,17 +89,17 @@ def _accepted(sweep: Sweep, specimen: int, sample: int, attempt: int) -> Drawn:
 
 def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
     """Gives the noise of an experiment a seed, if it has noise and its file names none: samples must not share their noise."""
-    *way, last = place or ("",)
-    for key in way:
+    for key in place[:-1]:
         experiment = experiment.get(key) if isinstance(experiment, dict) else None
-    if last and isinstance(experiment, dict):
-        experiment.setdefault(last, seed)
+    if place and isinstance(experiment, dict):
+        experiment.setdefault(place[-1], seed)
 
 
 def used_seed(sweep: Sweep, drawn: Drawn) -> int:
     """The seed from which the noise of a sample was drawn."""
-    found: Any = drawn.case.experiment if drawn.case and seed_place(sweep.kind) else None
-    for key in seed_place(sweep.kind):
+    place = seed_place(sweep.kind)
+    found: Any = drawn.case.experiment if drawn.case and place else None
+    for key in place:
         found = getattr(found, key, None)
     return noise_seed(sweep, drawn.sample) if found is None else int(found)
 

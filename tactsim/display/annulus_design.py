@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from tactsim.display.canvas import new_figure, png, styled
+from tactsim.display.canvas import entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
@@ -58,7 +58,7 @@ def annulus_design_figure(result: Result) -> Figure:
         bar.set_label("constant force with which the tissue touches, in N")
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
-        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, _title(result))
     return figure
 
 

@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
@@ -48,7 +48,7 @@ def catheter_tip_figure(result: Result) -> Figure:
         bar.set_label("reported threshold pressure in kPa")
         _draw_thresholds(right, result, found)
         title = str(result.details.get("title") or "Threshold sensors around the tip of a catheter")
-        figure.suptitle(f"{title}\n{_answer(result)}", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, f"{title}\n{_answer(result)}")
         if result.status is not Status.CONVERGED:
             words = f"{str(result.status).upper()}: {result.reason}"[:150]
             figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")

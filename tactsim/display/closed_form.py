@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
@@ -47,5 +47,5 @@ def closed_form_figure(result: Result) -> Figure:
             axes[0].legend(fontsize=8, loc="upper left")
         axes[-1].set(xlabel="time in s", xlim=(0, time[-1]))
         title = str(result.details.get("title") or "") or "Annulus on viscoelastic tissue, closed form"
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import new_figure, png, styled
+from tactsim.display.canvas import entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
@@ -46,5 +46,5 @@ def confusion_figure(table: Sequence[Sequence[int]], classes: Sequence[str], tit
         axis.set_yticks(range(len(rows)), [names[k] for k in rows])
         axis.set(xlabel="estimated", ylabel="true")
         axis.tick_params(length=0)
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        entitle(figure, title, size=10.5)
     return figure

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
@@ -49,7 +49,7 @@ def detectability_figure(result: Result) -> Figure:
             axis.set_title(words, loc="left")
         axes[0].set_ylabel("smallest radius found in mm")
         figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
-        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, _title(result))
     return figure
 
 

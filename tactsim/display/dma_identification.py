@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
@@ -45,7 +45,7 @@ def dma_identification_figure(result: Result) -> Figure:
         axes[1, 0].set_ylabel(f"relative to {METHODS[_first(result)][0]}, %")
         axes[0, 1].legend(loc="lower left", handlelength=2.6)
         title = str(result.details.get("title") or "Generalized Kelvin model from dynamic mechanical analysis")
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
         _draw_foot(figure, result)
     return figure
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.stats import rankdata
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
@@ -44,7 +44,7 @@ def elastomer_ranking_figure(result: Result) -> Figure:
         _draw_moduli(axes[1], result, colours)
         _draw_ranks(axes[2], result, colours)
         title = str(result.details.get("title") or "") or "Elastomers by durometer, hand and sensor"
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
         if result.status is not Status.CONVERGED:
             words = f"{str(result.status).upper()}: {result.reason}"[:150]
             figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")

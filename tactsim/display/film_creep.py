@@ -9,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.film_test import COEFFICIENTS
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -38,7 +38,7 @@ def film_creep_figure(result: Result) -> Figure:
         for axis in (creep, coefficients):
             despined(axis)
         title = str(result.details.get("title") or "Creep of a piezoresistive film")
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure
 
 

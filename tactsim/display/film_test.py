@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
@@ -49,7 +49,7 @@ def film_test_figure(result: Result) -> Figure:
         for axis in axes.flat:
             despined(axis)
         title = str(result.details.get("title") or "Piezoresistive film under constant forces")
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure
 
 
@@ -67,7 +67,7 @@ def film_surface_figure(result: Result) -> Figure:
         axis.set_zlabel("$\\log_{10}$ of the resistance in ohm")
         axis.view_init(elev=25, azim=40)
         axis.set_box_aspect((1, 1, 0.75), zoom=0.95)
-        figure.suptitle("Resistance over force and time", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, "Resistance over force and time")
     return figure
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, StepRecord
 
@@ -36,7 +36,7 @@ def force_calibration_figure(result: Result) -> Figure:
         _draw_line(upper, result)
         _draw_errors(lower, result)
         title = str(result.details.get("title") or "") or "Calibration of a force sensor"
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure
 
 

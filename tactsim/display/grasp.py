@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import new_figure, png, styled
+from tactsim.display.canvas import entitle, new_figure, png, styled
 from tactsim.display.grasp_history import draw_histories, has_history, panels
 from tactsim.display.grasp_maps import draw_maps
 from tactsim.display.grasp_moment import shown_moment
@@ -101,9 +101,7 @@ def history_figure(result: Result) -> Figure:
 
 def _entitle(figure: Figure, result: Result) -> None:
     """The title, and across the foot of a run that did not end as it should its status and reason."""
-    figure.suptitle(
-        str(result.details.get("title") or "") or "Grasp", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold"
-    )
+    entitle(figure, str(result.details.get("title") or "") or "Grasp")
     if result.status is not Status.CONVERGED:
         words = f"{str(result.status).upper()}; the last accepted step is shown: {result.reason}"
         lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=2, placeholder=" …")

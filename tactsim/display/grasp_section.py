@@ -76,8 +76,9 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     low, high = weighted_percentiles(cut.values.ravel(), areas, (1, 99))
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
     low, high = factor * low, factor * high
-    if high - low < EVEN * max(abs(low), abs(high), 1e-300):  # round-off is no pattern
-        low, high = low - 0.5 * abs(low) - 0.5 * (low == 0), high + 0.5 * abs(high) + 0.5 * (high == 0)
+    if high - low <= EVEN * max(abs(low), abs(high)):  # round-off is no pattern
+        spread = 0.5 * (abs(high) or 1.0)
+        low, high = low - spread, high + spread
     values = factor * cut.values.ravel()
     corners = 1e3 * cut.triangles.reshape(-1, 2)
     mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))

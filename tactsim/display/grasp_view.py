@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from tactsim.display.canvas import new_figure, png, scale_of, styled
+from tactsim.display.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.display.grasp_maps import COLOURS
 from tactsim.display.grasp_parts import SIDES, Grasp, described, ending, grasp_of, inclusions_of
 from tactsim.display.off_screen import Camera, Surface, pictures
@@ -78,7 +78,7 @@ def view_figure(result: Result) -> Figure:
         bar.outline.set_linewidth(0.5)
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
         title = str(result.details.get("title") or "") or "Grasp"
-        figure.suptitle(f"{title}: {ending(result)}{status}", parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, f"{title}: {ending(result)}{status}")
     return figure
 
 

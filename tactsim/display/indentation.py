@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
@@ -44,7 +44,7 @@ def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: 
         if has_section:
             draw_contact_section(axes[0], result, result.frames[-1].time)
         draw(axes[-1], result)
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
         if result.status is not Status.CONVERGED:
             mark_failure(figure, result)
     return figure

@@ -14,7 +14,7 @@ from matplotlib.image import imread
 from matplotlib.patches import Patch
 
 from tactsim.contact.jaw import Jaw
-from tactsim.display.canvas import new_figure, png, scale_of, styled
+from tactsim.display.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.display.grasp_maps import COLOURS
 from tactsim.display.grasp_parts import SIDES, Grasp
 from tactsim.display.grasp_view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
@@ -68,7 +68,7 @@ def space_figure(result: Result) -> Figure:
             axis.set_title(words if inside else f"{words}: none", loc="left")
             annotate(axis, grasp, camera)
         _scale(figure, axes, grasp, shown)
-        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, _title(result))
     return figure
 
 

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from tactsim.display.canvas import despined, new_figure, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, scale_of, styled
 from tactsim.display.localization_parts import SIDES, ViewedGrasp, estimated_bodies, outline, viewed
 from tactsim.localization.views import SHAPE, views
 from tactsim.results import Result
@@ -83,7 +83,7 @@ def views_figure(result: Result, shown: Shown = "force") -> Figure:
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp, result, shown)
         title = str(result.details.get("title") or "") or "Three views of the grasp"
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
@@ -50,5 +50,5 @@ def sensor_response_figure(result: Result) -> Figure:
         for axis in (above, below):
             despined(axis)
         title = str(result.details.get("title") or "Response of a piezoresistive sensor")
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.indentation import FORCE_COLOUR, draw_curve, mark_failure
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.display.space_section import draw_cut
@@ -38,7 +38,7 @@ def space_indentation_figure(result: Result) -> Figure:
         if around:
             _draw_around(figure.add_subplot(grid[1, -1]), result)
         title = str(result.details.get("title") or "") or "Indentation in space"
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
         if result.status is not Status.CONVERGED:
             mark_failure(figure, result)
     return figure

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from tactsim.display.canvas import despined, new_figure, png, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
@@ -144,6 +144,4 @@ def _finish(axis: Axes, result: Result, title: str) -> None:
 
 def _title(figure: Figure, result: Result, words: str) -> None:
     title = str(result.details.get("title") or "")
-    figure.suptitle(
-        f"{title}\n{words}" if title else words, parse_math=False, x=0.01, ha="left", fontsize=10.5, fontweight="bold"
-    )
+    entitle(figure, f"{title}\n{words}" if title else words, size=10.5)

@@ -9,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.grasp_parts import SIDES
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -53,7 +53,7 @@ def voltages_figure(result: Result) -> Figure:
         for axis in axes.flat:
             despined(axis)
         title = str(result.details.get("title") or "Voltages of the matrices")
-        figure.suptitle(title, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, title)
     return figure
 
 

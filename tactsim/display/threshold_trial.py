@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
@@ -83,7 +83,7 @@ def threshold_error_figure(result: Result) -> Figure:
 
 def _headed(figure: Figure, result: Result, words: str) -> None:
     title = str(result.details.get("title") or "")
-    figure.suptitle(f"{title}\n{words}" if title else words, parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    entitle(figure, f"{title}\n{words}" if title else words)
 
 
 def _draw_foot(figure: Figure, result: Result) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.display.contact_section import draw_contact_section
 from tactsim.display.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
@@ -48,7 +48,7 @@ def timed_indentation_figure(result: Result) -> Figure:
         axes[-1].set_xlabel("time in s")
         for axis in axes[:-1]:
             axis.tick_params(labelbottom=False)
-        figure.suptitle(_title(result), parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        entitle(figure, _title(result))
         if result.status is not Status.CONVERGED:
             words = f"{str(result.status).upper()} at {result.steps[-1].values['time']:.4g} s: {result.reason}"
             figure.supxlabel(words[:150], color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from tactsim.display.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.display.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.errors import UnknownName
 from tactsim.units import format_quantity
 
@@ -43,7 +43,7 @@ def ranges_figure(data: dict[str, Any]) -> Figure:
         _draw_ranges(axis, panel, data["unit"])
         axis.set_xlabel(data["axis"])
         axis.tick_params(axis="y", labelleft=place == 0 or not alike)
-    figure.suptitle(data["title"], parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    entitle(figure, data["title"])
     return figure
 
 
@@ -85,7 +85,7 @@ def curves_figure(data: dict[str, Any]) -> Figure:
         axes[-1].xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[0].legend(fontsize=8)
     axes[-1].set_xlabel(" in ".join(part for part in (data["x_axis"], data["x_unit"]) if part))
-    figure.suptitle(data["title"], parse_math=False, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    entitle(figure, data["title"])
     return figure
 
 

@@ -24,7 +24,7 @@ from tactsim.mesh.tetrahedra import mesh_key
 
 Array = np.ndarray
 ATTEMPTS = 3
-"""Numbers of cells across that are tried, each one more than the last, until the shapes suit."""
+"""Numbers of cells across that are tried, each larger than the last, until the shapes suit."""
 
 
 def graded_block(

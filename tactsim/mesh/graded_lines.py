@@ -102,12 +102,8 @@ def _through(left: Array, center: float, length: float, shares: Array, settings:
 
 def _left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
     """Ways in m that the box leaves to faces ``gaps`` away from the lump; none to a face that a jaw presses and that is near."""
-    return np.where(pressed & _near(gaps, settings), 0.0, (1 - ROOM) * gaps)
-
-
-def _near(gaps: Array, settings: BlockMeshSettings) -> Array:
-    """Whether the box reaches over gaps in m to a face that a jaw presses."""
-    return gaps < NEAR * _edge(settings)
+    near = gaps < NEAR * _edge(settings)
+    return np.where(pressed & near, 0.0, (1 - ROOM) * gaps)
 
 
 def _cells_along(bounds: Array, height: float, wanted: int, finer: int) -> int:

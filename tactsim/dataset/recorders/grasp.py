@@ -89,11 +89,8 @@ class GraspRecorder(Recorder):
         """Histories at the stored times."""
         layout, times = experiment.matrix, self.settings.times
         told = [reading("time_s", "s", "time since first touch", time=times)]
-        given = experiment.loading.control
-        told += [
-            reading(name, unit, words, prescribed=name.startswith((given, f"reaction_{given}")), time=times)
-            for name, (unit, words) in JAWS.items()
-        ]
+        given = "displacement" if experiment.loading.control == "displacement" else "reaction_force"
+        told += [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in JAWS.items()]
         sizes = {"time": times, "jaw": 2, "row": layout.rows, "column": layout.columns}
         taxels = TAXELS | (READ if experiment.readout is not None else {})
         told += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]

@@ -23,6 +23,7 @@ from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, s
 from tactsim import code_identity
 from tactsim.dataset import running
 from tactsim.dataset.checking import check
+from tactsim.dataset.description import redrawn, split_counts
 from tactsim.dataset.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers
@@ -241,6 +242,17 @@ def test_workers_that_always_die_end_the_sweep_and_mark_little(tmp_path: Path) -
     with opened_run(sweep, tmp_path / "s.zarr") as going, pytest.raises(TactsimError, match="30 tasks in a row were lost"):
         going.compute(Inline(sweep, losing=dict.fromkeys(range(300), 999)), lambda tally: None)
     assert (Store.open(tmp_path / "s.zarr").read("status") == 2).sum() <= 30
+
+
+def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
+    text = TEXT.replace("times: 4", "times: 4\n  redraws: 0").replace("[1 mm, 2.5 mm]", "[1 mm, 3.9 mm]")
+    store = Store.open(small_store(tmp_path, text))
+    failed = store.read("status") == 2
+    assert 0 < failed.sum() < 24
+    assert all(str(reason).startswith("no case was accepted in 1 draws") for reason in store.read("reason")[failed])
+    specimens = len(set(store.read("specimen")[failed].tolist()))
+    assert redrawn(store) == (specimens, specimens)
+    assert sum(split_counts(store).values()) == 24 - failed.sum()
 
 
 @pytest.mark.parametrize(
