@@ -30,7 +30,7 @@ frames for --live, one JSON object per line, the description first, here in two 
 lengths in m, forces in N, time in s; [row][column], row 1 nearest the front, column 1 the smallest x;
 null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_upper, saturated_lower.
 """
-WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "no_browser")
+WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
 
 
@@ -41,10 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
     parser.add_argument("--live", metavar="SOURCE", help="frames: a file that grows, - for a pipe, or tcp://127.0.0.1:PORT")
-    parser.add_argument("--reference", metavar="FOLDER", help="result of the same grasp without a lump, for two estimators")
+    parser.add_argument(
+        "--reference", metavar="FOLDER", help="result of the same grasp without a lump, which most estimators need"
+    )
     parser.add_argument(
         "--noise", metavar="FORCE", help="of a reading, such as '2 mN' (default: that of the result, or rounding)"
     )
+    parser.add_argument("--learned", metavar="WEIGHTS.npz", help="offer the learned estimator: the file of tactsim data train")
     parser.add_argument("--port", metavar="N", type=int, help="port of the page; by default any that is free")
     parser.add_argument("--host", metavar="ADDRESS", help="serve on another address than that of this machine alone")
     parser.add_argument("--no-browser", action="store_true", help="print the address only")

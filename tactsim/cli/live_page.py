@@ -37,7 +37,7 @@ def run_page(arguments: argparse.Namespace) -> int:
         raise InputError(f"--noise {arguments.noise}: allowed: more than 0 N")
     live = None if arguments.live is None else FeedPlace.of(arguments.live)
     feed = None if live is None else Feed(live.name)
-    content = opened_content(arguments.result, feed=feed, reference=arguments.reference, noise=noise)
+    content = opened_content(arguments.result, feed=feed, reference=arguments.reference, noise=noise, learned=arguments.learned)
     if not is_loopback(host):
         console.note(f"warning: the page is served on {host}: others on the network who learn its address can see it")
 

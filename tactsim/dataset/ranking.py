@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 from tactsim.dataset.ranking_source import JudgedSamples, Truth
 from tactsim.errors import InputError
@@ -87,23 +88,23 @@ def outcomes(
 def measures(found: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
     """Numbers in SI: rates, errors of lumps that were found, coverage and sizes of the regions, and the score.
 
-    Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval by the bootstrap over the samples; None where no
-    sample tells.
+    Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
+    by the bootstrap over the samples; None where no sample tells.
     """
     lumps = [one for one in found if one.truth.present]
     plain = [one for one in found if not one.truth.present]
     hits = [one for one in lumps if one.found]
     covered = [one.covered for one in hits if one.covered is not None]
     told: dict[str, Any] = {"samples": len(found), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
-    told["detection_rate"] = interval([float(one.found) for one in lumps], np.mean)
-    told["false_alarm_rate"] = interval([float(one.found) for one in plain], np.mean)
+    told["detection_rate"] = share([one.found for one in lumps])
+    told["false_alarm_rate"] = share([one.found for one in plain])
     told["score"] = interval([penalty(one, block_size) for one in found], np.mean)
     for name in ("lateral", "depth", "radius"):
         errors = [abs(float(value)) for one in hits if (value := getattr(one, name)) is not None]
         told[f"{name}_error"] = spread(errors)
         told[f"{name}_error_with_misses"] = _with_misses(lumps, name, block_size)
     told["depth_bias"] = interval([float(one.depth) for one in hits if one.depth is not None], np.median)
-    told["coverage"] = interval([float(value) for value in covered], np.mean)
+    told["coverage"] = share(covered)
     told["region_width"] = interval([one.width for one in hits if one.width is not None], np.median)
     told["region_height"] = interval([one.height for one in hits if one.height is not None], np.median)
     return told
@@ -146,6 +147,15 @@ def interval(values: Iterable[float | None], statistic: Statistic) -> dict[str, 
     drawn = given[np.random.default_rng(1).integers(given.size, size=(DRAWN, given.size))]
     low, high = np.quantile(statistic(drawn, axis=1), [(1 - INTERVAL) / 2, (1 + INTERVAL) / 2])
     return {"value": float(statistic(given, axis=0)), "low": float(low), "high": float(high)}
+
+
+def share(given: Sequence[bool]) -> dict[str, float] | None:
+    """Part of the true ones with its 95 % interval (E. B. Wilson 1927, doi:10.1080/01621459.1927.10502953), which has a width at
+    0 and 1 too; None without values."""
+    if not given:
+        return None
+    low, high = binomtest(sum(map(bool, given)), len(given)).proportion_ci(INTERVAL, method="wilson")
+    return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
 
 
 def binned(found: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:

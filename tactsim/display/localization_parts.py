@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 
 from tactsim.display.grasp_parts import SIDES
 from tactsim.errors import TactsimError
+from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import AnyInclusion
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
@@ -41,6 +42,7 @@ class ViewedGrasp:
     estimates : (n, 3) of estimated centres in m
     radii : (n,) of estimated radii in m, NaN where there is none
     lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
+    regions : by the axis of the view, closed lines (m, 2) in mm around where the estimated centres lie with a probability of 90 %
     """
 
     signal: Array
@@ -53,6 +55,7 @@ class ViewedGrasp:
     estimates: Array
     radii: Array
     lines: Array
+    regions: dict[int, list[Array]]
 
     def borders(self, along: str) -> Array:
         """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels."""
@@ -89,7 +92,14 @@ def viewed(result: Result) -> ViewedGrasp:
         np.array([found["center"] for found in estimates], dtype=float).reshape(-1, 3),
         np.array([np.nan if found["radius"] is None else found["radius"] for found in estimates], dtype=float),
         np.array([found.get("line") or NO_LINE for found in estimates], dtype=float).reshape(-1, 2, 3),
+        {away: [1e3 * np.array(line) for line in lines] for away, lines in _regions(estimates).items()},
     )
+
+
+def _regions(estimates: list[dict[str, Any]]) -> dict[int, list[Any]]:
+    """Outlines in m of all regions, by the axis of the view."""
+    told = [found.get("region") or {} for found in estimates]
+    return {away: [line for region in told for line in region.get(view, ())] for view, away in AWAY.items()}
 
 
 def _middle(details: dict[str, Any], size: Array) -> Array:
@@ -98,9 +108,10 @@ def _middle(details: dict[str, Any], size: Array) -> Array:
 
 
 def _bodies(details: dict[str, Any], size: Array) -> Iterator[Solid]:
-    """Bodies of the inclusions; one whose surface file is not at hand is left out."""
-    adapter = TypeAdapter(AnyInclusion)
-    for shape in details.get("inclusions") or ():
+    """Bodies of the inclusions that are not tissue themselves; one whose surface file is not at hand is left out."""
+    adapter, shapes = TypeAdapter(AnyInclusion), details.get("inclusions") or ()
+    other = details.get("unlike_tissue") or [True] * len(shapes)
+    for shape in (shape for shape, there in zip(shapes, other, strict=True) if there):
         try:
             yield adapter.validate_python(shape).solids(size)[0]
         except (TactsimError, OSError):

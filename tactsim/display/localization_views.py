@@ -30,6 +30,8 @@ JAW = 1.2
 """Thickness in mm with which a jaw is drawn."""
 ROOM = 1.0
 """Around the drawing in mm."""
+REGION_DASHES: Any = (0, (1.5, 1.5))
+"""Of the line around where an estimated centre may lie."""
 INK, GREY = "#30363d", "#57606a"
 ESTIMATE = "#d1242f"
 LETTERS = {"upper": "U", "lower": "L"}
@@ -174,6 +176,9 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         first, second, distance = outline(body, grasp.size, view.away)
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
         axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
+    for line in grasp.regions[view.away]:
+        axis.plot(*line.T, color="w", linewidth=2.4, zorder=7)
+        axis.plot(*line.T, color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, zorder=8)
     for center in 1e3 * grasp.estimates:
         place = center[view.horizontal], center[view.vertical]
         axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
@@ -195,6 +200,9 @@ def _legend(axis: Axes, grasp: ViewedGrasp, result: Result, shown: Shown) -> Non
         handles.append(
             Line2D([], [], color=ESTIMATE, marker="+", markersize=11, markeredgewidth=1.8, linestyle="", label="estimated")
         )
+    if any(grasp.regions.values()):
+        words = "its centre lies in here with a probability of 90 %"
+        handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
     axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)
     axis.text(0.0, 0.68, "\n".join(_findings(grasp, result)), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
 
@@ -212,7 +220,10 @@ def _findings(grasp: ViewedGrasp, result: Result) -> list[str]:
     places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in grasp.estimates]
     told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
     told += [f"Estimated at {place}" for place in places]
+    if "center_deviation" in quantities:
+        deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
+        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        told.append(f"Off by {lateral:.1f} mm in plan, {depth:+.1f} mm in height")
+        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
     return told

@@ -241,6 +241,7 @@ class GraspRecord:
             },
             "block_size": list(experiment.block.size),
             "inclusions": [shape.model_dump(mode="json") for shape in experiment.shapes],
+            "unlike_tissue": [one.unlike(experiment.block.tissue) for one in experiment.inclusions],
             "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in SIDES},
             "jaw_places": self._places(),
             "matrix": experiment.matrix.model_dump(mode="json"),

@@ -59,6 +59,10 @@ class Embedded(FrozenModel):
     lumen: AnyLumenPressure | None = None
     """Pressure in the empty space of a hollow one; null means none."""
 
+    def unlike(self, tissue: Material) -> bool:
+        """Whether it differs from the tissue around it: it is hollow or of another material."""
+        return self.shape.kind == "tube" or self.material != tissue
+
 
 class JawSettings(FrozenModel):
     """A jaw and how it stands."""

@@ -31,7 +31,7 @@ from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import Force, format_quantity
 
 Array = np.ndarray
-KEPT = ("inclusions", "block_size", "jaws", "jaw_places", "matrix")
+KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
 """Details of the grasp that the figures need."""
 Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
@@ -95,7 +95,13 @@ class Localization(Experiment):
             details={name: stored.details[name] for name in KEPT if name in stored.details}
             | {
                 "estimates": [
-                    {"kind": found.kind, "center": list(found.center), "radius": found.radius, "line": found.line}
+                    {
+                        "kind": found.kind,
+                        "center": list(found.center),
+                        "radius": found.radius,
+                        "line": found.line,
+                        "region": None if found.region is None else found.region.shadows(),
+                    }
                     for found in estimate.inclusions
                 ],
                 "estimator": self.estimator.kind,

@@ -50,8 +50,8 @@ def stored_grasp(folder: str) -> Result:
 def readings_of(result: Result, source: Source = "taxel_force", *, noise: float, dead: Array | None = None) -> Readings:
     """What the matrices of a stored grasp read at its last accepted step.
 
-    ``dead`` (jaw, row, column) marks taxels that are not to be trusted; of ``read_force`` a taxel whose voltage left the range
-    of the converter is not trusted either.
+    ``dead`` (jaw, row, column) marks taxels that are not to be trusted; of ``read_force`` a taxel whose voltage is outside the
+    range of the converter at that step is not trusted either.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def readings_of(result: Result, source: Source = "taxel_force", *, noise: float,
     layout = TaxelLayout.model_validate(result.details["matrix"])
     valid = np.ones((2, layout.rows, layout.columns), bool) if dead is None else ~dead
     if source == "read_force":
-        valid = valid & (_taxels(result, "saturated") == 0)
+        valid = valid & ~saturated_taxels(result)[-1]
     closing = result.quantities.get("displacement")
     return Readings(
         _taxels(result, source),
@@ -96,10 +96,19 @@ def with_reference(readings: Readings, reference: Readings) -> Readings:
     return replace(readings, reference=reference.forces, valid=mask)
 
 
+def saturated_taxels(result: Result) -> Array:
+    """Which readings (time or 1, jaw, row, column) of a result are saturated; one whose times are not told is so all the time."""
+    over_time = [f"saturated_{side}_history" for side in SIDES]
+    if all(name in result.quantities for name in over_time):
+        return np.stack([np.asarray(result.quantities[name].value, dtype=float) for name in over_time], axis=1) > 0
+    return _taxels(result, "saturated")[None] > 0
+
+
 def true_inclusions(details: dict[str, Any]) -> tuple[Inclusion, ...]:
-    """The inclusions that a result was computed with."""
-    adapter = TypeAdapter(AnyInclusion)
-    return tuple(adapter.validate_python(shape) for shape in details.get("inclusions") or ())
+    """The inclusions that a result was computed with, but those that are nothing but tissue."""
+    adapter, shapes = TypeAdapter(AnyInclusion), details.get("inclusions") or ()
+    other = details.get("unlike_tissue") or [True] * len(shapes)
+    return tuple(adapter.validate_python(shape) for shape, there in zip(shapes, other, strict=True) if there)
 
 
 def true_places(inclusion: Inclusion, size: Array) -> Array:

@@ -17,7 +17,7 @@ from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
-KEPT = ("inclusions", "block_size", "jaws", "jaw_places", "matrix")
+KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
 """Details of the grasp that figures of the readings need."""
 
 

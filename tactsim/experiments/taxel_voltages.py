@@ -30,6 +30,9 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
             f"saturated_{side}": Quantity(
                 reading.saturated[:, k].mean(axis=0).tolist(), "1", f"part of the samples {of} outside the range of the converter"
             ),
+            f"saturated_{side}_history": Quantity(
+                reading.saturated[:, k].astype(int).tolist(), "1", f"1 for a sample {of} outside that range, else 0, {OVER_TIME}"
+            ),
         }
     error = reading.force - reading.applied
     words = "read minus applied force, over all taxels and times"

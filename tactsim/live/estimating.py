@@ -1,4 +1,4 @@
-"""The choice of estimators, the reference that some of them need, and an estimate in words with its errors."""
+"""The reference that some estimators need, and an estimate in words with its errors."""
 
 from __future__ import annotations
 
@@ -11,33 +11,16 @@ import numpy as np
 from tactsim.errors import InputError
 from tactsim.experiments.localization_source import SAME_CLOSING, away_from_truth, stored_grasp, true_places, with_reference
 from tactsim.experiments.response_store import stored_response
+from tactsim.live.choices import Choice
 from tactsim.live.recorded import result_recordings
 from tactsim.live.scene import Frame, Recording, Scene
-from tactsim.localization.estimators.model_based import ModelBasedEstimator
-from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 
 Array = np.ndarray
-
-
-@dataclass(frozen=True)
-class Choice:
-    """An estimator that the page offers."""
-
-    name: str
-    label: str
-    estimator: Estimator
-    needs_reference: bool
-
-
-CHOICES = (
-    Choice("thesis", "Thesis", ThesisEstimator(), False),
-    Choice("thesis_reference", "Thesis, less a reference", ThesisEstimator(background="reference"), True),
-    Choice("model_based", "Model based", ModelBasedEstimator(), True),
-)
-BY_NAME = {choice.name: choice for choice in CHOICES}
+DIGITS = 3
+"""Decimals in mm of an outline."""
 
 
 @dataclass(eq=False)
@@ -62,6 +45,15 @@ class Reference:
         """
         stored_grasp(folder)
         return cls(folder, result_recordings(folder)["taxel_force"])
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user must know about it."""
+        there = len(self.recording.scene.inclusions or ())
+        if not there:
+            return ()
+        what = "an inclusion" if there == 1 else f"{there} inclusions"
+        return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
 
     def response(self, closing: float | None) -> LumpResponse:
         """The fast forward model of the tissue; computed once, which may take half a minute, and kept.
@@ -141,11 +133,25 @@ def estimated(scene: Scene, readings: Readings, choice: Choice, reference: Refer
         "present": found.present,
         "words": _words(found),
         "errors": _errors(scene, found),
-        "inclusions": [
-            {"center": (1e3 * np.array(one.center)).tolist(), "radius": None if one.radius is None else 1e3 * one.radius}
-            for one in found.inclusions
-        ],
+        "inclusions": [_drawn(one) for one in found.inclusions],
     }
+
+
+def _drawn(one: EstimatedInclusion) -> dict[str, Any]:
+    """What the page draws of an inclusion, in mm: its centre, radius, centre line and, by view, the outlines of its region."""
+    regions = {} if one.region is None else one.region.shadows()
+    return {
+        "center": (1e3 * np.array(one.center)).tolist(),
+        "radius": None if one.radius is None else 1e3 * one.radius,
+        "line": None if one.line is None else (1e3 * np.array(one.line)).tolist(),
+        "region": {view: list(map(_outline, lines)) for view, lines in regions.items()},
+    }
+
+
+def _outline(line: Any) -> list[float]:
+    """A line (n, 2) in m as x, y, x, y, ... in mm."""
+    found: list[float] = (1e3 * np.array(line)).round(DIGITS).ravel().tolist()
+    return found
 
 
 def _words(found: Estimate) -> list[str]:
@@ -181,7 +187,7 @@ def _errors(scene: Scene, found: Estimate) -> list[str]:
     points = np.concatenate([true_places(shape, scene.size) for shape in scene.inclusions])
     _, lateral, depth = away_from_truth(np.array(found.inclusions[0].center), points)
     size = _radius_error(scene, found.inclusions[0])
-    return [f"Off by {1e3 * lateral:.1f} mm in plan and {1e3 * depth:+.1f} mm in height{size}"]
+    return [f"Off by {1e3 * lateral:.1f} mm in plan and {round(1e3 * depth, 1) + 0.0:+.1f} mm in height{size}"]
 
 
 def _radius_error(scene: Scene, one: EstimatedInclusion) -> str:

@@ -26,7 +26,7 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from tactsim.errors import InputError, shown
-from tactsim.live.scene import Frame, Scene, plain_scene
+from tactsim.live.scene import LARGEST_FORCE, Frame, Scene, plain_scene
 from tactsim.localization.readings import JAWS
 from tactsim.sensors.taxel_layout import PositiveLength, TaxelLayout
 from tactsim.units import FrozenModel
@@ -35,8 +35,6 @@ Array = np.ndarray
 SCHEMA = "tactsim/frames/1"
 LONGEST_LINE = 8 * 2**20
 """Bytes of the longest line that is read: two matrices of 256 x 256 numbers take less."""
-LARGEST_FORCE = 1e6
-"""In N; a larger number is not a force on a taxel but a mistaken unit."""
 KNOWN = ("time", "closing", *(f"{name}_{side}" for name in ("taxel_force", "saturated") for side in JAWS))
 
 

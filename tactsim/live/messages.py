@@ -49,7 +49,6 @@ def scene_message(scene: Scene, **more: Any) -> str:
         "jaws": jaws,
         "shape": SHAPE,
         "truth": scene.inclusions is not None,
-        "notes": scene.notes,
         "colours": colour_table(),
         "true_colour": TRUE_COLOUR,
         "estimate_colour": ESTIMATE,

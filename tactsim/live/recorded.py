@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, StorageError, TactsimError, shown
-from tactsim.experiments.localization_source import true_inclusions
-from tactsim.live.scene import Recording, Scene, plain_scene
+from tactsim.experiments.localization_source import saturated_taxels, true_inclusions
+from tactsim.live.scene import LARGEST_FORCE, Recording, Scene, plain_scene
 from tactsim.localization.readings import JAWS
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
@@ -84,7 +84,7 @@ def _recording(result: Result, scene: Scene, name: str) -> Recording:
 
 
 def checked_validity(forces: Array, times: Array, scene: Scene, saturated: Array | None = None) -> Array:
-    """Which of forces (n, jaw, row, column) in N can be trusted: finite, and not ``saturated`` (jaw, row, column).
+    """Which of forces (n, jaw, row, column) in N can be trusted: finite, no mistaken unit, and not ``saturated`` (n or 1, ...).
 
     Raises
     ------
@@ -96,14 +96,14 @@ def checked_validity(forces: Array, times: Array, scene: Scene, saturated: Array
         raise InputError(f"the forces of the taxels have the shape {forces.shape}; needed: (step, jaw, row, column) = {needed}")
     if not (np.isfinite(times).all() and (np.diff(times) > 0).all()):
         raise InputError(f"the times {shown(times.tolist())} do not increase")
-    valid = np.isfinite(forces)
+    valid = np.isfinite(forces) & (np.abs(np.nan_to_num(forces)) <= LARGEST_FORCE)
     return valid if saturated is None else valid & ~saturated
 
 
 def _saturated(result: Result, name: str) -> Array | None:
     if name != "read_force" or "saturated_upper" not in result.quantities:
         return None
-    return np.array([result.quantities[f"saturated_{side}"].value for side in JAWS], dtype=float) > 0
+    return saturated_taxels(result)
 
 
 def _closings(result: Result, times: Array) -> Array | None:

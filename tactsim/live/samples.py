@@ -129,7 +129,7 @@ class Samples:
         title = f"{self.data.attrs.get('title') or self.place.name}: sample {number} ({told['split']})"
         notes = () if status == DONE else (f"sample {number} is {told['status']}: {told['reason'] or 'it was not computed'}",)
         experiment = self._experiment(number, status)
-        there = [one for one in experiment.inclusions if one.shape.kind == "tube" or one.material != experiment.block.tissue]
+        there = [one for one in experiment.inclusions if one.unlike(experiment.block.tissue)]
         size, offsets = np.array(experiment.block.size), (experiment.upper.offset, experiment.lower.offset)
         places = np.array([[*(size[:2] / 2 + offset), z] for offset, z in zip(offsets, (size[2], 0.0), strict=True)])
         jaws = {side: experiment.jaw(side) for side in JAWS}

@@ -16,6 +16,8 @@ from tactsim.mesh.solid import Inclusion
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
+LARGEST_FORCE = 1e6
+"""In N; a larger number is not a force on a taxel but a mistaken unit."""
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
 

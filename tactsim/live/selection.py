@@ -8,8 +8,9 @@ import numpy as np
 
 from tactsim.dataset.variable import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName, shown
+from tactsim.live.choices import Choice
 from tactsim.live.content import LIVE, Content
-from tactsim.live.estimating import BY_NAME, CHOICES, Choice, frame_readings, shown_signal
+from tactsim.live.estimating import frame_readings, shown_signal
 from tactsim.live.recorded import SOURCES
 from tactsim.live.samples import ANY
 from tactsim.live.scene import Recording
@@ -28,7 +29,7 @@ class Selection:
         self._recordings = content.recordings
         self._sample: int | None = None
         self._fault = ""
-        self.choice: Choice = CHOICES[0]
+        self.choice: Choice = content.choices[0]
         self.source = LIVE if content.feed is not None else next(iter(content.recordings), next(iter(SOURCES)))
         if content.samples is not None:
             self._open_sample(content.samples.near(0, 0, status="done"))
@@ -69,9 +70,10 @@ class Selection:
         return True
 
     def _estimator(self, name: str) -> Choice:
-        if name not in BY_NAME:
-            raise UnknownName("estimator", name[:40], BY_NAME)
-        return BY_NAME[name]
+        known = self._content.by_name
+        if name not in known:
+            raise UnknownName("estimator", name[:40], known)
+        return known[name]
 
     def _narrow(self, split: str, status: str) -> None:
         assert self._content.samples is not None
@@ -113,7 +115,7 @@ class Selection:
             "is": "offer",
             "estimators": [
                 {"name": one.name, "label": one.label, "enabled": reference is not None or not one.needs_reference}
-                for one in CHOICES
+                for one in self._content.choices
             ],
             "samples": None if samples is None else {"count": samples.count, "splits": samples.splits, "status": STATUS},
             **self.state(),

@@ -49,7 +49,7 @@ class Session:
         self._scales = Scales()
         self._scene: Scene | None = None
         self._shown: Frame | None = None
-        self._thinking = Thinking(content, self._send_text)
+        self._thinking = Thinking(self._send_text)
 
     async def run(self) -> None:
         """Sends the scene and then frames, until it is cancelled."""
@@ -155,7 +155,10 @@ class Session:
         if not self._chosen.live and recording is not None:
             self._playback.begin_anew(recording)
         times = [] if self._chosen.live or recording is None else recording.times.tolist()
-        await self._send_text(scene_message(scene, times=times, **self._chosen.state()))
+        reference = self._content.reference
+        notes = [*scene.notes, *(() if reference is None else reference.notes)]
+        told = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
+        await self._send_text(scene_message(scene, **told))
         self._thinking.shape(scene, shapes_message)
 
     async def _send_frame(self, scene: Scene, frame: Frame, recording: Recording | None) -> None:

@@ -10,12 +10,11 @@ from contourpy import contour_generator
 from tactsim.display.localization_parts import outline
 from tactsim.errors import TactsimError
 from tactsim.live.scene import Scene
+from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.solid import Solid
 
 Array = np.ndarray
-AWAY = {"front": 1, "left": 0, "top": 2}
-"""Axis along which each view looks."""
 ACROSS = 14
 """Triangles along the shortest extent of a body."""
 DIGITS = 4

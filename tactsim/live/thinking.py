@@ -7,8 +7,8 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from tactsim.errors import TactsimError
-from tactsim.live.content import Content
-from tactsim.live.estimating import Choice, Reference, estimated
+from tactsim.live.choices import Choice
+from tactsim.live.estimating import Reference, estimated
 from tactsim.live.messages import plain_json
 from tactsim.live.scene import Scene
 from tactsim.localization.interface import Readings
@@ -55,7 +55,7 @@ class Latest:
 class Thinking:
     """Estimates and shapes of one page."""
 
-    def __init__(self, content: Content, send: Send):
+    def __init__(self, send: Send):
         busy = plain_json({"is": "estimate", "busy": True})
         self._estimates, self._shapes = Latest(send, waiting=busy), Latest(send)
 

@@ -7,13 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from contourpy import contour_generator
 from scipy.stats import chi2
 
 from tactsim.errors import InvalidQuantity
+from tactsim.localization.views import AWAY
 
 Array = np.ndarray
 LEVEL = 0.9
 """Probability of a region where none is named."""
+CORNERS = 48
+"""Of the polygon that stands for an ellipse."""
 
 
 class Region(ABC):
@@ -26,6 +30,14 @@ class Region(ABC):
     @abstractmethod
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
         """Width in plan, the diameter of a circle of the same area, and height of the region, both in m."""
+
+    @abstractmethod
+    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
+        """Outline of the region seen along the axis ``away``: closed lines (n, 2) in m along the other two axes."""
+
+    def shadows(self) -> dict[str, list[list[list[float]]]]:
+        """The outline in every view, as plain numbers in m."""
+        return {view: [line.tolist() for line in self.shadow(away)] for view, away in AWAY.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +97,16 @@ class CellRegion(Region):
         area = float(chosen.any(axis=2).sum() * self.cell[0] * self.cell[1])
         return 2 * float(np.sqrt(area / np.pi)), float(chosen.any(axis=(0, 1)).sum() * self.cell[2])
 
+    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
+        """Half-way between the middles of cells inside and outside; cells at the rim of the grid are whole."""
+        chosen = np.pad(self.inside(probability).any(axis=away).astype(float), 1)
+        across = (k for k in range(3) if k != away)
+        first, second = (np.concatenate([axis[:1] - step, axis, axis[-1:] + step]) for axis, step in map(self._axis, across))
+        return [np.asarray(line) for line in contour_generator(first, second, chosen.T).lines(0.5)]
+
+    def _axis(self, k: int) -> tuple[Array, float]:
+        return np.asarray(self.axes[k]), float(self.cell[k])
+
 
 @dataclass(frozen=True, eq=False)
 class GaussianRegion(Region):
@@ -119,6 +141,14 @@ class GaussianRegion(Region):
         quantile = self._quantile(probability)
         plan = float(np.linalg.det(np.asarray(self.covariance)[:2, :2]))
         return 2 * float(np.sqrt(quantile) * plan**0.25), 2 * float(np.sqrt(quantile * np.asarray(self.covariance)[2, 2]))
+
+    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
+        """An ellipse, as a polygon."""
+        across = [k for k in range(3) if k != away]
+        root = np.linalg.cholesky(np.asarray(self.covariance)[np.ix_(across, across)])
+        angles = np.linspace(0, 2 * np.pi, CORNERS + 1)
+        circle = np.sqrt(self._quantile(probability)) * np.stack([np.cos(angles), np.sin(angles)])
+        return [np.asarray(self.mean)[across] + (root @ circle).T]
 
     def _quantile(self, probability: float) -> float:
         check_probability(probability)

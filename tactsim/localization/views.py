@@ -15,6 +15,8 @@ from tactsim.localization.section_image import corrected_profile, image_between
 Join = Literal["shared_once", "stacked", "added"]
 """How the pictures of neighbouring pairs of rows become one (errata E24)."""
 
+AWAY = {"front": 1, "left": 0, "top": 2}
+"""Axis along which each view looks."""
 SHAPE = (60, 100)
 """Rows and columns of a picture: thesis, Fig. 3e of Appendix .2."""
 

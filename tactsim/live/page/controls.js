@@ -60,9 +60,12 @@ export class Controls {
     get("sample-words").textContent = `${number === null ? "none" : `${told.split}, ${told.status}`}; ${chosen} to choose from`;
   }
 
-  times(times) {
+  times(times, live) {
     this.steps = times;
-    get("time").hidden = times.length < 2;
+    get("time").hidden = times.length < 2 && !live;
+    for (const id of ["play", "slider"]) get(id).hidden = times.length < 2;
+    get("keys").textContent = (live ? "" : "space plays, ← → step, ") + "digits choose the estimator";
+    get("now").textContent = "";
     get("slider").max = Math.max(0, times.length - 1);
   }
 
@@ -92,7 +95,7 @@ export class Controls {
       const wanted = Math.min(this.steps.length - 1, Math.max(0, this.step + steps[event.key]));
       this.send({ do: "show", step: wanted });
       this.step = wanted;
-    } else if ("123".includes(event.key) && !typing) {
+    } else if (/^[1-9]$/.test(event.key) && !typing) {
       const input = get("estimators").querySelectorAll("input")[Number(event.key) - 1];
       if (!input || input.disabled || input.checked) return;
       input.checked = true;

@@ -11,7 +11,10 @@ const alerts = {};
 let scene = null, frame = null, waiting = null, received = 0, estimate = [], inclusions = [], space = null, drawnTimes = [];
 let socket = null;
 
-const send = (command) => { if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(command)); };
+const send = (command) => {
+  if (command.do !== "drawn") alarm("command", []);      // what was wrong with the last command has been read
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(command));
+};
 const controls = new Controls(send, () => ask(), (way) => space?.turn(way));
 const TABLE_PERIOD = 100;                 // ms between two numbers in a cell: faster ones cannot be read
 let asked = false, later = 0, numbersAt = -Infinity;
@@ -49,10 +52,10 @@ const take = {
   scene(message) {
     scene = message; frame = null; waiting = null; estimate = []; inclusions = [];
     document.title = `${scene.title} – tactsim`;
-    get("title").textContent = scene.title;
+    get("title").textContent = get("title").title = scene.title;
     for (const part of [...views, taxels]) part.setScene(scene);
     space?.setScene(scene);
-    controls.times(scene.times);
+    controls.times(scene.times, scene.live);
     controls.state(message);
     alarm("selection", [message.selection_fault]);
     alarm("scene", scene.notes);
@@ -61,7 +64,7 @@ const take = {
   },
   shapes(message) { inclusions = message.inclusions; space?.setInclusions(inclusions); legend(); ask(); },
   estimate(message) {
-    const place = get("estimate");
+    const marked = estimate.some(hasRegion), place = get("estimate");
     if (message.busy) return place.replaceChildren(paragraph("computing …", "quiet"));
     estimate = message.inclusions;
     const lines = [...message.words.map((words) => paragraph(words)), ...message.errors.map((words) => paragraph(words, "errors"))];
@@ -71,6 +74,7 @@ const take = {
     place.dataset.words = words;
     alarm("estimate", [message.fault]);
     space?.setEstimate(estimate);
+    if (marked !== estimate.some(hasRegion)) legend();
     ask();
   },
   feed(message) {
@@ -151,10 +155,13 @@ setInterval(() => {
   get("rate").textContent = drawnTimes.length > 1 ? `${drawnTimes.length} frames/s` : "";
 }, 500);
 
+const hasRegion = (one) => Object.keys(one.region).length > 0;
+
 function legend() {
   const kinds = [["line", "var(--quiet)", "4 3", "undeformed block; taxels outlined"]];
   if (inclusions.length) kinds.push(["line", scene.true_colour, "5 3", `true: ${inclusions.map((one) => one.name).join(", ")}`]);
   kinds.push(["cross", scene.estimate_colour, "", "estimated"]);
+  if (estimate.some(hasRegion)) kinds.push(["line", scene.estimate_colour, "2 2", "its centre lies in here with 90 %"]);
   get("legend").replaceChildren(...kinds.map(([what, colour, dash, words]) => {
     const item = document.createElement("li"), svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     const path = document.createElementNS("http://www.w3.org/2000/svg", "path");

@@ -79,7 +79,8 @@ export class Space {
       const cross = new THREE.BufferGeometry();
       cross.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
       group.add(new THREE.LineSegments(cross, lines));
-      if (one.radius) {
+      if (one.line) group.add(tube(one, lines));
+      else if (one.radius) {
         const ball = new THREE.WireframeGeometry(new THREE.SphereGeometry(one.radius, 14, 9));
         group.add(new THREE.LineSegments(ball, lines));
       }
@@ -193,6 +194,16 @@ function shaded(box) {
     shades.push(shade, shade, shade);
   }
   return box.setAttribute("color", new THREE.Float32BufferAttribute(shades, 3));
+}
+
+// A straight tube around its centre line, about the centre of the inclusion.
+function tube(one, lines) {
+  const [begin, end] = one.line.map((point) => new THREE.Vector3(...point)), along = end.clone().sub(begin);
+  const shape = new THREE.CylinderGeometry(one.radius, one.radius, along.length(), 14, 6, true);
+  const drawn = new THREE.LineSegments(new THREE.WireframeGeometry(shape), lines);
+  drawn.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+  drawn.position.copy(begin).add(end).multiplyScalar(0.5).sub(new THREE.Vector3(...one.center));
+  return drawn;
 }
 
 function empty(group) {

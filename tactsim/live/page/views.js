@@ -168,10 +168,7 @@ export class View {
     if (!this.outlinePath || this.outlined !== inclusions) {
       this.outlined = inclusions;
       this.outlinePath = new Path2D();
-      for (const line of inclusions.flatMap((one) => one.outlines[this.kind] || [])) {
-        this.outlinePath.moveTo(...this.#at(line[0], line[1]));
-        for (let k = 2; k < line.length; k += 2) this.outlinePath.lineTo(...this.#at(line[k], line[k + 1]));
-      }
+      for (const line of inclusions.flatMap((one) => one.outlines[this.kind] || [])) this.#trace(this.outlinePath, line);
     }
     for (const [colour, width, dash] of [["#ffffff", 3, []], [this.scene.true_colour, 1.8, [5, 3]]]) {
       pen.strokeStyle = colour; pen.lineWidth = width; pen.setLineDash(dash);
@@ -185,9 +182,35 @@ export class View {
     for (const [colour, width] of [["#ffffff", 4], [this.scene.estimate_colour, 2]]) {
       pen.strokeStyle = colour; pen.lineWidth = width; pen.beginPath();
       pen.moveTo(x - arm, y); pen.lineTo(x + arm, y); pen.moveTo(x, y - arm); pen.lineTo(x, y + arm);
-      if (one.radius) { pen.moveTo(x + this.scale * one.radius, y); pen.arc(x, y, this.scale * one.radius, 0, 2 * Math.PI); }
+      if (one.line) this.#traceTube(pen, one);
+      else if (one.radius) this.#traceCircle(pen, x, y, this.scale * one.radius);
       pen.stroke();
     }
+    for (const [colour, width, dash] of [["#ffffff", 2.6, []], [this.scene.estimate_colour, 1.3, [2, 2]]]) {
+      pen.strokeStyle = colour; pen.lineWidth = width; pen.setLineDash(dash); pen.beginPath();
+      for (const line of one.region[this.kind] || []) this.#trace(pen, line);
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+  }
+
+  #traceCircle(pen, x, y, radius) { pen.moveTo(x + radius, y); pen.arc(x, y, radius, 0, 2 * Math.PI); }
+
+  // Both sides of a straight tube, or its circle where the view looks along it.
+  #traceTube(pen, one) {
+    const ends = one.line.map((end) => this.#at(end[this.across], end[this.up])), radius = this.scale * one.radius;
+    const [[x0, y0], [x1, y1]] = ends, long = Math.hypot(x1 - x0, y1 - y0);
+    if (long < radius / 10) return this.#traceCircle(pen, x0, y0, radius);
+    const aside = [(-(y1 - y0) * radius) / long, ((x1 - x0) * radius) / long];
+    for (const side of [-1, 1]) {
+      pen.moveTo(x0 + side * aside[0], y0 + side * aside[1]);
+      pen.lineTo(x1 + side * aside[0], y1 + side * aside[1]);
+    }
+  }
+
+  #trace(path, line) {
+    path.moveTo(...this.#at(line[0], line[1]));
+    for (let k = 2; k < line.length; k += 2) path.lineTo(...this.#at(line[k], line[k + 1]));
   }
 
   #drawTicks(pen, box) {

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from made_grasps import SIZE, made_samples, made_store, plain_result, response
+from scipy.stats import norm
 
 from tactsim.cli import main
-from tactsim.dataset.ranking import Outcome, binned, interval, measures, outcome, penalty, ranking
+from tactsim.dataset.ranking import Outcome, binned, interval, measures, outcome, penalty, ranking, share
 from tactsim.dataset.ranking_report import against_baseline, as_text, record
 from tactsim.dataset.ranking_source import Truth
 from tactsim.errors import InputError
@@ -82,6 +83,16 @@ def test_an_interval_holds_its_value_and_shrinks() -> None:
     assert few["low"] < few["value"] < few["high"]
     assert many["high"] - many["low"] == pytest.approx(4 * 0.98 / np.sqrt(2000), rel=0.15)
     assert many["high"] - many["low"] < few["high"] - few["low"]
+
+
+def test_the_interval_of_a_rate_has_a_width_at_its_ends():
+    all_found = share([True] * 20)
+    assert all_found is not None
+    assert all_found["value"] == 1.0
+    z = norm.ppf(0.975)
+    assert all_found["low"] == pytest.approx(20 / (20 + z**2), rel=1e-9)  # Wilson's by hand for 20 of 20
+    assert all_found["low"] != pytest.approx(1.0, abs=0.1), "the bootstrap's would have no width"
+    assert share([]) is None
 
 
 def test_bins_hold_every_lump_once() -> None:

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from live_pages import grasp_folder, made_up_store, taxel_forces
+from live_pages import SIDES, grasp_folder, made_up_grasp, made_up_store, taxel_forces
 
 from tactsim.errors import InputError, StorageError
+from tactsim.experiments.localization_source import readings_of
+from tactsim.live.choices import CHOICES, stored_choice
 from tactsim.live.content import opened_content
-from tactsim.live.estimating import BY_NAME, Reference, estimated, frame_readings, shown_signal
+from tactsim.live.estimating import Reference, estimated, frame_readings, shown_signal
 from tactsim.live.messages import Scales, frame_message
 from tactsim.live.recorded import result_recordings
 from tactsim.live.samples import Samples
 from tactsim.live.thinking import estimate_message
+from tactsim.results import Quantity, write_result
+
+BY_NAME = {choice.name: choice for choice in CHOICES}
 
 
 def test_frames_between_the_steps_are_linear_and_the_jaws_follow(tmp_path: Path) -> None:
@@ -33,6 +39,68 @@ def test_a_taxel_that_is_null_in_the_result_is_dead(tmp_path: Path) -> None:
     forces[0, 1, 2, 0] = np.nan
     recording = result_recordings(grasp_folder(tmp_path / "a", forces))["taxel_force"]
     assert recording.frame(0).notes() == ("dead or saturated taxels, interpolated from their neighbours: L3,1",)
+
+
+def test_a_force_in_a_mistaken_unit_is_not_trusted(tmp_path: Path) -> None:
+    forces = taxel_forces(1)
+    forces[0, 0, 1, 1] = 1e9
+    recording = result_recordings(grasp_folder(tmp_path / "a", forces))["taxel_force"]
+    assert recording.frame(0).notes() == ("dead or saturated taxels, interpolated from their neighbours: U2,2",)
+
+
+def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
+    result = made_up_grasp()
+    flags = np.zeros((4, 2, 3, 3), int)
+    flags[1:3, 0, 1, 1] = 1
+    read = {}
+    for jaw, side in enumerate(SIDES):
+        for name in (f"taxel_force_{side}", f"taxel_force_{side}_history"):
+            read[name.replace("taxel", "read")] = result.quantities[name]
+        read[f"saturated_{side}"] = Quantity(flags[:, jaw].mean(axis=0).tolist(), "1", "")
+        read[f"saturated_{side}_history"] = Quantity(flags[:, jaw].tolist(), "1", "")
+    read["readout_time"] = result.quantities["time_history"]
+    found = replace(result, quantities=result.quantities | read)
+    write_result(found, tmp_path / "a", case_id="abc", provenance={})
+    valid = result_recordings(tmp_path / "a")["read_force"].valid
+    assert np.array_equal(~valid, flags > 0)
+    assert readings_of(found, "read_force", noise=0.0).valid is None, "at the end it reads again"
+    old = {name: value for name, value in found.quantities.items() if not name.startswith("saturated") or "history" not in name}
+    before = readings_of(replace(found, quantities=old), "read_force", noise=0.0).valid
+    assert before is not None, "a result of before tells that some sample was saturated, not which"
+    assert np.argwhere(~before).tolist() == [[0, 1, 1]]
+
+
+def test_an_inclusion_of_the_tissue_itself_is_no_inclusion(tmp_path: Path) -> None:
+    folder = change(grasp_folder(tmp_path / "a"), ("details", "unlike_tissue"), [False])
+    assert result_recordings(folder)["taxel_force"].scene.inclusions == ()
+    assert Reference.open(str(folder)).notes == ()
+    (note,) = Reference.open(str(grasp_folder(tmp_path / "b"))).notes
+    assert note.startswith("the reference holds an inclusion of another material")
+
+
+def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None:
+    assert stored_choice(grasp_folder(tmp_path / "a")) is None
+    region = {"front": [], "left": [], "top": []}
+    tube = {"kind": "tube", "center": [0.02, 0.02, 0.01], "radius": 3e-3, "line": [[0, 0.02, 0.01], [0.04, 0.02, 0.01]]}
+    ball = {"kind": "sphere", "center": [0.023, 0.017, 0.012], "radius": 4e-3, "line": None, "region": region}
+    folder = change(grasp_folder(tmp_path / "b"), ("details", "estimates"), [ball, tube])
+    deviations = {"center_deviation": [1e-3, 2e-3, 3e-3], "radius_deviation": 4e-4, "contrast_deviation": 0.1}
+    for name, value in deviations.items():
+        change(folder, ("quantities", name), {"value": value, "unit": "m", "description": ""})
+    content = opened_content(folder)
+    choice, recording = content.choices[0], content.recordings["taxel_force"]
+    assert choice.name == "stored"
+    found = estimated(recording.scene, frame_readings(recording.scene, recording.at(1.0), choice, None), choice, None)
+    assert found["words"][1:] == [
+        "Sphere at (23.0, 17.0, 12.0) mm, radius 4.0 mm",
+        "± (1, 2, 3) mm, radius ± 0.4 mm (one standard deviation)",
+        "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm",
+    ]
+    assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm"]
+    assert found["inclusions"][1]["line"] == [[0, 20, 10], [40, 20, 10]]
+    change(folder, ("details", "estimates"), [{"kind": "sphere"}])
+    with pytest.raises(StorageError, match="not a complete result of a localization"):
+        opened_content(folder)
 
 
 def change(folder: Path, place: tuple[str, ...], value: object) -> Path:

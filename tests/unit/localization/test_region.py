@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_normal
+from scipy.stats import chi2, multivariate_normal
 
 from tactsim.errors import InvalidQuantity
 from tactsim.localization.region import CellRegion, GaussianRegion
@@ -45,6 +45,28 @@ def test_a_sure_region_is_one_cell():
     assert region.inside().sum() == 1
     assert region.contains([3.9e-3, 4.1e-3, 5.5e-3])
     assert not region.contains([4.1e-3, 4.1e-3, 5.5e-3])
+
+
+@pytest.mark.parametrize("away", [0, 1, 2])
+def test_shadows_of_cells_and_ellipsoid_have_the_same_extent(away):
+    exact, found = (region.shadow(away) for region in (GaussianRegion(MEAN, COVARIANCE), cells()))
+    assert len(exact) == len(found) == 1
+    for line in (*exact, *found):
+        np.testing.assert_allclose(line[0], line[-1], atol=1e-12)  # closed
+    widths = np.ptp(exact[0], axis=0)
+    across = [k for k in range(3) if k != away]
+    np.testing.assert_allclose(widths, 2 * np.sqrt(chi2.ppf(0.9, 3)) * np.sqrt(np.diag(COVARIANCE))[across], rtol=1e-2)
+    np.testing.assert_allclose(np.ptp(found[0], axis=0), widths, atol=1.01e-3)  # cells of 1 mm
+    np.testing.assert_allclose(found[0].mean(axis=0), MEAN[across], atol=0.5e-3)
+    assert not np.allclose(np.ptp(found[0], axis=0), 0.7 * widths, atol=1.01e-3)
+
+
+def test_the_shadow_of_a_region_at_the_rim_of_the_grid_is_closed():
+    weights = np.zeros((20, 20, 10))
+    weights[0, 0, 0] = 1.0
+    (line,) = CellRegion(AXES, weights).shadow(2)
+    np.testing.assert_allclose(line[0], line[-1])
+    assert CellRegion(AXES, weights).shadows().keys() == {"front", "left", "top"}
 
 
 def test_what_is_no_region_is_refused():
