@@ -17,6 +17,7 @@ from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.smoothing import smoothed
 from tactsim.mesh.solid import FACES, Inclusion
+from tactsim.mesh.wedges import side_patches, without_wedges
 
 Array = np.ndarray
 LEAST_CURVATURE = 0.2
@@ -47,7 +48,7 @@ def fitted(
     corners, simplices, labels : (n, 3) in m, (E, 4), (E,) as in ``labelling``
     started : what ``time.perf_counter`` gave when meshing began
     slide : whether nodes may move along curved surfaces for better shapes
-    smooth : whether nodes may move for better shapes at all
+    smooth : whether nodes may move for better shapes at all, and edges of the block that roll onto a jaw get two elements
 
     Raises
     ------
@@ -58,6 +59,8 @@ def fitted(
     walls = interfaces(corners, simplices, labels, surfaces)
     corners, simplices, labels, walls = _kept(corners, simplices, labels, walls)
     corners, simplices, labels = _split_between(corners, simplices, labels, walls)
+    if smooth:
+        corners, simplices, labels, walls = without_wedges(corners, simplices, labels, walls)
     constraints = walls.constraints(len(corners), surfaces)
     corners = constraints.restored(corners)
     if slide:
@@ -185,12 +188,7 @@ def _kept(corners: Array, simplices: Array, labels: Array, walls: Interfaces) ->
 
 def _split_between(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array]:
     """Four tetrahedra in place of each that has two sides on one curved patch, where its Jacobian would vanish."""
-    table = {tuple(triangle): int(patch) for triangle, patch in zip(walls.triangles.tolist(), walls.patch, strict=True)}
-    sides = np.sort(np.stack([np.delete(simplices, k, axis=1) for k in range(4)], axis=1), axis=2)
-    touching = np.isin(simplices, walls.triangles).sum(axis=1) >= 3
-    patches = np.full((len(simplices), 4), -1)
-    for element in np.flatnonzero(touching):
-        patches[element] = [table.get(tuple(side), -1) for side in sides[element].tolist()]
+    patches = side_patches(simplices, walls)
     curved_side = np.sort(np.where(patches >= len(FACES), patches, -1), axis=1)
     between = ((np.diff(curved_side, axis=1) == 0) & (curved_side[:, 1:] >= 0)).any(axis=1)
     parents = simplices[between]
