@@ -26,6 +26,7 @@ from tactsim.interfaces import Experiment, Progress
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
+from tactsim.localization.readings import named_taxels, silent_taxels
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import Force, format_quantity
@@ -136,6 +137,14 @@ class Localization(Experiment):
             found.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
         if readings.valid is not None:
             found.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
+        silent = silent_taxels(readings.filled)
+        if silent.any():
+            told = f"exactly zero although all around press, so perhaps dead, and used as it is: {named_taxels(silent)}"
+            found.append(f"{told}; name dead taxels by the key dead")
+        if self.reference is not None and true_inclusions(stored_grasp(self.reference).details):
+            found.append(
+                "the reference holds an inclusion of another material than the tissue: only what differs from it is found"
+            )
         return found
 
 

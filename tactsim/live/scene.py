@@ -11,15 +11,13 @@ import numpy as np
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp_setup import JawSettings
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
-from tactsim.localization.readings import JAWS, taxel_name
+from tactsim.localization.readings import JAWS, named_taxels, silent_taxels
 from tactsim.mesh.solid import Inclusion
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
 LARGEST_FORCE = 1e6
 """In N; a larger number is not a force on a taxel but a mistaken unit."""
-MOST_NAMED = 6
-"""Taxels that a message names before it counts the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +80,14 @@ class Frame:
 
     def notes(self) -> tuple[str, ...]:
         """What the user must know about this frame: taxels that are not to be trusted."""
-        bad = [taxel_name(*map(int, place)).split(" ")[0] for place in np.argwhere(~self.valid)]
-        if not bad:
-            return ()
-        named = ", ".join(bad[:MOST_NAMED]) + (f" and {len(bad) - MOST_NAMED} more" if len(bad) > MOST_NAMED else "")
         if any(not good.any() for good in self.valid):
-            return (f"no taxel of a jaw gives a number ({named}): there is nothing to draw",)
-        return (f"dead or saturated taxels, interpolated from their neighbours: {named}",)
+            return (f"no taxel of a jaw gives a number ({named_taxels(~self.valid)}): there is nothing to draw",)
+        told = []
+        if not self.valid.all():
+            told.append(f"dead or saturated taxels, interpolated from their neighbours: {named_taxels(~self.valid)}")
+        if (silent := silent_taxels(self.forces) & self.valid).any():
+            told.append(f"exactly zero although all around press, so perhaps dead, and used as it is: {named_taxels(silent)}")
+        return tuple(told)
 
     def readings(self, scene: Scene) -> Readings:
         """The frame as estimators take it.

@@ -10,12 +10,27 @@ Array = np.ndarray
 
 JAWS = ("upper", "lower")
 """Order of the first axis of every array of readings."""
+MOST_NAMED = 6
+"""Taxels that a message names before it counts the rest."""
 
 
 def taxel_name(jaw: int, row: int, column: int) -> str:
     """How messages call a taxel given by its indices, as in thesis Fig. 6.3: "U2,1 (upper jaw, row 2, column 1)"."""
     side = JAWS[jaw]
     return f"{side[0].upper()}{row + 1},{column + 1} ({side} jaw, row {row + 1}, column {column + 1})"
+
+
+def silent_taxels(readings: Array) -> Array:
+    """Which readings (jaw, row, column) are exactly zero although every neighbour in row and column presses: it may be dead."""
+    padded = np.pad(np.asarray(readings, dtype=float), ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
+    beside = (padded[:, :-2, 1:-1], padded[:, 2:, 1:-1], padded[:, 1:-1, :-2], padded[:, 1:-1, 2:])
+    return (np.asarray(readings) == 0) & np.logical_and.reduce([part > 0 for part in beside]) & (np.prod(readings.shape[1:]) > 1)
+
+
+def named_taxels(chosen: Array) -> str:
+    """Those of a mask (jaw, row, column), such as "U2,1, L3,3 and 4 more"."""
+    names = [taxel_name(*map(int, place)).split(" ")[0] for place in np.argwhere(chosen)]
+    return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
 def checked_readings(readings: Array, valid: Array | None = None) -> Array:

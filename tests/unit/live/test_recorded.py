@@ -48,6 +48,16 @@ def test_a_force_in_a_mistaken_unit_is_not_trusted(tmp_path: Path) -> None:
     assert recording.frame(0).notes() == ("dead or saturated taxels, interpolated from their neighbours: U2,2",)
 
 
+def test_a_taxel_that_reads_exactly_zero_among_others_that_press_is_told(tmp_path: Path) -> None:
+    forces = taxel_forces(1)
+    forces[0, 1, 0, 0] = 0.0
+    (note,) = result_recordings(grasp_folder(tmp_path / "a", forces))["taxel_force"].frame(0).notes()
+    assert note.startswith("exactly zero although all around press")
+    assert note.endswith(": L1,1")
+    forces[0, 1, 0, 1] = 0.0  # with a neighbour that does not press either, it may stand beside the tissue
+    assert result_recordings(grasp_folder(tmp_path / "b", forces))["taxel_force"].frame(0).notes() == ()
+
+
 def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
     result = made_up_grasp()
     flags = np.zeros((4, 2, 3, 3), int)
