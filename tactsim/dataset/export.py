@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.dataset.card import CARD
 from tactsim.dataset.loading import load, split_names
 from tactsim.dataset.store import Store
+from tactsim.dataset.variable import FAILED
 from tactsim.errors import InputError, StorageError
 from tactsim.results.storage import naming
 
@@ -30,7 +32,8 @@ META = "dataset.json"
 def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str] | None = None) -> int:
     """Writes the samples that are done, of all splits or some, and returns how many.
 
-    A place that ends in ``.h5`` or ``.hdf5`` becomes a file, any other a folder; nothing that exists is replaced.
+    A place that ends in ``.h5`` or ``.hdf5`` becomes a file, any other a folder; nothing that exists is replaced. The card of the
+    store goes with it (README.md, or ``card``), and the numbers of the samples that failed, with their reasons (``failed``).
 
     Raises
     ------
@@ -45,7 +48,6 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
     data = load(store, split=split)
     if not data.sizes["sample"]:
         raise InputError(f"{store} has no sample that is done{f' in {split}' if split else ''}")
-    told = Store.open(store).attributes
     waiting = target.with_name(f".{target.name}.partial")
     with naming(target):
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -54,11 +56,21 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
             if target.suffix in (".h5", ".hdf5"):
                 _hdf5_apart(store, split, waiting)
             else:
-                _shards(data, told, waiting)
+                _shards(data, Store.open(store).attributes | {"failed": _failed(store, split)}, waiting)
+                if (card := Path(store) / CARD).is_file():
+                    shutil.copyfile(card, waiting / CARD)
             waiting.rename(target)
         finally:
             _removed(waiting)
     return int(data.sizes["sample"])
+
+
+def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[str, Any]]:
+    """Number and reason of every sample that failed."""
+    whole = load(store, split=split, failed=True)
+    failed = whole.isel(sample=whole["status"].values == FAILED)
+    pairs = zip(failed["sample"].values, failed["reason"].values, strict=True)
+    return [{"sample": int(sample), "reason": str(reason)} for sample, reason in pairs]
 
 
 def _removed(waiting: Path) -> None:
@@ -82,12 +94,16 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, target: Pa
         raise StorageError(f"cannot write {target.name}: {'no room left on the disk' if full else last[:200]}")
 
 
-def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path) -> None:
-    """One data set per variable, the first dimension the sample; dimensions and units as attributes."""
+def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, beside: tuple[list[dict[str, Any]], str]) -> None:
+    """One data set per variable, the first dimension the sample; dimensions and units as attributes; ``beside`` what failed and
+    the card, which attributes would be too small for."""
     import h5py
 
     with h5py.File(target, "w") as file:
         file.attrs.update({name: _plain(value) for name, value in told.items()})
+        failed, file["card"] = beside
+        file["failed/sample"] = np.array([one["sample"] for one in failed], dtype=np.int64)
+        file["failed/reason"] = np.array([one["reason"].encode() for one in failed], dtype=h5py.string_dtype())
         file["sample"] = data["sample"].values
         for name, values in data.data_vars.items():
             content = np.asarray(values.values)
@@ -146,7 +162,10 @@ def _listed(value: Any) -> Any:
 
 def main(store: str, target: str, splits: str) -> int:
     """Writes HDF5; what the process of its own does."""
-    _hdf5(load(store, split=json.loads(splits)), Store.open(store).attributes, Path(target))
+    names, card = json.loads(splits), Path(store) / CARD
+    told = Store.open(store).attributes
+    words = card.read_text(encoding="utf-8") if card.is_file() else ""
+    _hdf5(load(store, split=names), told, Path(target), beside=(_failed(store, names), words))
     return 0
 
 

@@ -26,6 +26,7 @@ from tactsim.dataset.layout import layout_of
 from tactsim.dataset.progress import Tally
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import sweep_of_text
+from tactsim.dataset.variable import FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
 
 
@@ -144,6 +145,24 @@ def test_hdf5_holds_the_same(kept: Path, tmp_path: Path) -> None:
         assert file["force"].attrs["units"] == "N"
         assert file["force"].attrs["dimensions"] == "sample,time"
         assert file["reason"][0] == b"end of the history"
+        assert file["card"][()] == b"", "nothing wrote one"
+        assert file["failed/sample"].shape == (0,)
+
+
+def test_an_export_tells_what_failed(store: Path, tmp_path: Path) -> None:
+    (store / "README.md").write_text("# A small sweep — its card\n", encoding="utf-8")
+    group = Store.open(store, writing=True).group
+    group["status"][3], group["reason"][3] = FAILED, "ConvergenceError: it — would not"
+    for name in ("e.h5", "e"):
+        assert main(["data", "export", str(store), "--to", str(tmp_path / name)]) == 0
+    with h5py.File(tmp_path / "e.h5") as file:
+        assert file["failed/sample"][...].tolist() == [3]
+        assert file["failed/reason"][0].decode() == "ConvergenceError: it — would not"
+        assert 3 not in file["sample"][...]
+        assert file["card"][()].decode() == "# A small sweep — its card\n"
+    described = json.loads((tmp_path / "e" / "dataset.json").read_text(encoding="utf-8"))
+    assert described["attributes"]["failed"] == [{"sample": 3, "reason": "ConvergenceError: it — would not"}]
+    assert (tmp_path / "e" / "README.md").read_bytes() == (store / "README.md").read_bytes()
 
 
 def test_shards_hold_the_same_with_an_index(kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
