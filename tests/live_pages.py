@@ -89,6 +89,18 @@ def grasp_folder(place: Path, forces: np.ndarray | None = None, **options: objec
     return write_result(made_up_grasp(forces, **options), place, case_id="abc", provenance={})  # type: ignore[arg-type]
 
 
+def localized_folder(place: Path) -> Path:
+    """The folder of a localization that found a ball and a tube, how far off it may be told of the first."""
+    grasp = made_up_grasp(taxel_forces(1))
+    tube = {"kind": "tube", "center": [0.02, 0.02, 0.01], "radius": 3e-3, "line": [[0, 0.02, 0.01], [0.04, 0.02, 0.01]]}
+    ball = {"kind": "sphere", "center": [0.023, 0.017, 0.012], "radius": 4e-3, "line": None, "region": None}
+    deviations = {"center_deviation": [1e-3, 2e-3, 3e-3], "radius_deviation": 4e-4, "contrast_deviation": 0.1}
+    quantities = grasp.quantities | {name: Quantity(value, "m", "") for name, value in deviations.items()}
+    details = grasp.details | {"estimates": [ball, tube], "estimator": "hypotheses"}
+    found = replace(grasp, kind="localization", reason="a ball and a tube", quantities=quantities, details=details)
+    return write_result(found, place, case_id="abc", provenance={})
+
+
 def made_up_store(folder: Path, *, done: int = 4) -> Path:
     """A data set of six grasps that nobody computed: the first are done, the next failed, the last is pending."""
     file, place, numbers = folder / "sweep.yaml", folder / "lumps.zarr", itertools.count()

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live_pages import TITLE, description, frame_line, grasp_folder, line, made_up_store, taxel_forces
+from live_pages import TITLE, description, frame_line, grasp_folder, line, localized_folder, made_up_store, taxel_forces
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -138,6 +138,16 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
         browser.find_element(By.CSS_SELECTOR, "[name=unit][value=kPa]").click()
         until(lambda: shows(browser, forces / 9e-3**2 / 1e3))
         browser.save_screenshot(str(tmp_path / "result.png"))
+
+
+def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    with shown(browser, str(localized_folder(tmp_path / "a"))):
+        until(lambda: "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm" in words(browser, "estimate"))
+        assert "A ball and a tube" in words(browser, "estimate")
+        assert "As stored: hypotheses" in words(browser, "estimators")
+        browser.save_screenshot(str(tmp_path / "localized.png"))
+        browser.find_element(By.TAG_NAME, "body").send_keys("2")
+        until(lambda: "Tube" not in words(browser, "estimate"))
 
 
 def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:

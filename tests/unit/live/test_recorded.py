@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_pages import SIDES, grasp_folder, made_up_grasp, made_up_store, taxel_forces
+from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, taxel_forces
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization_source import readings_of
@@ -90,13 +90,7 @@ def test_an_inclusion_of_the_tissue_itself_is_no_inclusion(tmp_path: Path) -> No
 
 def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None:
     assert stored_choice(grasp_folder(tmp_path / "a")) is None
-    region = {"front": [], "left": [], "top": []}
-    tube = {"kind": "tube", "center": [0.02, 0.02, 0.01], "radius": 3e-3, "line": [[0, 0.02, 0.01], [0.04, 0.02, 0.01]]}
-    ball = {"kind": "sphere", "center": [0.023, 0.017, 0.012], "radius": 4e-3, "line": None, "region": region}
-    folder = change(grasp_folder(tmp_path / "b"), ("details", "estimates"), [ball, tube])
-    deviations = {"center_deviation": [1e-3, 2e-3, 3e-3], "radius_deviation": 4e-4, "contrast_deviation": 0.1}
-    for name, value in deviations.items():
-        change(folder, ("quantities", name), {"value": value, "unit": "m", "description": ""})
+    folder = localized_folder(tmp_path / "b")
     content = opened_content(folder)
     choice, recording = content.choices[0], content.recordings["taxel_force"]
     assert choice.name == "stored"
