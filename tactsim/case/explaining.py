@@ -103,13 +103,27 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
             context, path
         ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
     if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
-        return path, str(context.get("error", detail["msg"]))
+        return _blamed_within(path, value, str(context.get("error", detail["msg"])))
     if error_type in ("literal_error", "enum"):
         choices = re.findall(r"'([^']*)'", context["expected"])
         return path, f"{as_written(value)} is not allowed{suggestion(str(value), choices)}; choices: {context['expected']}"
     return path, _out_of_bounds(
         context, value, fragment
     ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}"
+
+
+def _blamed_within(path: Path, value: Any, message: str) -> tuple[Path, str]:
+    """The key path and the message of a check of a whole mapping, which may begin with the keys within it that are to blame."""
+    keys, colon, words = message.partition(": ")
+    within: Path = ()
+    for key in keys.split(".") if colon else ():
+        step = int(key) if isinstance(value, list) and key.isdecimal() else key
+        try:
+            value = value[step]
+        except (LookupError, TypeError):
+            return path, message
+        within = (*within, step)
+    return (*path, *within), words if within else message
 
 
 def _out_of_bounds(context: dict[str, Any], value: Any, fragment: dict[str, Any]) -> str:

@@ -13,6 +13,7 @@ from tactsim.analytic.histories import History
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
+from tactsim.errors import InvalidQuantity
 from tactsim.experiments.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
 from tactsim.experiments.contact_setup import AnyLaw
 from tactsim.experiments.grasp_model import SIDES, GraspModel
@@ -210,7 +211,12 @@ class GraspSetup(FrozenModel):
     @model_validator(mode="after")
     def _embedded(self) -> Self:
         size = np.array(self.block.size)
-        check_inclusions(size, self.shapes, self.mesh.least_gap)
+        try:
+            check_inclusions(size, self.shapes, self.mesh.least_gap)
+        except InvalidQuantity as error:
+            names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
+            blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
+            raise ValueError(f"{''.join(blamed)}{error}") from None
         for number, embedded in enumerate(self.inclusions, 1):
             name, hollow = inclusion_name(number, embedded.shape), len(embedded.shape.solids(size)) > 1
             if embedded.lumen is not None and not hollow:

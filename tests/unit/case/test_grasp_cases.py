@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tactsim.case import load_case
+from tactsim.errors import CaseError
 from tactsim.experiments.block_source import TetrahedraSource
 from tactsim.experiments.grasp_model import SIDES
 from tactsim.mesh.inclusions.surface import read_surface
@@ -75,3 +76,33 @@ def test_the_case_converges(path):
     assert abs(net[2]) <= 2e-3 * largest  # the weak hold, and the lean of an open end under pressure, take the rest
     if "lumen_pressure" not in found:  # the pressure on one closed end of an artery pushes the block sideways
         assert np.abs(net).max() <= 1e-4 * largest
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        (
+            "center: [20 mm, 20 mm, 10 mm]",
+            "center: [38 mm, 20 mm, 10 mm]",
+            ":7: experiment.inclusions.0.shape: sphere 1",
+        ),
+        ("to: 1 mm", "to: 11 mm", ":9: experiment.loading: each jaw closes by 11 mm; allowed"),
+        ("pitch: 10 mm", "pitch: 30 mm", ":8: experiment.matrix: 69 mm wide"),
+        ("tissue: icf_stable", "tissue: icf_staple", ":5: experiment.block.tissue: unknown material"),
+    ],
+)
+def test_what_a_whole_grasp_refuses_is_told_with_the_line_of_the_key(tmp_path, old, new, place):
+    text = (
+        "schema: tactsim/case/1\ntitle: x\nexperiment:\n  kind: grasp\n"
+        "  block: {size: [40 mm, 40 mm, 20 mm], tissue: icf_stable}\n  inclusions:\n"
+        "    - {shape: {kind: sphere, center: [20 mm, 20 mm, 10 mm], radius: 4 mm}, material: lump}\n"
+        "  matrix: {rows: 3, columns: 3, pitch: 10 mm, size: 9 mm}\n"
+        "  loading: {control: displacement, pieces: [{kind: ramp, to: 1 mm, duration: 1 s}]}\n"
+    )
+    file = tmp_path / "case.yaml"
+    file.write_text(text)
+    load_case(file)
+    file.write_text(text.replace(old, new))
+    with pytest.raises(CaseError) as refused:
+        load_case(file)
+    assert str(refused.value).startswith(f"{file}{place}")
