@@ -20,6 +20,10 @@ from tactsim.live.scene import Recording, Scene
 from tactsim.localization.readings import JAWS
 
 Array = np.ndarray
+OTHER_CASE = (
+    "this sample was made from another case than this version of tactsim draws: block and jaws are drawn as of now, "
+    "inclusions are not; the version that made the data set shows them"
+)
 ANY = ""
 """A filter that lets all samples through."""
 
@@ -127,25 +131,24 @@ class Samples:
     def _scene(self, number: int, status: int) -> Scene:
         told = self.told(number)
         title = f"{self.data.attrs.get('title') or self.place.name}: sample {number} ({told['split']})"
-        notes = () if status == DONE else (f"sample {number} is {told['status']}: {told['reason'] or 'it was not computed'}",)
-        experiment = self._experiment(number, status)
+        notes: tuple[str, ...] = (
+            () if status == DONE else (f"sample {number} is {told['status']}: {told['reason'] or 'it was not computed'}",)
+        )
+        experiment, same = self._experiment(number, status)
+        if not same:
+            notes += (OTHER_CASE,)
         there = [one for one in experiment.inclusions if one.unlike(experiment.block.tissue)]
         size, offsets = np.array(experiment.block.size), (experiment.upper.offset, experiment.lower.offset)
         places = np.array([[*(size[:2] / 2 + offset), z] for offset, z in zip(offsets, (size[2], 0.0), strict=True)])
         jaws = {side: experiment.jaw(side) for side in JAWS}
         shapes = tuple(one.shape for one in there)
-        return Scene(title, size, experiment.matrix, shapes, jaws, places, notes=notes)
+        return Scene(title, size, experiment.matrix, shapes if same else None, jaws, places, notes=notes)
 
-    def _experiment(self, number: int, status: int) -> Grasp:
-        """What was computed, drawn again: it depends on the sweep and the number only."""
+    def _experiment(self, number: int, status: int) -> tuple[Grasp, bool]:
+        """What was computed, drawn again: it depends on the sweep and the number only; and whether it is the same case still."""
         specimen = number // self.sweep.per_specimen
         drawn = drawn_specimen(self.sweep, specimen)[number - specimen * self.sweep.per_specimen]
         if drawn.case is None or not isinstance(drawn.case.experiment, Grasp):
             raise StorageError(f"sample {number} of {self.place.name} has no case of a grasp: {drawn.refusal or 'another kind'}")
         stored = str(self.data["case_id"].values[number])
-        if status != PENDING and stored and stored != drawn.case.case_id:
-            raise StorageError(
-                f"sample {number} of {self.place.name} was made from another case than this version of tactsim draws; "
-                "show it with the version that made the data set"
-            )
-        return drawn.case.experiment
+        return drawn.case.experiment, status == PENDING or not stored or stored == drawn.case.case_id

@@ -221,11 +221,14 @@ def test_samples_are_sought_in_both_directions_and_around_the_end(tmp_path: Path
         samples.chosen("x")
 
 
-def test_samples_of_another_version_are_refused(tmp_path: Path) -> None:
+def test_samples_of_another_version_are_shown_without_inclusions(tmp_path: Path) -> None:
     samples = Samples.open(made_up_store(tmp_path))
     other = samples.data.assign(case_id=("sample", ["0" * 16] * 6))
-    with pytest.raises(StorageError, match="another case than this version"):
-        Samples(samples.place, other).recordings(0)
+    recording = Samples(samples.place, other).recordings(0)["taxel_force"]
+    np.testing.assert_allclose(recording.forces[0], taxel_forces(1)[0])
+    assert recording.scene.inclusions is None
+    assert recording.scene.notes[0].startswith("this sample was made from another case")
+    assert samples.recordings(0)["taxel_force"].scene.inclusions
 
 
 def test_the_noise_is_that_of_the_result_unless_another_is_given(tmp_path: Path) -> None:
