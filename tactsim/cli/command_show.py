@@ -41,9 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
     parser.add_argument("--live", metavar="SOURCE", help="frames: a file that grows, - for a pipe, or tcp://127.0.0.1:PORT")
-    parser.add_argument(
-        "--reference", metavar="FOLDER", help="result of the same grasp without a lump, which most estimators need"
-    )
+    words = "result of the same grasp without a lump, which most estimators need; several for several closings"
+    parser.add_argument("--reference", metavar="FOLDER", action="append", default=[], help=words)
     parser.add_argument(
         "--noise", metavar="FORCE", help="of a reading, such as '2 mN' (default: that of the result, or rounding)"
     )
@@ -59,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         from tactsim.cli.live_page import run_page
 
         return run_page(arguments)
-    given = [f"--{name.replace('_', '-')}" for name in WEB_OPTIONS if getattr(arguments, name) not in (None, False)]
+    given = [f"--{name.replace('_', '-')}" for name in WEB_OPTIONS if getattr(arguments, name) not in (None, False, [])]
     if given:
         raise InputError(f"{', '.join(given)}: for the live page only; add --web")
     if arguments.result is None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.errors import InputError
 from tactsim.live.choices import CHOICES, Choice, learned_choice, stored_choice
-from tactsim.live.estimating import Reference
 from tactsim.live.feed import Feed
 from tactsim.live.recorded import result_recordings
+from tactsim.live.reference import Reference
 from tactsim.live.samples import Samples
 from tactsim.live.scene import Recording
 
@@ -40,7 +41,7 @@ def opened_content(
     place: Path | None,
     *,
     feed: Feed | None = None,
-    reference: str | None = None,
+    reference: Sequence[str] = (),
     noise: float | None = None,
     learned: str | None = None,
 ) -> Content:
@@ -55,7 +56,7 @@ def opened_content(
     """
     if place is None and feed is None:
         raise InputError("nothing to show; name the folder of a result or a data set, or --live FILE, - or tcp://127.0.0.1:PORT")
-    given = None if reference is None else Reference.open(reference)
+    given = Reference.open(reference) if reference else None
     choices = CHOICES if learned is None else (*CHOICES, learned_choice(learned))
     if place is None:
         return Content({}, None, feed, given, noise, choices)

@@ -1,92 +1,22 @@
-"""The reference that some estimators need, and an estimate in words with its errors."""
+"""Readings of a frame for an estimator, and what it finds, in words with its errors."""
 
 from __future__ import annotations
 
-import threading
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import SAME_CLOSING, away_from_truth, stored_grasp, true_places, with_reference
-from tactsim.experiments.response_store import stored_response
+from tactsim.experiments.localization_source import away_from_truth, true_places, with_reference
 from tactsim.live.choices import Choice
-from tactsim.live.recorded import result_recordings
-from tactsim.live.scene import Frame, Recording, Scene
+from tactsim.live.reference import Reference
+from tactsim.live.scene import Frame, Scene
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
-from tactsim.localization.lump_response import LumpResponse
-from tactsim.units import format_quantity
 
 Array = np.ndarray
 DIGITS = 3
 """Decimals in mm of an outline."""
-
-
-@dataclass(eq=False)
-class Reference:
-    """The same grasp without a lump, from the folder of its result; its response is computed when it is first asked for."""
-
-    folder: str
-    recording: Recording
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _response: LumpResponse | None = None
-
-    @classmethod
-    def open(cls, folder: str) -> Reference:
-        """The reference in a folder.
-
-        Raises
-        ------
-        InputError
-            If it is not the result of a grasp with taxels.
-        StorageError
-            If there is no result, or it is damaged.
-        """
-        stored_grasp(folder)
-        return cls(folder, result_recordings(folder)["taxel_force"])
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What the user must know about it."""
-        there = len(self.recording.scene.inclusions or ())
-        if not there:
-            return ()
-        what = "an inclusion" if there == 1 else f"{there} inclusions"
-        return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
-
-    def response(self, closing: float | None) -> LumpResponse:
-        """The fast forward model of the tissue; computed once, which may take half a minute, and kept.
-
-        Raises
-        ------
-        InputError
-            If the jaws have closed by another way in m than the reference at its end, for which the model holds.
-        """
-        last = self.recording.frame(len(self.recording.times) - 1).closing
-        if closing is not None and last is not None and abs(closing - last) > SAME_CLOSING * abs(last):
-            raise InputError(
-                f"the model of the tissue holds for a closing of {format_quantity(last, 'm')}, where the reference ends; "
-                f"here it is {format_quantity(closing, 'm')}: go to that step, or give a reference that ends here"
-            )
-        with self._lock:
-            if self._response is None:
-                self._response = stored_response(self.folder)
-            return self._response
-
-    def frame_for(self, frame: Frame) -> Frame:
-        """What the reference reads at the closing of a frame: at the same time, else anywhere on its way to its closing."""
-        recording, closing = self.recording, frame.closing
-        last = recording.frame(len(recording.times) - 1)
-        if closing is None or recording.closings is None:
-            return last
-        if frame.time is not None:
-            found = recording.at(frame.time)
-            if found.closing is not None and abs(found.closing - closing) <= SAME_CLOSING * abs(closing):
-                return found
-        way = recording.closings
-        rising = len(way) > 1 and bool((np.diff(way) > 0).all()) and way[0] <= closing <= way[-1]
-        return recording.at(float(np.interp(closing, way, recording.times))) if rising else last
 
 
 def frame_readings(
@@ -104,7 +34,7 @@ def frame_readings(
         return readings
     if reference is None:
         raise InputError(f"{choice.label}: needs the same grasp without a lump; give its result by --reference FOLDER")
-    return with_reference(readings, reference.frame_for(frame).readings(reference.recording.scene))
+    return with_reference(readings, reference.frame_for(frame).readings(reference.scene))
 
 
 def shown_signal(readings: Readings) -> tuple[Array, str]:

@@ -78,9 +78,8 @@ def _recording(result: Result, scene: Scene, name: str) -> Recording:
     else:
         times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
         forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
-    return Recording(
-        scene, times, forces, checked_validity(forces, times, scene, _saturated(result, name)), _closings(result, times)
-    )
+    valid = checked_validity(forces, times, scene, _saturated(result, name))
+    return Recording(scene, times, forces, valid, _closings(result, times), name)
 
 
 def checked_validity(forces: Array, times: Array, scene: Scene, saturated: Array | None = None) -> Array:

@@ -125,7 +125,7 @@ class Samples:
             forces = np.asarray(row[name].values, dtype=float)
             closings = np.asarray(row["displacement"].values, dtype=float)
             known = closings if np.isfinite(closings).all() else None
-            found[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known)
+            found[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known, name)
         return found
 
     def _scene(self, number: int, status: int) -> Scene:

@@ -71,12 +71,14 @@ class Frame:
     valid : (jaw, row, column), False for a dead or saturated taxel
     time : in s; None if not known
     closing : of each jaw from first touch in m; None if not known
+    source : what the forces are, as in ``recorded.SOURCES``
     """
 
     forces: Array
     valid: Array
     time: float | None = None
     closing: float | None = None
+    source: str = "taxel_force"
 
     def notes(self) -> tuple[str, ...]:
         """What the user must know about this frame: taxels that are not to be trusted."""
@@ -117,6 +119,7 @@ class Recording:
     times : (n,) in s, increasing
     forces, valid : (n, jaw, row, column), forces in N
     closings : (n,) in m; None if not known
+    source : what the forces are, as in ``recorded.SOURCES``
     """
 
     scene: Scene
@@ -124,12 +127,13 @@ class Recording:
     forces: Array
     valid: Array
     closings: Array | None
+    source: str = "taxel_force"
 
     def frame(self, step: int) -> Frame:
         """The frame of a step, counted from 0; beyond the ends the nearest one."""
         k = min(max(step, 0), len(self.times) - 1)
         closing = None if self.closings is None else float(self.closings[k])
-        return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing)
+        return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing, self.source)
 
     def step_at(self, time: float) -> int:
         """Number of the last step that is not after a time in s."""
@@ -145,4 +149,4 @@ class Recording:
         if self.closings is not None:
             closing = float((1 - share) * self.closings[k] + share * self.closings[k + 1])
         forces = (1 - share) * self.forces[k] + share * self.forces[k + 1]
-        return Frame(forces, self.valid[k] & self.valid[k + 1], float(time), closing)
+        return Frame(forces, self.valid[k] & self.valid[k + 1], float(time), closing, self.source)

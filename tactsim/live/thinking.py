@@ -8,8 +8,9 @@ from typing import Any
 
 from tactsim.errors import TactsimError
 from tactsim.live.choices import Choice
-from tactsim.live.estimating import Reference, estimated
+from tactsim.live.estimating import estimated
 from tactsim.live.messages import plain_json
+from tactsim.live.reference import Reference
 from tactsim.live.scene import Scene
 from tactsim.localization.interface import Readings
 

@@ -132,7 +132,8 @@ def read_weights(path: str | Path) -> LearnedWeights:
     except FileNotFoundError:
         raise StorageError(f"{path}: no such file; tactsim data train writes one") from None
     except (ValueError, KeyError, EOFError, BadZipFile, ValidationError) as error:
-        raise StorageError(f"{path} does not hold the weights of a learned estimator: {str(error)[:120]}") from None
+        why = "it is no npz file of numbers" if "pickle" in str(error) else str(error)[:120]
+        raise StorageError(f"{path} does not hold the weights of a learned estimator: {why}") from None
     if not found.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
     return found

@@ -14,9 +14,10 @@ from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization_source import readings_of
 from tactsim.live.choices import CHOICES, stored_choice
 from tactsim.live.content import opened_content
-from tactsim.live.estimating import Reference, estimated, frame_readings, shown_signal
+from tactsim.live.estimating import estimated, frame_readings, shown_signal
 from tactsim.live.messages import Scales, frame_message
 from tactsim.live.recorded import result_recordings
+from tactsim.live.reference import Reference
 from tactsim.live.samples import Samples
 from tactsim.live.thinking import estimate_message
 from tactsim.results import Quantity, write_result
@@ -83,8 +84,8 @@ def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
 def test_an_inclusion_of_the_tissue_itself_is_no_inclusion(tmp_path: Path) -> None:
     folder = change(grasp_folder(tmp_path / "a"), ("details", "unlike_tissue"), [False])
     assert result_recordings(folder)["taxel_force"].scene.inclusions == ()
-    assert Reference.open(str(folder)).notes == ()
-    (note,) = Reference.open(str(grasp_folder(tmp_path / "b"))).notes
+    assert Reference.open([str(folder)]).notes == ()
+    (note,) = Reference.open([str(grasp_folder(tmp_path / "b"))]).notes
     assert note.startswith("the reference holds an inclusion of another material")
 
 
@@ -140,7 +141,7 @@ def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str, ...], value:
 
 def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None:
     recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
-    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(8, lump=0.0), lump=False)))
+    reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(8, lump=0.0), lump=False))])
     choice = BY_NAME["thesis_reference"]
     for time in (0.3, 0.77, 1.0):
         signal, words = shown_signal(frame_readings(recording.scene, recording.at(time), choice, reference))
@@ -151,21 +152,53 @@ def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None
     assert found["errors"][0].startswith("Off by")
 
 
+def closed_by(folder: Path, closing: float) -> Path:
+    """Changes the closing of a stored grasp."""
+    return change(folder, ("quantities", "displacement", "value"), closing)
+
+
+def test_several_references_serve_samples_of_other_closings(tmp_path: Path) -> None:
+    steps = {0.5e-3: 0.5, 1e-3: 1.0, 1.5e-3: 1.5}
+    folders = [
+        str(closed_by(grasp_folder(tmp_path / f"{scale}", scale * taxel_forces(1, lump=0.0), lump=False), closing))
+        for closing, scale in reversed(steps.items())
+    ]
+    reference = Reference.open(folders)
+    assert [result.closing for result in reference.results] == list(steps)
+    frame = result_recordings(grasp_folder(tmp_path / "a", taxel_forces(1)))["taxel_force"].frame(0)
+    for closing in (0.25e-3, 0.8e-3, 1.5e-3):
+        found = reference.frame_for(replace(frame, closing=closing))
+        np.testing.assert_allclose(found.forces, 0.1 * closing / 1e-3, rtol=1e-9)  # plain tissue reads 0.1 N at 1 mm
+        assert found.closing == closing
+    with pytest.raises(InputError, match=r"is 2 mm, those of the references are 500 µm, 1 mm, 1.5 mm"):
+        reference.frame_for(replace(frame, closing=2e-3))
+    with pytest.raises(InputError, match="need different closings"):
+        Reference.open([folders[0], folders[0]])
+
+
+def test_read_forces_are_not_compared_with_those_of_the_solution(tmp_path: Path) -> None:
+    reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(1, lump=0.0), lump=False))])
+    frame = result_recordings(grasp_folder(tmp_path / "a", taxel_forces(1)))["taxel_force"].frame(0)
+    reference.frame_for(frame)
+    with pytest.raises(InputError, match="has no forces read through the sensors: run it with the readout"):
+        reference.frame_for(replace(frame, source="read_force"))
+
+
 def test_an_estimator_without_its_reference_says_what_it_needs(tmp_path: Path) -> None:
     recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
     with pytest.raises(InputError, match="--reference FOLDER"):
         frame_readings(recording.scene, recording.at(1.0), BY_NAME["model_based"], None)
-    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(2, 4), lump=False)))
+    reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(2, 4), lump=False))])
     with pytest.raises(InputError, match="another block or another matrix"):
         frame_readings(recording.scene, recording.at(1.0), BY_NAME["model_based"], reference)
-    same = Reference.open(str(grasp_folder(tmp_path / "c", taxel_forces(2), lump=False)))
+    same = Reference.open([str(grasp_folder(tmp_path / "c", taxel_forces(2), lump=False))])
     with pytest.raises(InputError, match="holds for a closing of 1 mm"):
         same.response(0.5e-3)
 
 
 def test_a_model_that_cannot_be_had_is_told_in_words(tmp_path: Path) -> None:
     recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
-    reference = Reference.open(str(grasp_folder(tmp_path / "b", taxel_forces(4, lump=0.0), lump=False)))
+    reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(4, lump=0.0), lump=False))])
     choice = BY_NAME["model_based"]
     readings = frame_readings(recording.scene, recording.at(1.0), choice, reference)
     told = json.loads(estimate_message(recording.scene, readings, choice, reference))
