@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 from tactsim.display.grasp_parts import SIDES
 from tactsim.errors import TactsimError
 from tactsim.localization.views import AWAY
-from tactsim.mesh.any_inclusion import AnyInclusion
+from tactsim.mesh.any_inclusion import AnyInclusion, shapes_unlike_tissue
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.solid import Inclusion, Solid
@@ -109,9 +109,8 @@ def _middle(details: dict[str, Any], size: Array) -> Array:
 
 def _bodies(details: dict[str, Any], size: Array) -> Iterator[Solid]:
     """Bodies of the inclusions that are not tissue themselves; one whose surface file is not at hand is left out."""
-    adapter, shapes = TypeAdapter(AnyInclusion), details.get("inclusions") or ()
-    other = details.get("unlike_tissue") or [True] * len(shapes)
-    for shape in (shape for shape, there in zip(shapes, other, strict=True) if there):
+    adapter = TypeAdapter(AnyInclusion)
+    for shape in shapes_unlike_tissue(details):
         try:
             yield adapter.validate_python(shape).solids(size)[0]
         except (TactsimError, OSError):

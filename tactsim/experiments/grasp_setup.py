@@ -148,6 +148,11 @@ class GraspSetup(FrozenModel):
         return tuple(embedded.shape for embedded in self.inclusions)
 
     @property
+    def unlike_tissue(self) -> tuple[Embedded, ...]:
+        """The inclusions that differ from the tissue around them."""
+        return tuple(embedded for embedded in self.inclusions if embedded.unlike(self.block.tissue))
+
+    @property
     def materials(self) -> tuple[Material, ...]:
         """One per region of the mesh, the tissue first."""
         return (self.block.tissue, *(embedded.material for embedded in self.inclusions))

@@ -16,6 +16,7 @@ from tactsim.experiments.localization_source import (
     away_from_truth,
     folder_words,
     readings_of,
+    reference_notes,
     stored_grasp,
     true_inclusions,
     true_places,
@@ -26,7 +27,7 @@ from tactsim.interfaces import Experiment, Progress
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
-from tactsim.localization.readings import named_taxels, silent_taxels
+from tactsim.localization.readings import silent_taxels, silent_words
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import Force, format_quantity
@@ -78,7 +79,8 @@ class Localization(Experiment):
         """One step: the last of the grasp."""
         begin = time.perf_counter()
         stored = stored_grasp(self.grasp)
-        readings = self._readings(stored)
+        plain = None if self.reference is None else stored_grasp(self.reference)
+        readings = self._readings(stored, plain)
         estimate = self.estimator.estimate(readings)
         step = StepRecord(1, 0, 0.0, dict(zip(self.history_units, map(float, readings.filled.sum(axis=(1, 2))), strict=True)))
         progress(step)
@@ -89,7 +91,7 @@ class Localization(Experiment):
             reason=estimate.reason,
             quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
-            warnings=tuple(self._warnings(stored, readings)),
+            warnings=tuple(self._warnings(stored, plain, readings)),
             timing={"total": time.perf_counter() - begin},
             steps=(step,),
             units=self.history_units,
@@ -112,13 +114,12 @@ class Localization(Experiment):
             },
         )
 
-    def _readings(self, stored: Result) -> Readings:
+    def _readings(self, stored: Result, plain: Result | None) -> Readings:
         dead = self._dead(TaxelLayout.model_validate(stored.details["matrix"]))
         readings = readings_of(stored, self.readings, noise=self.noise, dead=dead)
-        if self.reference is None:
+        if self.reference is None or plain is None:
             return readings
-        plain = readings_of(stored_grasp(self.reference), self.readings, noise=self.noise, dead=None)
-        readings = with_reference(readings, plain)
+        readings = with_reference(readings, readings_of(plain, self.readings, noise=self.noise, dead=None))
         return replace(readings, response=stored_response(self.reference)) if self.estimator.needs_response else readings
 
     def _dead(self, layout: TaxelLayout) -> Array:
@@ -131,7 +132,7 @@ class Localization(Experiment):
             dead[SIDES.index(side), row - 1, column - 1] = True
         return dead
 
-    def _warnings(self, stored: Result, readings: Readings) -> list[str]:
+    def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
         found = []
         if stored.status is not Status.CONVERGED:
             found.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
@@ -139,13 +140,8 @@ class Localization(Experiment):
             found.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
         silent = silent_taxels(readings.filled)
         if silent.any():
-            told = f"exactly zero although all around press, so perhaps dead, and used as it is: {named_taxels(silent)}"
-            found.append(f"{told}; name dead taxels by the key dead")
-        if self.reference is not None and true_inclusions(stored_grasp(self.reference).details):
-            found.append(
-                "the reference holds an inclusion of another material than the tissue: only what differs from it is found"
-            )
-        return found
+            found.append(f"{silent_words(silent)}; name dead taxels by the key dead")
+        return found if plain is None else [*found, *reference_notes(true_inclusions(plain.details))]
 
 
 def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -12,7 +13,7 @@ from pydantic import TypeAdapter
 from tactsim.errors import InputError
 from tactsim.localization.interface import Readings
 from tactsim.localization.readings import JAWS as SIDES
-from tactsim.mesh.any_inclusion import AnyInclusion
+from tactsim.mesh.any_inclusion import AnyInclusion, shapes_unlike_tissue
 from tactsim.mesh.inclusions.tube import Tube, extended
 from tactsim.mesh.solid import Inclusion
 from tactsim.results.reading import read_result
@@ -106,9 +107,16 @@ def saturated_taxels(result: Result) -> Array:
 
 def true_inclusions(details: dict[str, Any]) -> tuple[Inclusion, ...]:
     """The inclusions that a result was computed with, but those that are nothing but tissue."""
-    adapter, shapes = TypeAdapter(AnyInclusion), details.get("inclusions") or ()
-    other = details.get("unlike_tissue") or [True] * len(shapes)
-    return tuple(adapter.validate_python(shape) for shape, there in zip(shapes, other, strict=True) if there)
+    adapter = TypeAdapter(AnyInclusion)
+    return tuple(adapter.validate_python(shape) for shape in shapes_unlike_tissue(details))
+
+
+def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
+    """What the user must know of a reference that was computed with these inclusions."""
+    if not inclusions:
+        return ()
+    what = "an inclusion" if len(inclusions) == 1 else f"{len(inclusions)} inclusions"
+    return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
 
 
 def true_places(inclusion: Inclusion, size: Array) -> Array:

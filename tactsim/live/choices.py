@@ -64,10 +64,8 @@ def learned_choice(weights: str) -> Choice:
 
     Raises
     ------
-    InputError
-        If the file holds no weights of tactsim.
     StorageError
-        If it cannot be read.
+        If it cannot be read, or holds no weights of this version.
     """
     return Choice("learned", "Learned", LearnedEstimator.checked(weights), True)
 

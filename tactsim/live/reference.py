@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
+from tactsim.dataset.ranking_reference import PlainGrasp
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import SAME_CLOSING, stored_grasp
+from tactsim.experiments.localization_source import SAME_CLOSING, reference_notes, stored_grasp
 from tactsim.experiments.response_store import stored_response
 from tactsim.live.recorded import SOURCES, result_recordings
 from tactsim.live.scene import Frame, Recording, Scene
@@ -82,11 +82,7 @@ class Reference:
     @property
     def notes(self) -> tuple[str, ...]:
         """What the user must know about it."""
-        there = len(self.scene.inclusions or ())
-        if not there:
-            return ()
-        what = "an inclusion" if there == 1 else f"{there} inclusions"
-        return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
+        return reference_notes(self.scene.inclusions or ())
 
     def response(self, closing: float | None) -> LumpResponse:
         """The fast forward model of the tissue: that at the end of the reference, or of the one of several nearest in closing.
@@ -129,7 +125,7 @@ class Reference:
             here = "not known" if frame.closing is None else format_quantity(frame.closing, "m")
             raise InputError(f"the closing is {here}, those of the references are {known}; needed: at most the largest")
         forces = np.stack([np.zeros_like(ends[0].forces), *(end.forces for end in ends)])
-        between = PchipInterpolator(np.append(0.0, closings), forces, axis=0)(min(frame.closing, closings[-1]))
+        between = PlainGrasp(np.append(0.0, closings), forces, ends[-1].readings(self.scene)).at(frame.closing)
         return Frame(between, np.logical_and.reduce([end.valid for end in ends]), frame.time, frame.closing, frame.source)
 
 

@@ -137,11 +137,10 @@ class Samples:
         experiment, same = self._experiment(number, status)
         if not same:
             notes += (OTHER_CASE,)
-        there = [one for one in experiment.inclusions if one.unlike(experiment.block.tissue)]
         size, offsets = np.array(experiment.block.size), (experiment.upper.offset, experiment.lower.offset)
         places = np.array([[*(size[:2] / 2 + offset), z] for offset, z in zip(offsets, (size[2], 0.0), strict=True)])
         jaws = {side: experiment.jaw(side) for side in JAWS}
-        shapes = tuple(one.shape for one in there)
+        shapes = tuple(one.shape for one in experiment.unlike_tissue)
         return Scene(title, size, experiment.matrix, shapes if same else None, jaws, places, notes=notes)
 
     def _experiment(self, number: int, status: int) -> tuple[Grasp, bool]:

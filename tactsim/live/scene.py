@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp_setup import JawSettings
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
-from tactsim.localization.readings import JAWS, named_taxels, silent_taxels
+from tactsim.localization.readings import JAWS, named_taxels, silent_taxels, silent_words
 from tactsim.mesh.solid import Inclusion
 from tactsim.sensors.taxel_layout import TaxelLayout
 
@@ -88,7 +88,7 @@ class Frame:
         if not self.valid.all():
             told.append(f"dead or saturated taxels, interpolated from their neighbours: {named_taxels(~self.valid)}")
         if (silent := silent_taxels(self.forces) & self.valid).any():
-            told.append(f"exactly zero although all around press, so perhaps dead, and used as it is: {named_taxels(silent)}")
+            told.append(silent_words(silent))
         return tuple(told)
 
     def readings(self, scene: Scene) -> Readings:

@@ -33,6 +33,11 @@ def named_taxels(chosen: Array) -> str:
     return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
+def silent_words(silent: Array) -> str:
+    """What the user must know of silent taxels (jaw, row, column)."""
+    return f"exactly zero although all around press, so perhaps dead, and used as it is: {named_taxels(silent)}"
+
+
 def checked_readings(readings: Array, valid: Array | None = None) -> Array:
     """Readings (jaw, row, column) as floats, those of invalid taxels interpolated from their neighbours.
 

@@ -100,12 +100,10 @@ class CellRegion(Region):
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
         """Half-way between the middles of cells inside and outside; cells at the rim of the grid are whole."""
         chosen = np.pad(self.inside(probability).any(axis=away).astype(float), 1)
-        across = (k for k in range(3) if k != away)
-        first, second = (np.concatenate([axis[:1] - step, axis, axis[-1:] + step]) for axis, step in map(self._axis, across))
+        steps = zip(self.axes, self.cell, strict=True)
+        wider = [np.concatenate([axis[:1] - step, axis, axis[-1:] + step]) for axis, step in steps]
+        first, second = (axis for k, axis in enumerate(wider) if k != away)
         return [np.asarray(line) for line in contour_generator(first, second, chosen.T).lines(0.5)]
-
-    def _axis(self, k: int) -> tuple[Array, float]:
-        return np.asarray(self.axes[k]), float(self.cell[k])
 
 
 @dataclass(frozen=True, eq=False)

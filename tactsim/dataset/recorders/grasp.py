@@ -68,7 +68,7 @@ class GraspRecorder(Recorder):
         end = experiment.duration
         size, tissue = np.array(experiment.block.size), experiment.block.tissue.shear_modulus
         closing = experiment.loading.least_and_most()[1] if experiment.loading.control == "displacement" else np.nan
-        there = [one for one in experiment.inclusions if one.unlike(experiment.block.tissue)]
+        there = experiment.unlike_tissue
         if len(there) > self.most_inclusions:
             raise InvalidQuantity(f"{len(there)} inclusions; the store has place for {self.most_inclusions}")
         found = {"inclusion_count": len(there), "tissue_shear_modulus": tissue, "closing": closing}
