@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,18 @@ from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experim
 from tactsim.case.overrides import apply_override
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
-from tactsim.errors import CaseError, InputError, StorageError, suggestion
+from tactsim.errors import CaseError, InputError, suggestion
+from tactsim.outside.files import LIMITS, TooLarge, opened
+from tactsim.outside.text import one_line
 
-LARGEST_FILE = 1024 * 1024
-"""In bytes."""
+LONGEST_MESSAGE = 2000
+"""Characters of what is told of one fault: a list of all that is allowed in its place may be long."""
+MOST_PROBLEMS = 20
+"""Faults that are told; a file with more is of another kind, and the rest are counted."""
 Place = Callable[[Problem], str]
 
 
+KIND = "case file"
 SWEEPS = "tactsim/sweep/"
 """How the schema of a file begins that `tactsim sweep` reads."""
 
@@ -50,12 +56,12 @@ def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Docu
     """
     text = read_case_text(path)
     try:
-        document = read_yaml(text)
+        document = replace(read_yaml(text), folder=Path(path).parent)
     except YamlProblems as error:
         raise case_error(error.problems, _place_in(path, {})) from None
     if not isinstance(document.value, dict):
         found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
-        raise CaseError(f"{path}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
     overridden: dict[KeyPath, str] = {}
     for override in overrides:
         try:
@@ -67,20 +73,24 @@ def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Docu
 
 
 def read_case_text(path: str | Path) -> str:
-    """The text of a case file of at most ``LARGEST_FILE`` bytes of UTF-8."""
+    """The UTF-8 text of a case file.
+
+    Raises
+    ------
+    CaseError
+        If it is too large or not UTF-8.
+    StorageError
+        If it is missing or cannot be read.
+    """
     try:
-        with open(path, "rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise StorageError(f"cannot read the case file {path}: {reason}") from None
-    if len(content) > LARGEST_FILE:
-        raise CaseError(f"{path}: larger than {LARGEST_FILE} bytes, which no case needs")
+        content = opened(path, KIND).read()
+    except TooLarge:
+        raise CaseError(f"{one_line(path)}: larger than {LIMITS[KIND]} bytes, which no case needs") from None
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise CaseError(f"{path}:{line}: byte {content[error.start]:#04x} is not UTF-8 text") from None
+        raise CaseError(f"{one_line(path)}:{line}: byte {content[error.start]:#04x} is not UTF-8 text") from None
 
 
 def validated_case(document: Document, place: Place) -> Case:
@@ -99,7 +109,8 @@ def validated_case(document: Document, place: Place) -> Case:
     model = case_class(Any if problems else known[str(kind)] if kind else any_experiment())
     try:
         # Strict JSON: a list may become a tuple, but neither true nor "3" becomes a number.
-        case = model.model_validate_json(json.dumps(document.value), strict=True, context={"units": "required"})
+        context = {"units": "required", "folder": document.folder}
+        case = model.model_validate_json(json.dumps(document.value), strict=True, context=context)
     except ValidationError as error:
         problems += problems_of(error, document, model)
     except InputError as error:
@@ -148,7 +159,7 @@ def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
         for length in range(len(problem.path), 0, -1):
             if problem.path[:length] in overridden:
                 return f"--set {overridden[problem.path[:length]]}"
-        return f"{path}:{problem.line}" if problem.line else str(path)
+        return f"{one_line(path)}:{problem.line}" if problem.line else one_line(path)
 
     return place
 
@@ -156,7 +167,11 @@ def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
 def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     """One error with a line for each problem, in the order of the file."""
     lines = []
-    for problem in sorted(problems, key=lambda problem: problem.line):
-        where, key = place(problem), ".".join(map(str, problem.path))
-        lines.append(": ".join(part for part in (where, "" if where == f"--set {key}" else key, problem.message) if part))
-    return CaseError("\n".join(dict.fromkeys(lines)))
+    for problem in sorted(problems, key=lambda problem: problem.line)[: MOST_PROBLEMS + 1]:
+        where, key = place(problem), one_line(".".join(map(str, problem.path)))
+        told = (where, "" if where == f"--set {key}" else key, one_line(problem.message, LONGEST_MESSAGE))
+        lines.append(": ".join(part for part in told if part))
+    told_once = list(dict.fromkeys(lines))
+    if len(problems) > MOST_PROBLEMS:
+        told_once = [*told_once[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
+    return CaseError("\n".join(told_once))

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path as FilePath
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -52,6 +53,8 @@ class Document:
 
     value: Any = None
     lines: dict[Path, int] = field(default_factory=dict)
+    folder: FilePath | None = None
+    """Folder of the file, in which the files that it names are looked for first."""
 
     def line(self, path: Path) -> int:
         """The line of the key path, or of the nearest enclosing key that the text holds."""

@@ -60,14 +60,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
-    from tactsim.case import load_case
+    from tactsim.case.inputs import check_inputs
+    from tactsim.case.loading import read_document, validated_case
+    from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import claimed
 
     with interruptible() as interruption:
-        case = load_case(arguments.case, arguments.set)
+        document, place = read_document(arguments.case, arguments.set)
+        case = validated_case(document, place)
+        told = check_inputs(case, document, place)
         directory = arguments.out or Path("results") / arguments.case.stem
         with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
-            result = case.experiment.run(_progress(case, arguments))
+            with collected_warnings() as said:
+                result = case.experiment.run(_progress(case, arguments))
+            result = replace(result, warnings=(*result.warnings, *told, *said.lines()))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
 

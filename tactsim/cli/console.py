@@ -1,4 +1,5 @@
-"""Writing to the terminal: a reader that has gone away (``| head``, a closed window) never stops a run."""
+"""The one place that writes to the terminal: what others wrote cannot steer it, and a reader that has gone away (``| head``, a
+closed window) never stops a run."""
 
 from __future__ import annotations
 
@@ -6,6 +7,8 @@ import os
 import sys
 from contextlib import suppress
 from typing import TextIO
+
+from tactsim.outside.text import printable
 
 
 def out(text: str = "") -> None:
@@ -38,7 +41,7 @@ def flush() -> None:
 
 def _write(stream: TextIO | None, text: str) -> None:
     encoding = getattr(stream, "encoding", None) or "utf-8"
-    _guarded(stream, (text + "\n").encode(encoding, "backslashreplace").decode(encoding))
+    _guarded(stream, (printable(text) + "\n").encode(encoding, "backslashreplace").decode(encoding))
 
 
 def _guarded(stream: TextIO | None, text: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import NoReturn
 
 from tactsim import __version__
@@ -19,7 +20,10 @@ from tactsim.cli import (
     command_validate,
     console,
 )
-from tactsim.errors import InputError, Interrupted, TactsimError
+from tactsim.errors import InputError, Interrupted, StorageError, TactsimError
+from tactsim.outside.environment import check_environment
+from tactsim.outside.library_warnings import collected_warnings
+from tactsim.outside.text import one_line
 
 COMMANDS = (command_run, command_sweep, command_data, command_show, command_material, command_validate, command_schema)
 EXIT_CODES = """\
@@ -45,9 +49,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads and MKL's spin on the same cores
     debug = False
     try:
+        check_environment(os.environ)
         parsed = _parser().parse_args(arguments)
         debug = parsed.debug
-        return int(parsed.run(parsed))
+        with _told_warnings():
+            return int(parsed.run(parsed))
     except SystemExit as end:  # argparse ends --help and --version this way
         return int(end.code or 0)
     except KeyboardInterrupt:
@@ -56,12 +62,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except TactsimError as error:
         console.error(traceback.format_exc() if debug else str(error))
         return error.exit_code
+    except MemoryError:
+        console.error(traceback.format_exc() if debug else "not enough memory; take a smaller problem or a larger machine")
+        return StorageError.exit_code
+    except OSError as error:
+        what = f" {one_line(error.filename)}" if error.filename else ""
+        told = f"the system refused{what}: {error.strerror or one_line(error)}"
+        console.error(traceback.format_exc() if debug else told)
+        return StorageError.exit_code
     except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is told as such
         trace = traceback.format_exc() if debug else "run again with --debug for the details"
-        console.error(f"internal error ({type(error).__name__}: {error}); please report it; {trace}")
+        console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it; {trace}")
         return TactsimError.exit_code
     finally:
         console.flush()
+
+
+@contextmanager
+def _told_warnings() -> Iterator[None]:
+    """A block whose warnings of libraries are told when it ends, those that no result holds."""
+    with collected_warnings() as said:
+        try:
+            yield
+        finally:
+            for line in said.lines():
+                console.note(f"warning: {line}")
 
 
 def _parser() -> argparse.ArgumentParser:

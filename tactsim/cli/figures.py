@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tactsim.outside.library_warnings import collected_warnings
+from tactsim.outside.text import one_line
 from tactsim.results import Result
 
 
@@ -14,8 +16,10 @@ def rendered_figures(result: Result) -> tuple[dict[str, bytes], list[str]]:
     try:
         from tactsim.display import figures_for  # type: ignore[attr-defined,unused-ignore]
 
-        for name, draw in figures_for(result).items():
-            drawn[name if Path(name).suffix else f"{name}.png"] = draw()
+        with collected_warnings() as said:
+            for name, draw in figures_for(result).items():
+                drawn[name if Path(name).suffix else f"{name}.png"] = draw()
+        warnings += said.lines()
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {error}")
+        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
     return drawn, warnings

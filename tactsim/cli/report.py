@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from tactsim.outside.text import one_line
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
 
@@ -13,10 +14,13 @@ from tactsim.units import format_quantity
 def result_report(result: Result, title: str = "") -> str:
     """Title, status, quantities with units, warnings and the number of assumptions."""
     width = max((len(name) for name in result.quantities), default=0)
-    lines = [title] if title else []
+    lines = [one_line(title)] if title else []
     lines.append(_ending(result))
-    lines += [f"  {name:<{width}}  {format_values(q):<14}  {q.description}".rstrip() for name, q in result.quantities.items()]
-    lines += [f"  warning: {warning}" for warning in result.warnings]
+    lines += [
+        f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip()
+        for name, q in result.quantities.items()
+    ]
+    lines += [f"  warning: {one_line(warning)}" for warning in result.warnings]
     told = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
     lines.append(f"  {', '.join(told)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
     return "\n".join(lines)
@@ -37,8 +41,9 @@ def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
 
 def _ending(result: Result) -> str:
     """Status and reason, once where the reason begins with the status."""
-    told = result.reason and not result.reason.startswith(str(result.status))
-    return f"{result.status}: {result.reason}" if told else result.reason or str(result.status)
+    reason = one_line(result.reason)
+    told = reason and not reason.startswith(str(result.status))
+    return f"{result.status}: {reason}" if told else reason or str(result.status)
 
 
 def format_values(quantity: Quantity) -> str:

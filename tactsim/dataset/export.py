@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,6 +17,7 @@ from tactsim.dataset.loading import load, split_names
 from tactsim.dataset.store import Store
 from tactsim.dataset.variable import FAILED
 from tactsim.errors import InputError, StorageError
+from tactsim.outside.processes import run_child
 from tactsim.results.storage import naming
 
 if TYPE_CHECKING:
@@ -27,6 +27,9 @@ Array = np.ndarray
 SHARD_SAMPLES = 1000
 INDEX = "index.parquet"
 META = "dataset.json"
+MODULE = "tactsim.dataset.export"
+LONGEST = 6 * 3600.0
+"""Time in s after which writing is given up: no disk is so slow."""
 
 
 def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str] | None = None) -> int:
@@ -85,13 +88,13 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, target: Pa
     if importlib.util.find_spec("h5py") is None:
         raise InputError("HDF5 needs h5py; install it with: pip install 'tactsim[export]'")
     names = None if split is None else [split] if isinstance(split, str) else list(split)
-    command = [sys.executable, "-m", "tactsim.dataset.export", str(store), str(target), json.dumps(names)]
-    done = subprocess.run(command, capture_output=True, check=False, stdin=subprocess.DEVNULL)
-    if done.returncode:
-        said = done.stderr.decode(errors="replace")
-        full = "No space left" in said or "File too large" in said
-        last = (said.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-        raise StorageError(f"cannot write {target.name}: {'no room left on the disk' if full else last[:200]}")
+    arguments = [str(Path(store).absolute()), str(target.absolute()), json.dumps(names)]
+    done = run_child(MODULE, arguments, time_limit=LONGEST)
+    if done.out_of_time:
+        raise StorageError(f"cannot write {target.name}: it took longer than {LONGEST:g} s")
+    if done.code:
+        full = "No space left" in done.said or "File too large" in done.said
+        raise StorageError(f"cannot write {target.name}: {'no room left on the disk' if full else done.last_line or done.ending}")
 
 
 def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, beside: tuple[list[dict[str, Any]], str]) -> None:

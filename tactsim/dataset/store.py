@@ -176,7 +176,7 @@ def _check_described(folder: Path) -> None:
         older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
         raise StorageError(f"{folder} is not a data set of tactsim: it holds no {META}{older}")
     try:
-        told = json.loads(read_text(folder / META))
+        told = json.loads(read_text(folder / META, "description"))
         attributes = dict(told.get("attributes", {}))
     except (ValueError, AttributeError, TypeError, RecursionError) as error:
         raise StorageError(f"{folder} cannot be opened: {META} is damaged: {error}") from None

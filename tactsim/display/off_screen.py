@@ -1,15 +1,13 @@
 """Pictures of surfaces in space by pyvista without a window, in a process of its own.
 
 VTK ends the whole process where it finds no graphics library (EGL, OSMesa or an X server); the run that asks for a picture must
-survive that. Called as ``python -m tactsim.display.off_screen SCENE.npz PICTURE.png ...`` this module is that process.
+survive that. Run as a program with SCENE.npz PICTURE.png ... this module is that process.
 """
 
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -20,11 +18,14 @@ from typing import Any
 import numpy as np
 
 from tactsim.errors import TactsimError
+from tactsim.outside.arrays import read_arrays
+from tactsim.outside.processes import run_child
 
 Array = np.ndarray
 
 PATIENCE = 120.0
 """Time in s after which a renderer that does not answer is given up."""
+MODULE = "tactsim.display.off_screen"
 REMEDY = "on Debian: apt-get install libegl1 libgl1-mesa-dri, or libosmesa6"
 
 
@@ -71,22 +72,13 @@ def pictures(surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> list[byt
     with tempfile.TemporaryDirectory() as folder:
         scene, drawn = Path(folder) / "scene.npz", [Path(folder) / f"picture{k}.png" for k in range(len(cameras))]
         _save(scene, surfaces, cameras)
-        root = str(Path(__file__).resolve().parents[2])
-        path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH")) if part)
-        environment = {**os.environ, "PYTHONPATH": path, "PYVISTA_OFF_SCREEN": "true"}
-        try:
-            done = subprocess.run(
-                _command(scene, drawn), env=environment, capture_output=True, timeout=PATIENCE, check=False, text=True
-            )
-        except subprocess.TimeoutExpired:
-            raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s") from None
-        if done.returncode != 0 or not all(path.is_file() for path in drawn):
-            raise TactsimError(f"pyvista cannot render here: {_cause(done.stderr, done.returncode)} ({REMEDY})")
+        arguments = [str(scene), *map(str, drawn)]
+        done = run_child(MODULE, arguments, time_limit=PATIENCE, environment={"PYVISTA_OFF_SCREEN": "true"})
+        if done.out_of_time:
+            raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
+        if done.code or not all(path.is_file() for path in drawn):
+            raise TactsimError(f"pyvista cannot render here: {_cause(done.said, done.code)} ({REMEDY})")
         return [path.read_bytes() for path in drawn]
-
-
-def _command(scene: Path, drawn: Sequence[Path]) -> list[str]:
-    return [sys.executable, "-m", "tactsim.display.off_screen", str(scene), *map(str, drawn)]
 
 
 def _save(path: Path, surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> None:
@@ -114,12 +106,12 @@ def _main(scene: str, *drawn: str) -> None:
     import pyvista
     from matplotlib.image import imsave
 
-    with np.load(scene) as arrays:
-        told = json.loads(str(arrays["told"]))
-        parts = [
-            (part, arrays[f"points{k}"], arrays[f"triangles{k}"], part["colour"] or arrays[f"colour{k}"])
-            for k, part in enumerate(told["surfaces"])
-        ]
+    arrays = read_arrays(Path(scene).read_bytes(), "the scene")
+    told = json.loads(str(arrays["told"]))
+    parts = [
+        (part, arrays[f"points{k}"], arrays[f"triangles{k}"], part["colour"] or arrays[f"colour{k}"])
+        for k, part in enumerate(told["surfaces"])
+    ]
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=told["cameras"][0]["pixels"])
     plotter.set_background("white")
     for part in parts:

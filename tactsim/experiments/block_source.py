@@ -19,6 +19,7 @@ from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
 from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.mesh.structured_block import morphed_block, structured_block
+from tactsim.outside.input_path import InputPath
 from tactsim.units import FrozenModel, format_quantity
 
 Array = np.ndarray
@@ -125,7 +126,7 @@ class FileSource(FrozenModel):
     """A mesh made by another program, for the block and the inclusions that the case describes."""
 
     kind: Literal["file"]
-    path: str
+    path: InputPath
     """Any file of tetrahedra that meshio reads."""
     unit: Literal["m", "cm", "mm", "um"]
     """Unit of its coordinates."""

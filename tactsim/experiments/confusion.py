@@ -24,6 +24,7 @@ from tactsim.localization.confusion import ConfusionTable, class_of, estimated_c
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
+from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import Force, format_quantity
 
@@ -36,9 +37,9 @@ class Confusion(Experiment):
     """
 
     kind: Literal["confusion"] = "confusion"
-    grasps: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Folders of results of grasps, relative to the working folder; the shapes of their inclusions are the truth."""
-    reference: str
+    grasps: Annotated[tuple[InputPath, ...], Field(min_length=1)]
+    """Folders of results of grasps, beside the case or in the working folder; the shapes of their inclusions are the truth."""
+    reference: InputPath
     """Folder of the same grasp of plain tissue at the same closing."""
     readings: Source = "taxel_force"
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""

@@ -10,6 +10,7 @@ from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.identification.dma_data import FEWEST_FREQUENCIES, THESIS_FREQUENCIES, DmaData, read_dma, synthetic_dma
 from tactsim.identification.dma_signals import dma_from_signals, read_dma_signals
+from tactsim.outside.input_path import InputPath
 from tactsim.units import Area, Frequency, FrozenModel, Length, check_increasing
 
 Seed = Annotated[int, Field(ge=0)]
@@ -49,8 +50,9 @@ class MeasuredDma(FrozenModel):
     """Data read from a file."""
 
     kind: Literal["file"] = "file"
-    path: str
-    """CSV file, relative to the working folder; header such as ``frequency [Hz], storage modulus [kPa], loss modulus [kPa]``."""
+    path: InputPath
+    """CSV file, beside the case or in the working folder; header such as
+    ``frequency [Hz], storage modulus [kPa], loss modulus [kPa]``."""
     noise: Annotated[float, Field(gt=0, le=0.2)] | None = None
     """Relative standard deviation of each number; null estimates it from the residuals of the fit."""
 
@@ -67,8 +69,8 @@ class MeasuredDma(FrozenModel):
 class SignalsTest(FrozenModel):
     """The signals of one test at one frequency."""
 
-    path: str
-    """CSV file, relative to the working folder; header such as ``time [s], load [N], displacement [mm]``."""
+    path: InputPath
+    """CSV file, beside the case or in the working folder; header such as ``time [s], load [N], displacement [mm]``."""
     frequency: Annotated[Frequency, Field(gt=0)]
     """Test frequency."""
 

@@ -20,6 +20,7 @@ from tactsim.identification.film_creep import (
     synthetic_creep,
 )
 from tactsim.interfaces import Experiment, Progress
+from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.composite import AnyComposite
 from tactsim.sensors.composite_library import named_composite
@@ -63,8 +64,8 @@ class MeasuredCreep(FrozenModel):
     """Creep read from a file."""
 
     kind: Literal["file"] = "file"
-    path: str
-    """CSV file, relative to the working folder, with the columns ``time [s], force [N], strain [1]``."""
+    path: InputPath
+    """CSV file, beside the case or in the working folder, with the columns ``time [s], force [N], strain [1]``."""
     area: Annotated[Area, Field(gt=0)]
     """Area of the sample that carries the force."""
 

@@ -10,6 +10,7 @@ from pydantic import Field
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.interfaces import Array
+from tactsim.outside.input_path import InputPath
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
 from tactsim.sensors.signal_chain import SignalChain
@@ -77,8 +78,8 @@ class MeasuredCalibration(FrozenModel):
     """Readings from a file."""
 
     kind: Literal["file"] = "file"
-    path: str
-    """CSV file, relative to the working folder; header such as ``force [N], voltage [V]``."""
+    path: InputPath
+    """CSV file, beside the case or in the working folder; header such as ``force [N], voltage [V]``."""
     sensors: Annotated[int, Field(ge=1, le=MOST_SENSORS)] = 1
     """Number of columns of voltage; beyond one they are numbered: ``force [N], voltage 1 [V], voltage 2 [V]``."""
 

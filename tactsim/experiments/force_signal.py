@@ -13,6 +13,7 @@ from scipy.signal import chirp, square
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.loading import ForceLoading
 from tactsim.identification.columns import read_columns
+from tactsim.outside.input_path import InputPath
 from tactsim.sensors.film import HOLM
 from tactsim.sensors.force_history import checked_forces, checked_times
 from tactsim.units import Force, Frequency, FrozenModel, Time, format_quantity
@@ -136,8 +137,8 @@ class Record(FrozenModel):
     """A measured or computed force, linear between its samples; times count from the first one."""
 
     kind: Literal["file"]
-    path: str
-    """CSV file, relative to the working folder, with the columns ``time [s], force [N]``."""
+    path: InputPath
+    """CSV file, beside the case or in the working folder, with the columns ``time [s], force [N]``."""
     highest_frequency: ClassVar[float] = 0.0
 
     @property

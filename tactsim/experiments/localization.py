@@ -28,6 +28,7 @@ from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
 from tactsim.localization.readings import silent_taxels, silent_words
+from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import Force, format_quantity
@@ -55,9 +56,9 @@ class Localization(Experiment):
     """
 
     kind: Literal["localization"] = "localization"
-    grasp: str
-    """Folder of the result of a grasp, relative to the working folder."""
-    reference: str | None = None
+    grasp: InputPath
+    """Folder of the result of a grasp, beside the case or in the working folder."""
+    reference: InputPath | None = None
     """Folder of the same grasp without a lump at the same closing; null if there is none."""
     readings: Source = "taxel_force"
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""

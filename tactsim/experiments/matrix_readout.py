@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.taxel_voltages import SIDES, readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment, Progress
+from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
@@ -25,8 +26,8 @@ class MatrixReadoutRun(Experiment):
     """Voltages and read forces of all taxels over the time of a stored grasp."""
 
     kind: Literal["matrix_readout"] = "matrix_readout"
-    grasp: str
-    """Folder of the result of a grasp, relative to the working folder."""
+    grasp: InputPath
+    """Folder of the result of a grasp, beside the case or in the working folder."""
     readout: MatrixReadout = MatrixReadout()
     """Sensors and electronics."""
 

@@ -8,7 +8,6 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 from pydantic import ValidationError
@@ -19,6 +18,8 @@ from tactsim.experiments.grasp import Grasp
 from tactsim.experiments.grasp_setup import GraspSetup
 from tactsim.experiments.lump_sensitivity import lump_response
 from tactsim.localization.lump_response import LumpResponse
+from tactsim.outside.arrays import read_arrays
+from tactsim.outside.files import opened
 from tactsim.results.reading import read_result
 from tactsim.results.storage import replace_file
 from tactsim.user_cache import user_cache
@@ -74,9 +75,9 @@ def _plain(provenance: dict[str, Any], folder: str) -> Grasp:
 def _read(place: Path) -> LumpResponse | None:
     """What was kept, None if there is nothing usable."""
     try:
-        with np.load(io.BytesIO(place.read_bytes()), allow_pickle=False) as file:
-            return LumpResponse((file["x"], file["y"], file["z"]), file["radii"], file["values"])
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+        file = read_arrays(opened(place, "kept file").read(), place.name)
+        return LumpResponse((file["x"], file["y"], file["z"]), file["radii"], file["values"])
+    except (StorageError, ValueError, LookupError):
         return None
 
 

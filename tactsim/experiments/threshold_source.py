@@ -16,6 +16,7 @@ from tactsim.identification.columns import read_columns
 from tactsim.interfaces import Array, Progress
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
+from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Status
 from tactsim.units import FrozenModel, Length, format_quantity
@@ -97,8 +98,8 @@ class RunSource(FrozenModel):
     """The history of an indentation that was run before."""
 
     kind: Literal["run"] = "run"
-    path: str
-    """Folder of the result, relative to the working folder."""
+    path: InputPath
+    """Folder of the result, beside the case or in the working folder."""
     beyond: PositiveLength = 0.2e-3
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
@@ -138,8 +139,8 @@ class CurveSource(FrozenModel):
     """A stored curve."""
 
     kind: Literal["curve"] = "curve"
-    path: str
-    """CSV file, relative to the working folder; header such as
+    path: InputPath
+    """CSV file, beside the case or in the working folder; header such as
     ``displacement [mm], plate force [N], tissue rise [mm], small sensor force [N]``; one row stands at the touch."""
     inner_radius: PositiveLength = 1.5e-3
     """Radius of the hole."""

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from tactsim.errors import InvalidQuantity, StorageError, shown
+from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Array
+from tactsim.outside.files import opened
 from tactsim.units import parse_quantity
 
 _HEADER = re.compile(r"(?P<name>[^\[\]()]+?)\s*(?:[\[(](?P<unit>[^\[\]()]*)[\])])?")
@@ -36,7 +37,6 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
         If a column is unknown, repeated or missing, has no unit or a wrong one, or a row is not one finite number per
         column; with file and line.
     """
-    path = Path(path)
     rows = data_lines(path)
     header = [_column(path, cell, units) for cell in _cells(f"{path}:{rows[0][0]}", rows[0][1])]
     names = [name for name, _ in header]
@@ -51,7 +51,7 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
 
 
-def data_lines(path: Path) -> list[tuple[int, str]]:
+def data_lines(path: str | Path) -> list[tuple[int, str]]:
     """Header and data lines with their numbers, without blanks and comments.
 
     Raises
@@ -61,19 +61,14 @@ def data_lines(path: Path) -> list[tuple[int, str]]:
     InvalidQuantity
         If nothing is left.
     """
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        raise StorageError(f"{path}: {error}; save it as UTF-8") from None
-    except (OSError, ValueError) as error:  # ValueError: a zero byte in the path
-        raise StorageError(f"{shown(str(path))}: {error}") from None
+    lines = opened(path, "table").text().splitlines()
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise InvalidQuantity(f"{path}: no header and no data")
     return rows
 
 
-def _column(path: Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
+def _column(path: str | Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
     """Name and SI factor of a header cell."""
     match = _HEADER.fullmatch(cell.strip())
     name = " ".join(match["name"].lower().replace("_", " ").split()) if match else ""

@@ -72,7 +72,6 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     InvalidQuantity
         If it holds no usable curve, with file and line.
     """
-    path = Path(path)
     rows = data_lines(path)
     header = [cell.strip() for cell in next(csv.reader([rows[0][1]]))]
     strain_at, strain_name, percent = _column(path, header, STRETCH_COLUMNS)
@@ -86,7 +85,7 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     return UniaxialCurve(stretch, stress / stretch if stress_name in ("true_stress", "cauchy_stress") else stress, str(path))
 
 
-def _column(path: Path, header: list[str], allowed: tuple[str, ...]) -> tuple[int, str, str]:
+def _column(path: str | Path, header: list[str], allowed: tuple[str, ...]) -> tuple[int, str, str]:
     """Position, name and unit text of the one column whose name is allowed."""
     found = []
     for position, cell in enumerate(header):
@@ -101,7 +100,7 @@ def _column(path: Path, header: list[str], allowed: tuple[str, ...]) -> tuple[in
     return found[0]
 
 
-def _stress_factor(path: Path, column: str, unit: str) -> float:
+def _stress_factor(path: str | Path, column: str, unit: str) -> float:
     """Pa per unit of a stress column."""
     if not unit:
         raise InvalidQuantity(f"{path}: column {column!r} has no unit; write it after the name, like nominal_stress_kPa")
@@ -111,7 +110,7 @@ def _stress_factor(path: Path, column: str, unit: str) -> float:
         raise InvalidQuantity(f"{path}: column {column!r}: {error}") from None
 
 
-def _strain_factor(path: Path, column: str, unit: str) -> float:
+def _strain_factor(path: str | Path, column: str, unit: str) -> float:
     """1 for a plain number, 0.01 for percent."""
     if unit not in ("", "%", "percent"):
         raise InvalidQuantity(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 from pydantic import ValidationError
@@ -13,6 +12,9 @@ from scipy.special import expit
 
 from tactsim.errors import InputError, StorageError
 from tactsim.localization.interface import Readings
+from tactsim.outside.arrays import read_arrays
+from tactsim.outside.files import opened
+from tactsim.outside.text import one_line
 from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
@@ -107,6 +109,8 @@ class LearnedWeights:
         return content.getvalue()
 
 
+MOST_PARTS = 1000
+"""Networks of an ensemble, and layers of a network; five and three are trained."""
 NUMBERS = ("block_size", "middle", "scale", "covariance", "growth")
 """Arrays of the weights beside those of the networks."""
 
@@ -119,21 +123,17 @@ def read_weights(path: str | Path) -> LearnedWeights:
     StorageError
         If there is no such file, or it does not hold the weights of this version.
     """
+    file = read_arrays(opened(path, "weights").read(), str(path))
     try:
-        with np.load(io.BytesIO(Path(path).read_bytes()), allow_pickle=False) as file:
-            if str(file["schema"]) != SCHEMA:
-                raise StorageError(f"{path} has the schema {str(file['schema'])[:40]!r}; this tactsim reads {SCHEMA!r}")
-            presence, *places = (_network(file, number) for number in range(int(file["networks"])))
-            layout = TaxelLayout.model_validate_json(str(file["layout"]))
-            numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
-            found = LearnedWeights(
-                layout=layout, places=tuple(places), presence=presence, held_out=int(file["held_out"]), **numbers
-            )
-    except FileNotFoundError:
-        raise StorageError(f"{path}: no such file; tactsim data train writes one") from None
-    except (ValueError, KeyError, EOFError, BadZipFile, ValidationError) as error:
-        why = "it is no npz file of numbers" if "pickle" in str(error) else str(error)[:120]
-        raise StorageError(f"{path} does not hold the weights of a learned estimator: {why}") from None
+        if str(file["schema"]) != SCHEMA:
+            raise StorageError(f"{path} has the schema {one_line(file['schema'], 40)!r}; this tactsim reads {SCHEMA!r}")
+        presence, *places = (_network(file, number) for number in range(_count(file["networks"])))
+        layout = TaxelLayout.model_validate_json(str(file["layout"]))
+        numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
+        held_out = int(file["held_out"])
+        found = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
+    except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
+        raise StorageError(f"{path} does not hold the weights of a learned estimator: {one_line(error, 120)}") from None
     if not found.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
     return found
@@ -156,8 +156,16 @@ def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
     return np.column_stack([flat / np.maximum(size, least)[:, None], *told])
 
 
-def _network(file: np.lib.npyio.NpzFile, number: int) -> Network:
-    layers = range(int(file[f"depth_{number}"]))
+def _count(value: Array) -> int:
+    """A number of parts that a file tells, of which it must hold that many."""
+    count = int(value)
+    if not 1 <= count <= MOST_PARTS:
+        raise ValueError(f"{count} networks or layers; allowed: 1 to {MOST_PARTS}")
+    return count
+
+
+def _network(file: dict[str, Array], number: int) -> Network:
+    layers = range(_count(file[f"depth_{number}"]))
     found = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
     if not all(np.isfinite(array).all() for part in found for array in part):
         raise ValueError("weights that are not finite")

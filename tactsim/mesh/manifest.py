@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import StorageError
+from tactsim.outside.files import opened
 from tactsim.units import FrozenModel
 
 MANIFEST = "manifest.yaml"
@@ -66,7 +67,7 @@ def _entries(place: Path, modified: int) -> tuple[ManifestEntry, ...]:
     from ruamel.yaml.error import YAMLError
 
     try:
-        return _ENTRIES.validate_python(tuple(YAML(typ="safe", pure=True).load(place.read_text("utf-8")) or ()))
+        return _ENTRIES.validate_python(tuple(YAML(typ="safe", pure=True).load(opened(place, "description").text()) or ()))
     except (OSError, YAMLError, ValidationError, TypeError, ValueError) as error:
         raise StorageError(f"cannot read {place}: {error}") from None
 

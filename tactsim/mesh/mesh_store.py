@@ -6,11 +6,8 @@ A mesh is looked up among those shipped with the cases, then in the user's cache
 from __future__ import annotations
 
 import hashlib
-import io
 import os
 import threading
-import zipfile
-import zlib
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -29,10 +26,13 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.shipped import shipped_folders
 from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
+from tactsim.outside.arrays import LARGEST, read_arrays
+from tactsim.outside.files import opened
+from tactsim.outside.processes import machine_memory
 from tactsim.user_cache import user_cache
 
 Array = np.ndarray
-_DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, RuntimeError)
+_DAMAGE = (OSError, ValueError, LookupError, RuntimeError)
 
 
 @dataclass(frozen=True)
@@ -136,8 +136,7 @@ def write_block_mesh(block: BlockMesh, place: Path) -> None:
 def _arrays(place: Path) -> dict[str, Array] | None:
     """The arrays in a file, None if there is none, it is damaged, or the mesh is not the one it was written with."""
     try:
-        with np.load(io.BytesIO(place.read_bytes()), allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        arrays = read_arrays(opened(place, "kept file").read(), place.name, largest=machine_memory() or LARGEST)
         mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
         return arrays if str(arrays["content"]) == content_hash(mesh) else None
     except _DAMAGE:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
 import sys
 import tempfile
 import time
@@ -28,6 +27,8 @@ from tactsim.mesh.curving import fitted
 from tactsim.mesh.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import background
 from tactsim.mesh.solid import Inclusion, Triangles, outward
+from tactsim.outside.arrays import LARGEST, read_arrays
+from tactsim.outside.processes import Ended, machine_memory, run_child
 
 Array = np.ndarray
 ENVELOPE = 0.03
@@ -137,36 +138,31 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
     with tempfile.TemporaryDirectory(prefix="tactsim-mesh-") as folder:
         asked, answer = Path(folder) / "request.npz", Path(folder) / "answer.npz"
         np.savez(asked, **request)  # type: ignore[arg-type]
-        command = [sys.executable, "-m", MODULE, str(asked), str(answer)]
-        try:
-            done = subprocess.run(command, capture_output=True, timeout=time_limit, check=False, stdin=subprocess.DEVNULL)
-        except subprocess.TimeoutExpired:
-            raise ConvergenceError(
-                f"the mesher was stopped after {time_limit:g} s; take larger elements or a longer time_limit"
-            ) from None
-        if done.returncode or not answer.exists():
-            raise _failure(done)
-        with np.load(answer, allow_pickle=False) as found:
-            corners, simplices = found["corners"], found["simplices"]
+        done = run_child(MODULE, [str(asked), str(answer)], time_limit=time_limit)
+        if done.code or not answer.exists():
+            raise _failure(done, time_limit)
+        found = read_arrays(answer.read_bytes(), "the mesher's answer", largest=machine_memory() or LARGEST)
+        corners, simplices = found["corners"], found["simplices"]
     if not len(simplices) or not np.isfinite(corners).all():
         raise ConvergenceError("the mesher gave no tetrahedra")
     return corners, simplices.astype(np.int64)
 
 
-def _failure(done: subprocess.CompletedProcess[bytes]) -> InputError | ConvergenceError:
-    last = done.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
-    if "No module named 'pytetwild'" in last[0]:
+def _failure(done: Ended, time_limit: float) -> InputError | ConvergenceError:
+    if done.out_of_time:
+        return ConvergenceError(f"the mesher was stopped after {time_limit:g} s; take larger elements or a longer time_limit")
+    if "No module named 'pytetwild'" in done.last_line:
         return InputError("meshing a block with inclusions needs the package pytetwild: pip install pytetwild")
-    how = f"was ended by signal {-done.returncode}" if done.returncode < 0 else f"failed with code {done.returncode}"
-    return ConvergenceError(f"the mesher {how}: {last[0]}")
+    if done.out_of_memory:
+        return ConvergenceError("the mesher needs more memory than this machine has; take larger elements")
+    return ConvergenceError(f"the mesher failed ({done.ending}): {done.last_line or 'no message'}")
 
 
 def main(asked: str, answer: str) -> None:
     """Answer one request; what the child process does."""
     import pytetwild
 
-    with np.load(asked, allow_pickle=False) as file:
-        request: dict[str, Any] = {name: file[name] for name in file.files}
+    request: dict[str, Any] = dict(read_arrays(Path(asked).read_bytes(), "the request", largest=machine_memory() or LARGEST))
     request |= {name: float(request[name]) for name in ("edge_length_abs", "epsilon", "stop_energy")}
     corners, simplices = pytetwild.tetrahedralize(**request, vtk_ordering=True, disable_filtering=True, quiet=True)
     np.savez(answer, corners=corners, simplices=simplices)

@@ -9,7 +9,11 @@ from xml.etree import ElementTree
 import numpy as np
 
 from tactsim.errors import StorageError
+from tactsim.outside.files import opened
+from tactsim.outside.mesh_files import read_mesh_file
+from tactsim.outside.text import one_line
 from tactsim.results.result import FieldFrame
+from tactsim.results.storage import read_text
 
 INDEX = "fields.pvd"
 
@@ -37,13 +41,13 @@ def read_fields(directory: Path) -> tuple[FieldFrame, ...]:
         If a file is missing or damaged.
     """
     index = directory / INDEX
-    if not index.is_file():
+    if not index.exists():
         return ()
     try:
-        entries = [dict(entry.attrib) for entry in ElementTree.parse(index).iter("DataSet")]
+        entries = [dict(entry.attrib) for entry in ElementTree.fromstring(read_text(index, "description")).iter("DataSet")]
         return tuple(_read_frame(directory / Path(e["file"]).name, float(e["timestep"])) for e in entries)
     except (ElementTree.ParseError, KeyError, ValueError) as error:
-        raise StorageError(f"{index} is damaged: {error}") from None
+        raise StorageError(f"{index} is damaged: {one_line(error)}") from None
 
 
 def _write_frame(frame: FieldFrame, path: Path) -> None:
@@ -68,13 +72,6 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _read_frame(path: Path, time: float) -> FieldFrame:
-    from meshio import ReadError
-    from meshio.vtu import read
-
-    try:
-        mesh = read(path)
-    except (OSError, ReadError, ElementTree.ParseError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise StorageError(f"cannot read {path}: {error or 'it is damaged'}") from None
-    cells = {block.type: block.data for block in mesh.cells}
+    mesh = read_mesh_file(opened(path, "field file"))
     cell_data = {name: np.concatenate(parts) for name, parts in mesh.cell_data.items()}
-    return FieldFrame(time, mesh.points, cells, dict(mesh.point_data), cell_data)
+    return FieldFrame(time, mesh.points, dict(mesh.cells), mesh.point_data, cell_data)

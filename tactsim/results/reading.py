@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.errors import StorageError
+from tactsim.outside.files import opened_folder
+from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
 from tactsim.results.fields import read_fields
 from tactsim.results.folder import RESULT_FILE
@@ -33,11 +35,9 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     StorageError
         If a file is missing, damaged, or of a newer version of tactsim.
     """
-    folder = Path(directory)
-    if not folder.is_dir():
-        raise StorageError(f"{folder} is not a folder with a result of tactsim")
-    if not (folder / RESULT_FILE).is_file():
-        raise StorageError(f"{folder} holds no {RESULT_FILE}, so it is not a result of tactsim")
+    folder, _ = opened_folder(directory, "result of tactsim")
+    if not (folder / RESULT_FILE).exists():
+        raise StorageError(f"{one_line(directory)} holds no {RESULT_FILE}, so it is not a result of tactsim")
     document = parse_document(read_text(folder / RESULT_FILE), str(folder / RESULT_FILE))
     provenance = _provenance(folder / "provenance.json")
     result = result_of(document)
@@ -48,7 +48,7 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
 def _provenance(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(read_text(path))
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise StorageError(f"{path} is damaged: {error}") from None
     if not isinstance(content, dict):
         raise StorageError(f"{path} is damaged: it is not a mapping")

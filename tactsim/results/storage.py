@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tactsim.errors import StorageError
+from tactsim.outside.files import opened
 
 
 @contextmanager
@@ -41,10 +42,15 @@ def sync(path: Path) -> None:
         os.close(handle)
 
 
-def read_text(path: Path) -> str:
-    """The UTF-8 text of a file."""
-    with naming(path, "read"):
-        return path.read_bytes().decode("utf-8")
+def read_text(path: Path, kind: str = "result") -> str:
+    """The UTF-8 text of a file of a kind.
+
+    Raises
+    ------
+    StorageError
+        If it is missing, no regular file, too large or not UTF-8.
+    """
+    return opened(path, kind).text()
 
 
 def replace_file(path: Path, content: bytes) -> None:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import math
-import multiprocessing
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
-from tactsim.dataset.child_environment import child_environment
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
+from tactsim.outside.processes import requests
+from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results.storage import read_text, replace_file
 from tactsim.user_cache import user_cache
 from tactsim.validation.study import RunOutcome, Study
 
-ONE_THREAD = dict.fromkeys(("NUMBA_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-"""So that two runs do not fight for the same cores, and a result does not depend on their number."""
+MODULE = "tactsim.validation.execution"
+BROKEN = b"!"
+"""How an answer begins that tells of a defect."""
 Task = tuple[str, str, tuple[str, ...]]
 """Name of the run, path of the case file and the overrides."""
 Studies = dict[str, tuple[RunOutcome, ...]]
@@ -65,16 +66,15 @@ class StudyRunner:
         if not waiting:
             return
         progress(f"{len(waiting)} simulations in {min(self.workers, len(waiting))} processes")
-        with child_environment(ONE_THREAD):
-            pool = ProcessPoolExecutor(self.workers, mp_context=multiprocessing.get_context("spawn"))
-            try:
-                jobs = {pool.submit(simulated, task): case_id for case_id, task in waiting.items()}
-                for count, job in enumerate(as_completed(jobs), 1):
-                    outcome = _result_of(job)
-                    progress(f"{count}/{len(jobs)}  {outcome.id}: {outcome.status}, {outcome.seconds:.0f} s")
-                    yield jobs[job], outcome
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
+        with closing(WorkerPool[str](MODULE, (), self.workers)) as pool:
+            for case_id, task in waiting.items():
+                pool.submit(case_id, json.dumps(task).encode())
+            count = 0
+            while count < len(waiting):
+                for answer in pool.wait():
+                    count, outcome = count + 1, _outcome_of(answer)
+                    progress(f"{count}/{len(waiting)}  {outcome.id}: {outcome.status}, {outcome.seconds:.0f} s")
+                    yield answer.key, outcome
 
     def _place(self, case_id: str) -> Path:
         return (self.cache or user_cache("validation")) / f"{case_id}-{code_identity()}.json"
@@ -95,11 +95,22 @@ class StudyRunner:
             replace_file(place, outcome.model_dump_json().encode())
 
 
-def _result_of(job: Future[RunOutcome]) -> RunOutcome:
-    try:
-        return job.result()
-    except BrokenProcessPool:
-        raise ConvergenceError("a process of the simulations died; is there enough memory? take fewer workers") from None
+def _outcome_of(answer: Answer[str]) -> RunOutcome:
+    """What a process found.
+
+    Raises
+    ------
+    ConvergenceError
+        If it died.
+    TactsimError
+        If it met a defect of this program.
+    """
+    if answer.content is None:
+        told = f"a process of the simulations ended ({answer.ending}); is there enough memory? take fewer workers"
+        raise ConvergenceError(told)
+    if answer.content.startswith(BROKEN):
+        raise TactsimError(f"a simulation failed: {answer.content[len(BROKEN) :].decode(errors='replace')}")
+    return RunOutcome.model_validate_json(answer.content)
 
 
 def simulated(task: Task) -> RunOutcome:
@@ -132,3 +143,20 @@ def _disc_share(body: dict[str, float]) -> float:
 
 def _recorded(steps: Sequence, key: str) -> bool:
     return bool(steps) and all(key in step.values for step in steps)
+
+
+def main(descriptor: str) -> None:
+    """The life of a process: cases in, outcomes out, until the other end is gone."""
+    connection = requests(descriptor)
+    with suppress(EOFError, OSError):
+        while True:
+            name, path, overrides = json.loads(connection.recv_bytes())
+            try:
+                answer = simulated((name, path, tuple(overrides))).model_dump_json().encode()
+            except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process
+                answer = BROKEN + f"{type(error).__name__}: {error}".encode()
+            connection.send_bytes(answer)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

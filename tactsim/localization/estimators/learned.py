@@ -11,6 +11,7 @@ from tactsim.errors import InputError
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
 from tactsim.localization.networks import inputs, read_weights
 from tactsim.localization.region import GaussianRegion
+from tactsim.outside.input_path import InputPath
 
 Array = np.ndarray
 LEAST_RADIUS = 0.1e-3
@@ -28,8 +29,8 @@ class LearnedEstimator(Estimator):
     """
 
     kind: Literal["learned"] = "learned"
-    weights: str
-    """File of the weights, relative to the working folder."""
+    weights: InputPath
+    """File of the weights, beside the case or in the working folder."""
 
     @classmethod
     def example(cls) -> Self:

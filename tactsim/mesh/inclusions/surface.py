@@ -10,11 +10,12 @@ from typing import Literal, Self
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tactsim.errors import InputError, StorageError
+from tactsim.errors import InputError
 from tactsim.mesh.foreign import read_foreign
 from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
-from tactsim.mesh.shipped import shipped_path
 from tactsim.mesh.solid import Array, Inclusion, Point, Solid, Triangles
+from tactsim.outside.files import OutsideFile, opened
+from tactsim.outside.input_path import InputPath
 from tactsim.units import Angle
 
 FORMATS = (".stl", ".ply", ".obj")
@@ -26,7 +27,7 @@ class Surface(Inclusion):
     """A closed surface, turned about the origin of the file and then moved."""
 
     kind: Literal["surface"] = "surface"
-    path: str
+    path: InputPath
     """STL, PLY or OBJ file of triangles; one of ``meshes/`` is also found where this program is kept."""
     unit: Literal["m", "cm", "mm", "um"]
     """Unit of the coordinates in the file."""
@@ -48,21 +49,18 @@ class Surface(Inclusion):
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The body inside the surface."""
-        return (_placed(self, _state(self.path)),)
+        return (_placed(self, _file(self.path)),)
 
 
-def _state(path: str) -> tuple[int, int]:
-    """What changes when a file is written anew."""
-    try:
-        state = shipped_path(path).stat()
-    except OSError as error:
-        raise StorageError(f"cannot read {path}: {error.strerror or error}") from None
-    return state.st_mtime_ns, state.st_size
+def _file(path: str) -> tuple[OutsideFile, int]:
+    """The file of a surface, and the time in ns at which it was written, which tells whether it is the same still."""
+    file = opened(path, "surface")
+    return file, file.path.stat().st_mtime_ns
 
 
 @lru_cache(maxsize=8)
-def _placed(surface: Surface, state: tuple[int, int]) -> TriangulatedSolid:
-    vertices, triangles = read_surface(surface.path)
+def _placed(surface: Surface, state: tuple[OutsideFile, int]) -> TriangulatedSolid:
+    vertices, triangles = _read_surface(*state)
     turn = Rotation.from_euler("xyz", surface.rotation).as_matrix()
     placed = vertices * UNITS[surface.unit] @ turn.T + np.array(surface.translation)
     return TriangulatedSolid(placed, triangles, surface.path)
@@ -78,14 +76,15 @@ def read_surface(path: str) -> Triangles:
     InputError
         If it holds anything other than triangles in space.
     """
-    return _read_surface(path, _state(path))
+    return _read_surface(*_file(path))
 
 
 @lru_cache(maxsize=8)
-def _read_surface(path: str, state: tuple[int, int]) -> Triangles:
+def _read_surface(file: OutsideFile, written: int) -> Triangles:
+    path = file.named
     if Path(path).suffix.lower() not in FORMATS:
         raise InputError(f"{path}: surfaces are read from {', '.join(FORMATS)} files")
-    mesh = read_foreign(shipped_path(path))
+    mesh = read_foreign(file)
     others = {kind for kind, cells in mesh.cells if kind != "triangle" and len(cells)}
     triangles = [cells for kind, cells in mesh.cells if kind == "triangle"]
     if others or not sum(map(len, triangles)):

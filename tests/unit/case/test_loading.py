@@ -9,8 +9,8 @@ import pytest
 from pretence import CASE_TEXT, Pretence
 
 from tactsim.case import Case, load_case
-from tactsim.case.loading import LARGEST_FILE
 from tactsim.errors import CaseError, StorageError
+from tactsim.outside.files import LIMITS
 
 
 def refused(path: Path, text: str, *overrides: str) -> list[str]:
@@ -134,7 +134,7 @@ def test_a_fault_of_an_override_names_the_override(case_file: Path, override: st
         (b"title: \xff\xfe\n", "case.yaml:1: byte 0xff is not UTF-8 text"),
         ("title: x".encode("utf-16"), "is not UTF-8 text"),
         (b"\x7fELF\x00\x01", "not valid YAML"),
-        (b"#" * (LARGEST_FILE + 1), "larger than 1048576 bytes"),
+        (b"#" * (LIMITS["case file"] + 1), "larger than 1048576 bytes"),
     ],
 )
 def test_unusable_content(case_file: Path, content: bytes, words: str) -> None:

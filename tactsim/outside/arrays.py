@@ -1,0 +1,70 @@
+"""Arrays from npz files of others: no objects, and no array larger than the file can hold or the reader expects."""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+import zlib
+from typing import Any
+
+import numpy as np
+from numpy.lib import format as npy
+
+from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
+
+Array = np.ndarray
+LARGEST = 2**30
+"""Bytes that all arrays of a file may take together, where the reader names no other bound."""
+MOST_ARRAYS = 100_000
+"""Entries of a file, each of which costs time."""
+
+
+def read_arrays(content: bytes, name: str, *, largest: int = LARGEST) -> dict[str, Array]:
+    """The arrays of an npz file by name.
+
+    Parameters
+    ----------
+    content : the bytes of the file
+    name : how messages call it
+    largest : bytes that the arrays may take in memory; their headers are checked before anything is allocated
+
+    Raises
+    ------
+    StorageError
+        If the file is damaged, or its arrays hold objects or are too large.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            if len(entries) > MOST_ARRAYS or sum(entry.file_size for entry in entries) > largest:
+                raise StorageError(f"{one_line(name)} unpacks to more than {largest} bytes, which is more than it can need")
+            return {entry.filename.removesuffix(".npy"): _array(archive, entry) for entry in entries}
+    except StorageError:
+        raise
+    except (OSError, ValueError, LookupError, EOFError, TypeError, SyntaxError, RuntimeError, MemoryError) as error:
+        raise StorageError(f"{one_line(name)} is damaged: {one_line(error)}") from None
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
+        raise StorageError(f"{one_line(name)} is damaged: {one_line(error)}") from None
+
+
+def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Array:
+    with archive.open(entry) as file:
+        shape, dtype = _header(file)
+        if dtype.hasobject:
+            raise ValueError(f"{entry.filename} holds objects, which could run code")
+        told = math.prod(shape) * dtype.itemsize
+        if told > entry.file_size:
+            raise ValueError(f"{entry.filename} says that it holds {told} bytes and has {entry.file_size}")
+    with archive.open(entry) as file:
+        return npy.read_array(file, allow_pickle=False)
+
+
+def _header(file: Any) -> tuple[tuple[int, ...], np.dtype]:
+    version = npy.read_magic(file)
+    read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+    shape, _, dtype = read(file)
+    if any(length < 0 for length in shape):
+        raise ValueError("an array of negative length")
+    return shape, dtype

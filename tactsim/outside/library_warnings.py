@@ -1,0 +1,44 @@
+"""Warnings of libraries become warnings of the run: collected while it goes on, told once each in plain words."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import PurePath
+
+from tactsim.outside.text import one_line
+
+MOST_TOLD = 10
+"""Different warnings that are told; the rest are counted."""
+
+
+class LibraryWarnings:
+    """What libraries said."""
+
+    def __init__(self, caught: list[warnings.WarningMessage]):
+        self._caught = caught
+
+    def lines(self) -> list[str]:
+        """One line for each different warning: which library, what it says, how often."""
+        counts = Counter(f"{_library(one.filename)}: {one_line(one.message, 200)}" for one in self._caught)
+        told = [line if count == 1 else f"{line} ({count} times)" for line, count in counts.most_common(MOST_TOLD)]
+        left = len(counts) - len(told)
+        return told + ([f"and {left} other warnings of libraries"] if left > 0 else [])
+
+
+@contextmanager
+def collected_warnings() -> Iterator[LibraryWarnings]:
+    """A block whose Python warnings are collected instead of printed; those that are made errors stay errors."""
+    with warnings.catch_warnings(record=True) as caught:
+        yield LibraryWarnings(caught)
+
+
+def _library(filename: str) -> str:
+    """The package that a warning came from, never a path of the machine."""
+    parts = PurePath(filename).parts
+    for root in ("site-packages", "dist-packages"):
+        if root in parts[:-1]:
+            return parts[parts.index(root) + 1].removesuffix(".py")
+    return "tactsim" if "tactsim" in parts else PurePath(filename).stem.strip("<>")

@@ -1,0 +1,126 @@
+"""Meshes and surfaces in the formats of other programs, read by meshio in a child process: some of its readers never end on a
+truncated file, and a small compressed one may unpack to more than the machine has."""
+
+from __future__ import annotations
+
+import io
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.errors import StorageError
+from tactsim.outside.arrays import read_arrays
+from tactsim.outside.environment import ONE_THREAD
+from tactsim.outside.files import MEBIBYTE, OutsideFile
+from tactsim.outside.processes import run_child
+from tactsim.outside.text import one_line
+
+Array = np.ndarray
+TIME, TIME_PER_MEBIBYTE = 8.0, 2.0
+"""Time in s in which a file must be read, and how much more for each MiB: ten times what the slowest reader of text takes."""
+UNPACKED = 50
+"""Bytes in memory for one in the file: three times what the best compressed real meshes ask for."""
+ANSWER_MEMORY, READER_MEMORY = 64 * MEBIBYTE, 512 * MEBIBYTE
+"""Bytes that any mesh and any reader may take besides."""
+MODULE = "tactsim.outside.mesh_files"
+
+
+@dataclass(frozen=True)
+class MeshArrays:
+    """What a file holds, in its own units: points (n, d), blocks of cells (type, (m, k) node numbers), and data by name.
+
+    ``cell_data`` has one array for each block, ``groups`` the whole number of every named group.
+    """
+
+    points: Array
+    cells: tuple[tuple[str, Array], ...]
+    point_data: dict[str, Array] = field(default_factory=dict)
+    cell_data: dict[str, tuple[Array, ...]] = field(default_factory=dict)
+    groups: dict[str, int] = field(default_factory=dict)
+
+
+def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshArrays:
+    """The content of a file of any format that meshio reads.
+
+    Parameters
+    ----------
+    time_limit : in s; by default as the size asks for
+
+    Raises
+    ------
+    StorageError
+        If the file is damaged, of an unknown format, or asks for more time or memory than a file of its size should.
+    """
+    allowed = TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE if time_limit is None else time_limit
+    largest = ANSWER_MEMORY + UNPACKED * file.size
+    with tempfile.TemporaryDirectory(prefix="tactsim-read-") as folder:
+        answer = Path(folder) / "answer.npz"
+        arguments = [str(file.path.absolute()), str(answer), str(largest)]
+        memory = READER_MEMORY + 2 * largest
+        done = run_child(MODULE, arguments, time_limit=allowed, memory=memory, environment=ONE_THREAD)
+        named = f"cannot read {one_line(file.named)}"
+        if done.out_of_time:
+            raise StorageError(f"{named}: the reader was stopped after {allowed:.3g} s; is it complete?")
+        if done.out_of_memory:
+            raise StorageError(f"{named}: it asks for more memory than a file of {file.size} bytes should; is it damaged?")
+        if done.code or not answer.exists():
+            raise StorageError(f"{named}: {done.last_line or f'damaged or of an unknown format ({done.ending})'}")
+        return _unpacked(read_arrays(answer.read_bytes(), file.named, largest=largest))
+
+
+def _unpacked(arrays: dict[str, Array]) -> MeshArrays:
+    types = arrays["types"].tolist()
+    return MeshArrays(
+        arrays["points"],
+        tuple((name, arrays[f"cells_{k}"]) for k, name in enumerate(types)),
+        {name: arrays[f"point_{number}"] for number, name in enumerate(arrays["point_names"].tolist())},
+        {
+            name: tuple(arrays[f"cell_{number}_{k}"] for k in range(len(types)))
+            for number, name in enumerate(arrays["cell_names"].tolist())
+        },
+        dict(zip(arrays["group_names"].tolist(), arrays["group_numbers"].tolist(), strict=True)),
+    )
+
+
+def main(path: str, answer: str, largest: str) -> int:
+    """Read one file and write its arrays; what the child process does."""
+    import warnings
+
+    import meshio
+
+    warnings.simplefilter("ignore")  # the parent judges what was read
+    with np.errstate(all="ignore"):  # meshio guesses from the first bytes whether a file is binary
+        mesh = meshio.read(path)
+    kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
+    point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}
+    cell_data = {name: [np.asarray(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
+    point_data = {name: values for name, values in point_data.items() if values.dtype.kind in "fiub"}
+    cell_data = {name: parts for name, parts in cell_data.items() if all(part.dtype.kind in "fiub" for part in parts)}
+    groups = {name: int(np.ravel(value)[0]) for name, value in mesh.field_data.items()}
+    arrays = {f"cells_{number}": mesh.cells[k].data.astype(np.int64) for number, k in enumerate(kept)}
+    arrays |= {f"point_{number}": values for number, values in enumerate(point_data.values())}
+    for number, parts in enumerate(cell_data.values()):
+        arrays |= {f"cell_{number}_{k}": part for k, part in enumerate(parts)}
+    points = np.asarray(mesh.points, float)
+    if points.nbytes + sum(array.nbytes for array in arrays.values()) > int(largest):
+        raise MemoryError
+    content = io.BytesIO()
+    np.savez(
+        content,
+        points=points,
+        types=np.array([mesh.cells[k].type for k in kept], dtype=str),
+        point_names=np.array(list(point_data), dtype=str),
+        cell_names=np.array(list(cell_data), dtype=str),
+        group_names=np.array(list(groups), dtype=str),
+        group_numbers=np.array(list(groups.values()), dtype=np.int64),
+        **arrays,
+    )
+    Path(answer).write_bytes(content.getvalue())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

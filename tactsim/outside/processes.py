@@ -1,0 +1,161 @@
+"""The one place that starts child processes: isolated from the working folder, bounded in memory and time, ended with the parent.
+
+A child imports tactsim from where its parent has it and everything else from the interpreter's own folders: neither from the
+working folder nor from ``PYTHONPATH``, whose files may be anybody's.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import tactsim
+from tactsim.outside.text import one_line
+
+ROOT = Path(tactsim.__file__).resolve().parents[1]
+"""The folder that holds the package."""
+BEGIN = Path(__file__).resolve().with_name("child.py")
+ISOLATED = ("-P", "-E")
+"""Python's options: no import from the folder of the program or the working folder, no ``PYTHON*`` variables."""
+LAST_WORDS = 4096
+"""Bytes at the end of what a child wrote that are kept."""
+UNSET = -1
+"""Exit code of a child that was stopped."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a child ended: its exit code, what it last wrote to standard error, and whether its time was up."""
+
+    code: int
+    said: str
+    out_of_time: bool = False
+
+    @property
+    def last_line(self) -> str:
+        """Its last words on one line, empty if it said nothing."""
+        return one_line((self.said.strip().splitlines() or [""])[-1], 300)
+
+    @property
+    def ending(self) -> str:
+        """How it ended in words: the signal or the exit code."""
+        return ending(self.code)
+
+    @property
+    def out_of_memory(self) -> bool:
+        """Whether the limit of its memory ended it."""
+        return "MemoryError" in self.said or "bad_alloc" in self.said or "allocate memory" in self.said
+
+
+def run_child(
+    module: str,
+    arguments: Sequence[str],
+    *,
+    time_limit: float,
+    memory: int | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Ended:
+    """Runs a module of tactsim as a program of its own and waits for its end.
+
+    Parameters
+    ----------
+    arguments : of the program
+    time_limit : in s, after which the child is killed
+    memory : bytes that the child may write to; by default what the machine has
+    environment : variables that the child has beside those of this process
+    """
+    with tempfile.TemporaryFile() as words:
+        child = _started(module, arguments, memory, environment, stdin=subprocess.DEVNULL, stdout=words, stderr=words)
+        try:
+            child.wait(time_limit)
+        except subprocess.TimeoutExpired:
+            return Ended(UNSET, _last_words(words), out_of_time=True)
+        finally:
+            _killed(child)
+        return Ended(child.returncode, _last_words(words))
+
+
+class Worker:
+    """A child that answers requests until it is closed; both are bytes, through ``connection``."""
+
+    def __init__(self, module: str, arguments: Sequence[str] = (), *, environment: Mapping[str, str] | None = None):
+        self.connection, other = Pipe()
+        try:
+            self._process = _started(
+                module, [str(other.fileno()), *arguments], None, environment, stdin=subprocess.DEVNULL, pass_fds=(other.fileno(),)
+            )
+        except BaseException:
+            self.connection.close()
+            raise
+        finally:
+            other.close()
+
+    @property
+    def pid(self) -> int:
+        """Its number on this machine."""
+        return self._process.pid
+
+    def stop(self) -> None:
+        """Ends it at once."""
+        self.connection.close()
+        _killed(self._process)
+
+    def ended(self) -> str:
+        """How it ended, in words; waits for the end."""
+        self.connection.close()
+        return ending(self._process.wait())
+
+
+def requests(descriptor: str) -> Connection:
+    """In a worker: the other end of the connection to its parent, whose signals it leaves to the parent."""
+    for name in ("SIGINT", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    return Connection(int(descriptor))
+
+
+def ending(code: int | None) -> str:
+    """An exit code in words."""
+    if code is not None and code < 0:
+        with suppress(ValueError):
+            name = signal.Signals(-code).name
+            return f"{name}, perhaps out of memory" if name == "SIGKILL" else name
+    return f"exit code {code}"
+
+
+def machine_memory() -> int:
+    """Bytes of memory of this machine, 0 if it does not tell."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return 0
+
+
+def _started(
+    module: str, arguments: Sequence[str], memory: int | None, environment: Mapping[str, str] | None, **streams: Any
+) -> subprocess.Popen[bytes]:
+    most = machine_memory() if memory is None else memory
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    command = [sys.executable, *ISOLATED, str(BEGIN), str(ROOT), str(most), str(os.getpid()), module, *arguments]
+    return subprocess.Popen(command, env={**kept, **(environment or {})}, **streams)
+
+
+def _killed(child: subprocess.Popen[bytes]) -> None:
+    if child.poll() is None:
+        child.kill()
+        child.wait()
+
+
+def _last_words(words: Any) -> str:
+    words.seek(max(0, words.seek(0, os.SEEK_END) - LAST_WORDS))
+    return words.read().decode("utf-8", "replace")

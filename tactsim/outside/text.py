@@ -1,0 +1,39 @@
+"""Text that others wrote, made harmless: what it says is shown, what it could do to a terminal, a page or a table is not."""
+
+from __future__ import annotations
+
+import unicodedata
+
+LONGEST_LINE = 500
+"""Characters of a foreign text that are shown: more than any title or reason of this program has."""
+_ESCAPED = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
+"""Unicode categories that move the cursor, reverse the reading order, end a line or show as nothing."""
+_KEPT = frozenset("\n\t")
+
+
+def one_line(text: object, longest: int = LONGEST_LINE) -> str:
+    """``text`` on one line of at most ``longest`` characters, with control characters spelled out, such as ``\\x1b``.
+
+    Long text is cut in the middle, where a name or a reason says least.
+    """
+    plain = "".join(_spelled(character) for character in _bounded(str(text), longest))
+    return _bounded(plain, longest)
+
+
+def printable(text: str) -> str:
+    """Several lines as they may go to a terminal or a log: line breaks and tabs stay, all other control characters are spelled
+    out."""
+    return text if text.isascii() and text.isprintable() else "".join(_spelled(c, _KEPT) for c in text)
+
+
+def _spelled(character: str, kept: frozenset[str] = frozenset()) -> str:
+    if character in kept or unicodedata.category(character) not in _ESCAPED:
+        return character
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def _bounded(text: str, longest: int) -> str:
+    if len(text) <= longest:
+        return text
+    head = (longest - 3) // 2
+    return f"{text[:head]}...{text[head + 3 - longest :]}"
