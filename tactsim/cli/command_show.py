@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tactsim.cli import console
 from tactsim.errors import InputError
+from tactsim.outside.text import one_line
 
 NAME = "show"
 SUMMARY = "print a stored result or data set, save its figure, or open the live page"
@@ -79,7 +80,9 @@ def _show_result(arguments: argparse.Namespace) -> int:
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
     console.out(result_report(stored.result, str(case.get("title", "")) if isinstance(case, dict) else ""))
-    console.out(f"  case {stored.case_id}")
+    console.out(f"  case {one_line(stored.case_id)}")
+    for name in stored.changed:
+        console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
         from tactsim.cli.figures import rendered_figures
         from tactsim.results.storage import replace_file
