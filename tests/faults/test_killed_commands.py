@@ -35,7 +35,11 @@ def mark_of(out: Path) -> object:
     assert manifest is not None
     assert foreign(out, manifest) == []
     assert all((out / name).exists() for name in manifest.files), "a file of the new set is missing"
-    return "x" in read_result(out).provenance["overrides"][-1] if (out / "result.json").exists() else (out / "validation.md").read_text()
+    return (
+        "x" in read_result(out).provenance["overrides"][-1]
+        if (out / "result.json").exists()
+        else (out / "validation.md").read_text()
+    )
 
 
 @pytest.fixture
