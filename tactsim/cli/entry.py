@@ -7,6 +7,7 @@ import os
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import NoReturn
 
 from tactsim import __version__
@@ -49,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads and MKL's spin on the same cores
     debug = False
     try:
-        check_environment(os.environ)
+        check_environment(os.environ, Path())
         parsed = _parser().parse_args(arguments)
         debug = parsed.debug
         with _told_warnings():

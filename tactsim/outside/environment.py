@@ -1,8 +1,10 @@
-"""The variables of the environment that numerical libraries read, checked before one of them crashes on them."""
+"""What numerical libraries read around them: variables on which they crash, and files by which others could steer them."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from pathlib import Path
 
 from tactsim.errors import InputError
 from tactsim.outside.text import one_line
@@ -14,14 +16,23 @@ MOST_THREADS = 4096
 """More threads than any machine has cores are a mistake that libraries answer with a crash."""
 
 
-def check_environment(variables: Mapping[str, str]) -> None:
-    """Refuses numbers of threads with which numerical libraries crash.
+STEERING = ".numba_config.yaml"
+"""Numba reads it from the working folder; it may name a folder of compiled code, which then runs."""
+
+
+def check_environment(variables: Mapping[str, str], folder: Path) -> None:
+    """Refuses numbers of threads with which numerical libraries crash, and a working folder whose files would steer them.
 
     Raises
     ------
     InputError
-        Naming the variable, its value and what is allowed.
+        Naming the variable or the file, and what is allowed.
     """
+    if os.path.lexists(folder / STEERING):
+        raise InputError(
+            f"the working folder holds {STEERING}, which would decide what code the compiler runs; "
+            "work in another folder or remove the file, and set what you need as NUMBA_... variables"
+        )
     for name in THREADS:
         value = variables.get(name, "")
         first = value.split(",")[0].strip()  # OpenMP takes a list, one number for each level

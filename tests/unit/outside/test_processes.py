@@ -101,8 +101,14 @@ def test_endings_are_words() -> None:
 
 
 @pytest.mark.parametrize("value", ["0", "-1", "two", "1e3", "99999", "0,2"])
-def test_numbers_of_threads_that_crash_libraries_are_refused(value: str) -> None:
+def test_numbers_of_threads_that_crash_libraries_are_refused(value: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"OMP_NUM_THREADS is '.*'; allowed: 1 to 4096, or unset"):
-        check_environment({"OMP_NUM_THREADS": value})
-    check_environment({"OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "", "NUMBA_NUM_THREADS": "1"})
-    check_environment({"OMP_NUM_THREADS": "4,2"})
+        check_environment({"OMP_NUM_THREADS": value}, tmp_path)
+    check_environment({"OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "", "NUMBA_NUM_THREADS": "1"}, tmp_path)
+    check_environment({"OMP_NUM_THREADS": "4,2"}, tmp_path)
+
+
+def test_a_folder_that_would_steer_the_compiler_is_refused(tmp_path: Path) -> None:
+    (tmp_path / ".numba_config.yaml").write_text("cache_dir: evil")
+    with pytest.raises(InputError, match=r"the working folder holds \.numba_config\.yaml"):
+        check_environment({}, tmp_path)
