@@ -58,4 +58,4 @@ def ended_early(record: Record, steps: Iterable[StepRecord], progress: Progress)
 
 def failure(error: Unfinished) -> str:
     """The reason of a run that ended before its end."""
-    return f"stopped converging: {error}" if isinstance(error, ConvergenceError) else f"{error}; what was accepted is kept"
+    return f"stopped converging: {error}" if isinstance(error, ConvergenceError) else str(error)

@@ -102,9 +102,8 @@ def contact_equilibrium(
         overshot = overshot or excess > last
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
         if excess <= 1 and not coarse:
-            committed = tuple(c.committed(d) for c, d in zip(contacts, displacements, strict=True))
-            way = load - state.load
-            committed = tuple(c.grown(start, way) for c, start in zip(committed, state.contacts, strict=True))
+            both = zip(contacts, displacements, state.contacts, strict=True)
+            committed = tuple(contact.committed(d).grown(start, load - state.load) for contact, d, start in both)
             return ContactEquilibrium(
                 load, solved.unknowns, iterations, solved.history[-1], committed, regularisation, solved.kinematics
             )

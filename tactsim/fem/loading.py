@@ -103,7 +103,7 @@ class PathFollower(Generic[State]):
                 step = (load - now.load) * self._control.cut
                 if step < self._control.smallest:
                     raise ConvergenceError(f"gave up at {now.load:.6g} of {target:.6g}: {error}", error.history) from error
-                headway.spent(error.solutions, now.load, (target - now.load) / self._control.largest)
+                headway.spent(error.solutions, now.load, (target - now.load) / self._control.largest, error)
                 continue
             step = self._control.next_step(max(step, load - now.load), reached.iterations)
             before, now = now, reached

@@ -48,8 +48,10 @@ class Headway:
         self._start, self._target = start, target
         self._marks: deque[tuple[int, float]] = deque([(0, 0.0)])
 
-    def spent(self, solutions: int, place: float, steps: float) -> None:
+    def spent(self, solutions: int, place: float, steps: float, failure: ConvergenceError | None = None) -> None:
         """Take note of ``solutions`` more linear ones, of the ``place`` reached, and of how many more ``steps`` are asked for.
+
+        ``failure`` is why the last step was not accepted, if it was not.
 
         Raises
         ------
@@ -68,11 +70,13 @@ class Headway:
         rest = max(-math.log(share) if share > 0 else math.inf, SHORTEST_REST)
         further = rest / gained * (total - before) if gained > 0 else math.inf
         if further > MOST_FURTHER + PER_STEP * steps:
+            last = "" if failure is None else f"; the last step failed: {failure}"
             raise ConvergenceError(
                 f"gave up at {place:.6g} of {self._target:.6g}, for there is hardly any headway: the last {total - before} "
                 f"linear solutions brought {100 * (share - old):.2g} % of the way, so that the rest would take "
                 f"{_count(further)} more; allowed: {MOST_FURTHER + PER_STEP * steps:.0f}. Another mesh, above all at the edges "
-                "of the contact, a wider tolerance or a smaller load may help"
+                f"of the contact, a wider tolerance or a smaller load may help{last}",
+                () if failure is None else failure.history,
             )
 
 

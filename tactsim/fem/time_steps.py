@@ -114,7 +114,7 @@ class TimeMarcher(Generic[State]):
                     if wanted < self._control.smallest:
                         raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
                     spent = failure.solutions if not isinstance(failure, _TooLong) else reached.iterations
-                    headway.spent(spent, now.time, len(stops) - number + (stops[-1] - now.time) / largest)
+                    headway.spent(spent, now.time, len(stops) - number + (stops[-1] - now.time) / largest, failure)
                     continue
                 longer = self._control.next_step(step, error, reached.iterations)
                 wanted = longer if step >= wanted else max(wanted, longer)
