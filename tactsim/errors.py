@@ -7,8 +7,10 @@
     |   |-- CaseError             a case file, with file, line and key
     |   |-- InvalidQuantity       a number out of its range, or without its unit
     |   `-- UnknownName           a name that is not registered
-    |-- ConvergenceError      3   the solver gave up; carries its history
-    |-- OutOfTime             3   the time allowed for solving has passed
+    |-- Unfinished            3   a computation ended before its end
+    |   |-- ConvergenceError      the solver gave up; carries its history
+    |   |-- OutOfTime             the time allowed has passed
+    |   `-- OutOfMemory           the memory does not suffice
     |-- ValidationError       4   a validation row left its recorded state
     |-- StorageError          5   a file or folder cannot be read or written
     `-- Interrupted         130   stopped by the user or the system
@@ -50,20 +52,28 @@ class UnknownName(InputError, LookupError):
         super().__init__(f"unknown {what} {name!r}{suggestion(name, choices)}; known: {', '.join(choices)}")
 
 
-class ConvergenceError(TactsimError):
-    """The solver gave up; ``history`` holds the residual norms of its last iterations."""
+class Unfinished(TactsimError):
+    """A computation ended before its end; what it had accepted stands."""
 
     exit_code = 3
 
-    def __init__(self, reason: str, history: Iterable[float] = ()):
+
+class ConvergenceError(Unfinished):
+    """The solver gave up; ``history`` holds the residual norms of its last iterations, ``solutions`` counts the linear systems
+    that were solved in vain (by default those of the history)."""
+
+    def __init__(self, reason: str, history: Iterable[float] = (), solutions: int | None = None):
         super().__init__(reason)
         self.history = tuple(history)
+        self.solutions = max(len(self.history) - 1, 0) if solutions is None else solutions
 
 
-class OutOfTime(TactsimError):
+class OutOfTime(Unfinished):
     """The time allowed for solving has passed; a shorter load step would not help, so that it is no ConvergenceError."""
 
-    exit_code = 3
+
+class OutOfMemory(Unfinished):
+    """The memory does not suffice; nor would a shorter load step help here."""
 
 
 class ValidationError(TactsimError):

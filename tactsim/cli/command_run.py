@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.cli.interruption import Interruption, interruptible
-from tactsim.errors import Interrupted, StorageError
+from tactsim.errors import Interrupted, InvalidQuantity, StorageError, shown
 
 if TYPE_CHECKING:
     from tactsim.case import Case
@@ -31,13 +31,15 @@ with files that tactsim did not write is never replaced.
 
 On a terminal every accepted step is reported as it happens; elsewhere only the final report
 is written, unless --progress asks for more. Ctrl+C stops the computation and writes what was
-accepted so far with the status "interrupted"; a second Ctrl+C stops at once.
+accepted so far with the status "interrupted"; a second Ctrl+C stops at once. A run that takes
+longer than --time-limit ends as a failed one: what was accepted so far is written.
 """
 EXAMPLES = """\
 examples:
   tactsim run cases/annulus_icf.yaml
   tactsim run cases/annulus_icf.yaml --out soft --set experiment.specimen.thickness="6 mm"
   tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
+  tactsim run cases/grasp_lump_icf.yaml --time-limit "5 min"
 """
 
 
@@ -53,6 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="set path.to.key, validated like the file; may be repeated",
     )
     parser.add_argument("--force", action="store_true", help="replace an earlier result in --out")
+    parser.add_argument("--time-limit", metavar="TIME", help='end a run that takes longer, such as "5 min" (default: no limit)')
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="write no progress and no report, only errors")
     loudness.add_argument("--progress", action="store_true", help="report every accepted step even where nobody watches")
@@ -62,9 +65,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
+    from tactsim.experiments.collecting import run_within
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import claimed
 
+    seconds = _time_limit(arguments.time_limit)
     with interruptible() as interruption:
         document, place = read_document(arguments.case, arguments.set)
         case = validated_case(document, place)
@@ -72,10 +77,31 @@ def run(arguments: argparse.Namespace) -> int:
         directory = arguments.out or Path("results") / arguments.case.stem
         with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
             with collected_warnings() as said:
-                result = case.experiment.run(_progress(case, arguments))
+                result = run_within(seconds, case.experiment, _progress(case, arguments))
             result = replace(result, warnings=(*result.warnings, *told, *said.lines()))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
+
+
+def _time_limit(text: str | None) -> float | None:
+    """Seconds of an option such as "5 min".
+
+    Raises
+    ------
+    InvalidQuantity
+        If it is no time, or not positive.
+    """
+    from tactsim.units import parse_quantity
+
+    if text is None:
+        return None
+    try:
+        seconds = parse_quantity(text, "s")
+    except InvalidQuantity as error:
+        raise InvalidQuantity(f"--time-limit: {error}") from None
+    if seconds <= 0:
+        raise InvalidQuantity(f"--time-limit {shown(text)} is out of range; must be above 0 s")
+    return seconds
 
 
 def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None]:

@@ -39,9 +39,9 @@ class Regularisation:
         """Penalty in Pa/m for the largest pressure seen so far."""
         return max(self.softest, EXPECTED_RISE * self.largest_pressure) / (TARGET_SHARE * self.tolerance)
 
-    def holds(self, penetration: float, elastic_slip: float) -> bool:
-        """Whether lengths in m are small enough."""
-        return penetration <= self.tolerance
+    def excess(self, penetration: float, elastic_slip: float) -> float:
+        """Lengths in m over the largest that are allowed; up to one they are small enough."""
+        return penetration / self.tolerance
 
     def seen(self, pressure: float) -> Self:
         """Adapted to the largest contact pressure in Pa of an accepted step; it never softens."""
@@ -75,6 +75,6 @@ class Augmentation(Regularisation):
         penalty = np.maximum(self.softest, EXPECTED_RISE * pressure) / self.softness
         return pair.with_penalty(penalty, penalty, self._switch)
 
-    def holds(self, penetration: float, elastic_slip: float) -> bool:
-        """Whether lengths in m are small enough."""
-        return penetration <= self.tolerance and elastic_slip <= SLIP_SHARE * self.tolerance
+    def excess(self, penetration: float, elastic_slip: float) -> float:
+        """Lengths in m over the largest that are allowed; up to one they are small enough."""
+        return max(penetration / self.tolerance, elastic_slip / (SLIP_SHARE * self.tolerance))

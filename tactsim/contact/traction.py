@@ -38,9 +38,16 @@ class ContactState:
         """No contact yet."""
         return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
 
-    def augmented(self, now: ContactTraction) -> ContactState:
-        """The same step with the forces found for it as multipliers: solved once more, it needs far less penetration and slip."""
-        return ContactState(now.pressure, now.tangential, self.points, now.normal, now.pressure)
+    def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
+        """The same step with the forces found for it as multipliers: solved once more, it needs far less penetration and slip.
+
+        Of the forces found only a ``share`` is taken, the rest from the multipliers before.
+        """
+        pressure, tangential = now.pressure, now.tangential
+        if share < 1:
+            pressure = share * pressure + (1 - share) * self.pressure
+            tangential = share * tangential + (1 - share) * self.tangential
+        return ContactState(pressure, tangential, self.points, now.normal, pressure)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from tactsim.dataset.layout import Layout, layout_of, split_of
 from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.dataset.variable import DONE, FAILED
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
-from tactsim.fem.deadline import time_limit
+from tactsim.experiments.collecting import run_within
 from tactsim.results.result import Status
 
 Array = np.ndarray
@@ -71,8 +71,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
     """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
     assert drawn.case is not None
     try:
-        with time_limit(sweep.settings.time_limit):
-            result = drawn.case.experiment.run(lambda record: None)
+        result = run_within(sweep.settings.time_limit, drawn.case.experiment, lambda record: None)
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PatchCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -143,11 +144,13 @@ def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]
 def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
     """Thin borders of the taxels, hatched where one of a place is interpolated."""
     columns, rows = grasp.borders("x"), grasp.borders("y")
-    for row, column in np.ndindex(len(rows), len(columns)):
-        corner, side = (columns[column, 0], rows[row, 0]), 1e3 * grasp.layout.size
-        axis.add_patch(Rectangle(corner, side, side, fill=False, edgecolor="w", linewidth=1.4, zorder=3.5, alpha=0.7))
-        hatch = None if grasp.valid[:, row, column].all() else "xxx"
-        axis.add_patch(Rectangle(corner, side, side, fill=False, edgecolor=INK, linewidth=0.5, zorder=4, hatch=hatch))
+    side, valid = 1e3 * grasp.layout.size, grasp.valid.all(axis=0)
+    places = [(columns[column, 0], rows[row, 0]) for row, column in np.ndindex(len(rows), len(columns))]
+    squares = [Rectangle(corner, side, side) for corner in places]
+    none: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "linewidth": 0.5, "zorder": 4}
+    axis.add_collection(PatchCollection(squares, facecolor="none", edgecolor="w", linewidth=1.4, zorder=3.5, alpha=0.7))
+    for chosen, hatch in ((valid.ravel(), None), (~valid.ravel(), "xxx")):
+        axis.add_collection(PatchCollection([squares[k] for k in np.flatnonzero(chosen)], hatch=hatch, **none))
 
 
 def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:

@@ -13,6 +13,8 @@ from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.errors import Unfinished
+from tactsim.experiments.collecting import failure
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import Force, FrozenModel, Length, Time, check_increasing, format_quantity
@@ -135,6 +137,8 @@ class AnnulusDesign(Experiment):
                 progress(steps[-1])
             status, quantities = Status.CONVERGED, {**self._point(), **self._map(annuli)}
             reason = f"map complete; {_judged(quantities)}"
+        except Unfinished as error:
+            status, quantities, reason = Status.FAILED, {}, failure(error)
         except KeyboardInterrupt:
             status, quantities = Status.INTERRUPTED, {}
             reason = "interrupted; the accepted rows are kept, the map is incomplete"

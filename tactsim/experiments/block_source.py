@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
 from tactsim.mesh.graded_block import graded_block
@@ -145,6 +146,7 @@ class FileSource(FrozenModel):
         started = time.perf_counter()
         numbered = None if self.regions is None else {_tag(name): region for name, region in self.regions.items()}
         mesh = read_mesh(self.path, numbered, unit=self.unit, tag=self.tag)
+        check_unknowns(mesh.nodes.size + mesh.corner_count, f"mesh.path {self.path}")
         count, expected = int(mesh.regions.max()) + 1, len(inclusions) + 1
         if count != expected:
             raise InputError(

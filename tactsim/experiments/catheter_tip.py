@@ -8,7 +8,9 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.errors import Unfinished
 from tactsim.experiments.catheter_report import SENSOR_UNITS, CatheterReport, Reading
+from tactsim.experiments.collecting import failure
 from tactsim.experiments.threshold_sampling import ApproachSampling
 from tactsim.experiments.valve_tissue import BandTissue, SensorContact, ValveSurface
 from tactsim.interfaces import Experiment, Progress
@@ -96,6 +98,8 @@ class CatheterTip(Experiment):
             contacts = self.surface.mixed(self.ring, self.place)
             for index, (contact, lag) in enumerate(zip(contacts, lags, strict=True)):
                 progress(report.add(self._reading(index, contact, float(lag), trigger), contact))
+        except Unfinished as error:
+            return report.result(Status.FAILED, failure(error))
         except KeyboardInterrupt:
             return report.result(Status.INTERRUPTED, "interrupted; the sensors read before are kept")
         return report.result(Status.CONVERGED, f"touched {self.trials} times")

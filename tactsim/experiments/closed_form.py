@@ -22,6 +22,8 @@ SMALL = 0.1
 """Displacement over the outer radius beyond which the result warns; materials that stiffen leave linear theory before."""
 DECADES, PER_DECADE = 6, 10
 """Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
+MOST_TIMES = 1_000_000
+"""Sampled times of all pieces: each takes 1 kB, and all are rows of the history."""
 
 
 def check_closed_form(inner_radius: float, outer_radius: float, material: Material) -> None:
@@ -71,6 +73,11 @@ class ClosedForm(Experiment):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
+        count = len(self.loading.segments()) * (self.points + DECADES * PER_DECADE)
+        if count > MOST_TIMES:
+            raise ValueError(
+                f"points: {count:.2g} times in all pieces; allowed: up to {MOST_TIMES:.2g}; take fewer points or pieces"
+            )
         check_closed_form(self.inner_radius, self.outer_radius, self.material)
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula} is for a half-space; on a layer only exact is known")

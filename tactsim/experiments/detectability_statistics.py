@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
+from tactsim.deadline import check_time
 from tactsim.localization.lump_response import LumpResponse
 
 Array = np.ndarray
@@ -38,6 +39,7 @@ def false_alarm_threshold(templates: Array, rate: float, *, draws: int, seed: in
     generator = np.random.default_rng(seed)
     largest = []
     for begin in range(0, draws, BLOCK_OF_DRAWS):
+        check_time()
         errors = generator.standard_normal((min(BLOCK_OF_DRAWS, draws - begin), templates.shape[1]))
         largest.append(np.abs(errors @ templates.T).max(axis=1))
     return float(np.quantile(np.concatenate(largest), 1 - rate))

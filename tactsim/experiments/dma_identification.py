@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Unfinished
+from tactsim.experiments.collecting import failure
 from tactsim.experiments.dma_report import HISTORY_UNITS, DmaFinding, DmaReport
 from tactsim.experiments.dma_source import MeasuredDma, Seed, SignalsDma, SyntheticDma
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
@@ -78,8 +79,8 @@ class DmaIdentification(Experiment):
             for method in self.methods:
                 begin = time.perf_counter()
                 report.add(self._finding(method, data, report.frequencies), time.perf_counter() - begin)
-        except ConvergenceError as error:
-            status, reason = Status.FAILED, f"stopped converging: {error}"
+        except Unfinished as error:
+            status, reason = Status.FAILED, failure(error)
         except KeyboardInterrupt:
             status, reason = Status.INTERRUPTED, "interrupted; the fits made before are kept, the run is incomplete"
         for step in report.steps():

@@ -12,7 +12,7 @@ from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.errors import ConvergenceError
+from tactsim.errors import ConvergenceError, Unfinished
 from tactsim.experiments.contact_setup import AnyLaw, MeshSettings
 from tactsim.experiments.durometer import Durometer
 from tactsim.experiments.elastomer_report import RankingReport, ShapeFinding
@@ -165,7 +165,7 @@ class ElastomerRanking(Experiment):
                     progress(step)
             shapes = [shape.name for shape in self.shapes]
             report.add_atrium(self.atrium.reading, self.atrium.times, shapes.index(self.atrium.shape or shapes[-1]))
-        except ConvergenceError as error:
+        except Unfinished as error:
             status, reason = Status.FAILED, str(error)
         except KeyboardInterrupt:
             status, reason = Status.INTERRUPTED, "interrupted; the shapes that were finished are kept, the run is incomplete"

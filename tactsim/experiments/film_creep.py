@@ -8,7 +8,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Unfinished
+from tactsim.experiments.collecting import failure
 from tactsim.identification.film_creep import (
     COEFFICIENTS,
     CoefficientLine,
@@ -110,8 +111,8 @@ class FilmCreep(Experiment):
                 steps.append(StepRecord(len(fits), 0, 0.0, _told(fits[-1])))
                 progress(steps[-1])
             lines = coefficient_lines(fits, confidence=self.confidence)
-        except ConvergenceError as error:
-            status, reason = Status.FAILED, f"stopped converging: {error}"
+        except Unfinished as error:
+            status, reason = Status.FAILED, failure(error)
         except KeyboardInterrupt:
             status, reason = Status.INTERRUPTED, "interrupted; the fits made before are kept, the run is incomplete"
         return Result(

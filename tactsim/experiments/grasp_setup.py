@@ -17,8 +17,8 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
 from tactsim.experiments.contact_setup import AnyLaw
 from tactsim.experiments.grasp_model import SIDES, GraspModel
-from tactsim.experiments.loading import AnyLoading
-from tactsim.experiments.lumen_pressure import AnyLumenPressure, lumen_history
+from tactsim.experiments.loading import AnyLoading, check_periods
+from tactsim.experiments.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
 from tactsim.experiments.timed_indentation_setup import TimeSettings
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
@@ -248,6 +248,16 @@ class GraspSetup(FrozenModel):
                 if needed > extent * (1 + 1e-12):
                     wide, has = format_quantity(needed, "m"), format_quantity(extent, "m")
                     raise ValueError(f"matrix: {wide} wide, more than {side}.{name} {has}; take a smaller pitch or a larger jaw")
+        return self
+
+    @model_validator(mode="after")
+    def _beating(self) -> Self:
+        for number, lumen in self.lumens.items():
+            if isinstance(lumen, PulsePressure):
+                try:
+                    check_periods(lumen.rate, self.duration - lumen.rise)
+                except ValueError as error:
+                    raise ValueError(f"inclusions.{number - 1}.lumen: rate: {error}") from None
         return self
 
     @model_validator(mode="after")

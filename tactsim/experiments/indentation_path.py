@@ -13,6 +13,7 @@ from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.fem.loading import Event, PathFollower
+from tactsim.fem.progress import Headway
 from tactsim.units import format_quantity
 
 EVENT_TOLERANCE = 1e-5
@@ -85,11 +86,11 @@ class Course:
     ) -> Iterator[tuple[ContactEquilibrium, bool]]:
         """Accepted states up to the event or the displacement."""
         control, target = self._experiment.control(), self._experiment.displacement
-        first, more = control.first, True
+        first, more, headway = control.first, True, Headway(state.load, target)
         while more:
             more, before = False, state.load
             follower = PathFollower(self.model.advance, replace(control, first=first))
-            for reached, happened in follower.follow(state, target, event):
+            for reached, happened in follower.follow(state, target, event, headway=headway):
                 first, before = max(control.first, RESTART * (reached.load - before)), reached.load
                 self._record.rejected_steps += follower.rejected
                 follower.rejected = 0

@@ -8,7 +8,11 @@ from pydantic import Field, model_validator
 
 from tactsim.experiments.contact_setup import ContactSetup
 from tactsim.fem.loading import StepControl
+from tactsim.fem.progress import check_steps
 from tactsim.units import FrozenModel, Length, format_quantity
+
+LEAST_STEP = 1e-9
+"""First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""
 
 
 class StepSettings(FrozenModel):
@@ -48,7 +52,15 @@ class IndentationSetup(ContactSetup):
             raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
         if any(material.relaxation is not None for material in self.specimen.materials):
             raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
+        self._check_steps()
         return self
+
+    def _check_steps(self) -> None:
+        first, way = self.control().first, self.displacement
+        if first < LEAST_STEP * way:
+            given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * way, "m")
+            raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
+        check_steps(way / self.control().largest, f"steps.largest {format_quantity(self.control().largest, 'm')}")
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""

@@ -11,7 +11,26 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, create_model, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
-from tactsim.units import Force, Frequency, FrozenModel, Length, Time
+from tactsim.units import Force, Frequency, FrozenModel, Length, Time, format_quantity
+
+MOST_PERIODS = 10_000
+"""Periods of a wave: with the fewest steps of a period, four, nearly as many steps as a path may have (``fem.progress``)."""
+
+
+def check_periods(frequency: float, duration: float) -> None:
+    """Refuse a wave of a frequency in Hz that has too many periods in a duration in s.
+
+    Raises
+    ------
+    ValueError
+        With their number and what is allowed.
+    """
+    if not frequency * duration <= MOST_PERIODS:
+        given, long = format_quantity(frequency, "Hz"), format_quantity(duration, "s")
+        raise ValueError(
+            f"frequency {given} over {long} makes {frequency * duration:.3g} periods; allowed: up to {MOST_PERIODS}; "
+            "take a lower frequency or a shorter duration"
+        )
 
 
 class Hold(FrozenModel):
@@ -65,6 +84,11 @@ class Sine(FrozenModel):
     """Frequency."""
     duration: Annotated[Time, Field(gt=0)]
     """How long."""
+
+    @model_validator(mode="after")
+    def _countable(self) -> Self:
+        check_periods(self.frequency, self.duration)
+        return self
 
     def segments(self, start: float, value: float) -> tuple[Segment, ...]:
         """From ``start`` in s and the value before."""

@@ -33,7 +33,7 @@ class PulsePressure(FrozenModel):
     """Least pressure, instead of the reading's."""
     systole: Annotated[Pressure, Field(gt=0)] | None = None
     """Largest pressure, instead of the reading's."""
-    rate: Annotated[Frequency, Field(gt=0)] = 1.2
+    rate: Annotated[Frequency, Field(gt=0, le=1e3)] = 1.2
     """Beats per time; the default, 72 per minute, is a usual rate at rest (an assumption)."""
     beats: Annotated[int, Field(ge=1, le=1000)] | None = None
     """Number of beats, after which the diastolic pressure stays; by default they last until the end of the loading."""

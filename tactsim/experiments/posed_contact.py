@@ -71,9 +71,9 @@ class PosedContact:
         now = self.at(displacement)
         return replace(self.resumed(now), pair=self.pair.with_held_limit(now.pressure))
 
-    def augmented(self, now: ContactTraction) -> PosedContact:
-        """The pair before the step, with the forces that were found for it as multipliers."""
-        return replace(self, state=self.state.augmented(now))
+    def augmented(self, now: ContactTraction, share: float = 1.0) -> PosedContact:
+        """The pair before the step, with a ``share`` of the forces that were found for it in its multipliers."""
+        return replace(self, state=self.state.augmented(now, share))
 
     def on(self, surface: SurfaceAssembly, reference: Array, displacement: Array) -> PosedContact:
         """The same contact on the finer points of another mesh: forces interpolated along the surface, by the undeformed radius.

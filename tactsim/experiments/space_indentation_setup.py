@@ -13,6 +13,7 @@ from tactsim.experiments.contact_setup import MeshSettings
 from tactsim.experiments.indentation_setup import IndentationSetup
 from tactsim.experiments.space_indentation_model import SpaceIndentationModel, SweepSymmetry
 from tactsim.fem.loading import StepControl
+from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import largest_offset, shifted_outside, swept
 from tactsim.units import Length, format_quantity
 
@@ -89,6 +90,8 @@ class SpaceIndentationSetup(IndentationSetup):
     def space_model(self) -> SpaceIndentationModel:
         """The finite element model in space, the body's axis at the origin of x and y."""
         section, symmetry = self.section(), self.symmetry
+        swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)
+        check_unknowns(3 * swept_nodes, "mesh.finest, mesh.growth, mesh.refinement and mesh.sectors")
         sweep = swept(section, self.mesh.sectors * symmetry.quarters, np.pi / 2 * symmetry.quarters)
         top = sweep.facets_from(self.top_edges(section))
         nodes = sweep.mesh.nodes

@@ -6,7 +6,8 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Unfinished
+from tactsim.experiments.collecting import failure
 from tactsim.experiments.switch_probe_report import HISTORY_UNITS, SwitchProbeReport
 from tactsim.experiments.switch_probe_run import touched
 from tactsim.experiments.switch_probe_setup import ProbeTissue, SwitchProbeSetup
@@ -40,8 +41,8 @@ class SwitchProbe(SwitchProbeSetup, Experiment):
             for number, (tissue, rate) in enumerate(pairs):
                 for step in report.add(touched(self, tissue, rate, np.random.default_rng([self.seed, number]))):
                     progress(step)
-        except ConvergenceError as error:
-            return report.result(Status.FAILED, f"stopped converging: {error}")
+        except Unfinished as error:
+            return report.result(Status.FAILED, failure(error))
         except KeyboardInterrupt:
             return report.result(Status.INTERRUPTED, "interrupted; the touches made before are kept, the run is incomplete")
         return report.result(Status.CONVERGED, f"{len(pairs)} touches")

@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from tactsim.deadline import check_time
 from tactsim.experiments.contact_curve import Approach
 from tactsim.interfaces import Array
 from tactsim.sensors.converter import Converter
@@ -103,6 +104,7 @@ class ApproachSampling:
         reports: list[list[Threshold]] = [[] for _ in low_passes]
         touches = []
         for block in range(blocks):
+            check_time()
             copies = 1 if noise.silent else min(BLOCK, trials - block * BLOCK)
             generator = np.random.default_rng([*seed, block])
             recording, touch = self.recorded(self.sensor, noise, generator, phase=(block + 0.5) / blocks, copies=copies)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.errors import InvalidQuantity, Unfinished
 from tactsim.experiments.contact_curve import Approach
 from tactsim.experiments.indentation_report import IndentationRecord
 from tactsim.experiments.threshold_report import SIGNAL_UNITS, TrialReport
@@ -96,7 +96,7 @@ class ThresholdTrial(Experiment):
                 self._check_length(approach)
                 sampling = ApproachSampling.settled(self.sensor, approach, tissue.shape.area, self.lead, self.low_passes)
                 self._sample(report, index, sampling, triggers)
-        except ConvergenceError as error:
+        except Unfinished as error:
             return report.result(Status.FAILED, str(error))
         except KeyboardInterrupt:
             return report.result(Status.INTERRUPTED, "interrupted; the combinations sampled before are kept")

@@ -13,6 +13,7 @@ from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.loading import Event, PathFollower, StepControl
 from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
+from tactsim.fem.progress import check_steps
 from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
 
 Array = np.ndarray
@@ -139,10 +140,18 @@ class TimedState:
 
 
 class TimedPath:
-    """Follows prescribed histories; ``rejected`` counts the steps that were taken back."""
+    """Follows prescribed histories; ``rejected`` counts the steps that were taken back.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the histories ask for too many steps.
+    """
 
     def __init__(self, answer: Answer, pace: Pace, course: Sequence[Stretch], start: TimedState):
         self._answer, self._pace, self._course, self._begin = answer, pace, course, start
+        asked = sum(len(pace.stops(stretch)) + stretch.duration / pace.largest(stretch) for stretch in course)
+        check_steps(asked, "loading, with the steps and stops that time sets for its pieces,")
         self.rejected = 0
 
     def states(self, event: TimeEvent[TimedState] | None = None) -> Iterator[tuple[TimedState, bool]]:

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError, InputError, OutOfMemory
 from tactsim.fem.threads import SERIAL_UNKNOWNS
 
 Array = np.ndarray
@@ -32,6 +32,8 @@ Bunch and Kaufman's pivots: MKL's defaults make the pressure of nearly incompres
 
 SINGLE_PRECISION = 27
 """Which of Pardiso's settings asks for matrices and vectors in single precision."""
+NO_MEMORY = (-2, -9)
+"""Pardiso's errors for want of memory (oneMKL Developer Reference, pardiso, table of error indicators)."""
 
 
 class DirectSolver(Protocol):
@@ -170,6 +172,8 @@ def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], r
         ctypes.byref(error),
     )
     threads(ctypes.c_int(before))
+    if error.value in NO_MEMORY:
+        raise OutOfMemory(f"the memory does not suffice for a factor of {len(right)} unknowns; take larger elements")
     if error.value != 0:
         raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
     return solution.astype(float, copy=False)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tactsim.errors import ConvergenceError
+from tactsim.fem.progress import Headway, check_steps
 
 Array = np.ndarray
 
@@ -74,15 +75,22 @@ class PathFollower(Generic[State]):
         self._advance, self._control = advance, control
         self.rejected = 0
 
-    def follow(self, start: State, target: float, event: Event[State] | None = None) -> Iterator[tuple[State, bool]]:
+    def follow(
+        self, start: State, target: float, event: Event[State] | None = None, *, headway: Headway | None = None
+    ) -> Iterator[tuple[State, bool]]:
         """Yield every accepted state from ``start`` up to ``target`` or to the event, with whether it is the event.
+
+        ``headway`` is that of the whole path, if this is only a part of it.
 
         Raises
         ------
         ConvergenceError
-            If no step longer than the smallest one converges; the message names the load that was reached.
+            If no step longer than the smallest one converges, or steps make no headway; the message names the load reached.
+        InvalidQuantity
+            If the largest step is so short that there would be too many.
         """
-        before, now, step = None, start, self._control.first
+        check_steps((target - start.load) / self._control.largest, f"a largest step of {self._control.largest:.3g}")
+        before, now, step, headway = None, start, self._control.first, headway or Headway(start.load, target)
         while now.load < target * (1 - 1e-12):
             load = min(now.load + step, target)
             try:
@@ -95,12 +103,14 @@ class PathFollower(Generic[State]):
                 step = (load - now.load) * self._control.cut
                 if step < self._control.smallest:
                     raise ConvergenceError(f"gave up at {now.load:.6g} of {target:.6g}: {error}", error.history) from error
+                headway.spent(error.solutions, now.load, (target - now.load) / self._control.largest, error)
                 continue
             step = self._control.next_step(max(step, load - now.load), reached.iterations)
             before, now = now, reached
             yield now, happened
             if happened:
                 return
+            headway.spent(now.iterations, now.load, (target - now.load) / self._control.largest)
 
     def _located(self, event: Event[State], before: State, after: State) -> State:
         """The state at the event, which lies between the two."""

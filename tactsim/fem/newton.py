@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
-from tactsim.fem.deadline import check_time
 from tactsim.fem.external_forces import FollowerLoad, Interface
 from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce

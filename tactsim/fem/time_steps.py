@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tactsim.errors import ConvergenceError
+from tactsim.fem.progress import Headway, check_steps
 
 Array = np.ndarray
 
@@ -90,10 +91,13 @@ class TimeMarcher(Generic[State]):
         Raises
         ------
         ConvergenceError
-            If no step longer than the smallest one is accepted; the message names the time that was reached.
+            If no step longer than the smallest one is accepted, or steps make no headway; the message names the time reached.
+        InvalidQuantity
+            If there would be too many steps.
         """
-        before, now, wanted = None, start, min(self._control.first, largest)
-        for stop in stops:
+        check_steps((stops[-1] - start.time) / largest + len(stops), f"a longest step of {largest:.3g} s")
+        before, now, wanted, headway = None, start, min(self._control.first, largest), Headway(start.time, stops[-1])
+        for number, stop in enumerate(stops):
             while now.time < stop * (1 - 1e-12):
                 step = _landing(stop - now.time, min(wanted, largest))
                 try:
@@ -109,6 +113,8 @@ class TimeMarcher(Generic[State]):
                     wanted = self._control.next_step(step, error, 0)
                     if wanted < self._control.smallest:
                         raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
+                    spent = failure.solutions if not isinstance(failure, _TooLong) else reached.iterations
+                    headway.spent(spent, now.time, len(stops) - number + (stops[-1] - now.time) / largest, failure)
                     continue
                 longer = self._control.next_step(step, error, reached.iterations)
                 wanted = longer if step >= wanted else max(wanted, longer)
@@ -116,6 +122,7 @@ class TimeMarcher(Generic[State]):
                 yield now, happened
                 if happened:
                     return
+                headway.spent(now.iterations, now.time, len(stops) - number + (stops[-1] - now.time) / largest)
 
     def _located(self, event: TimeEvent[State], before: State, after: State) -> State:
         """The state at the event, which lies between the two."""

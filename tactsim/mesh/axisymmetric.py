@@ -32,6 +32,12 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
     """
     heights = np.unique(np.asarray(interfaces, float))
     step = min(radius, max(np.diff(heights).min() * SLENDER, np.ptp(heights) / 2))
+    cells = radius / step * (float(np.ptp(heights)) / step + len(heights))
+    if cells > MOST_ELEMENTS:
+        raise InputError(
+            f"a radius of {radius:.3g} m over a thickness of {np.ptp(heights):.3g} m needs {cells:.2g} elements; "
+            f"allowed: up to {MOST_ELEMENTS}; take a thicker or a narrower specimen"
+        )
     columns = np.linspace(0.0, radius, max(2, round(radius / step)) + 1)
     levels = [np.linspace(a, b, max(1, round((b - a) / step)) + 1)[:-1] for a, b in itertools.pairwise(heights)]
     mesh = MeshTri.init_tensor(columns, np.append(np.concatenate(levels), heights[-1]))

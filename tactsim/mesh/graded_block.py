@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
@@ -39,7 +40,7 @@ def graded_block(
     Raises
     ------
     InputError
-        If the inclusion is of another kind or does not suit the block.
+        If the inclusion is of another kind or does not suit the block, or the cells are too many.
     ConvergenceError
         If the mesh misses the volumes or the shape asked for.
     """
@@ -50,6 +51,7 @@ def graded_block(
     finished = partial(fitted, size=extent, inclusions=held, key=key, started=started, slide=False, smooth=False)
     if inclusion is None:
         lines = [mirrored_line(float(length), settings) for length in extent]
+        _check_size([len(line) - 1 for line in lines])
         corners, cells = product(lines), grid([len(line) - 1 for line in lines])
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
@@ -57,7 +59,9 @@ def graded_block(
     if not isinstance(solid, EllipsoidSolid):
         raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
     for finer in range(ATTEMPTS):
-        corners, cells, labels = _around(solid, lines_around(solid, extent, settings, finer))
+        around = lines_around(solid, extent, settings, finer)
+        _check_size([len(line.near) - 1 for line in around])
+        corners, cells, labels = _around(solid, around)
         simplices = _sixths(cells, _mirrored_places(corners, solid.center, solid.stretch))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
@@ -66,6 +70,11 @@ def graded_block(
                 name = inclusion_name(1, inclusion)
                 raise ConvergenceError(f"no graded cells suit {name}: {error}; take mesh.kind: tetrahedra") from None
     raise AssertionError("every attempt returns or raises")
+
+
+def _check_size(cells: Sequence[int]) -> None:
+    """Refuse a grid of too many cells (3,)."""
+    check_unknowns(unknowns_of_cells(cells), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
 
 
 def _around(solid: EllipsoidSolid, lines: Sequence[Line]) -> tuple[Array, Array, Array]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 
@@ -66,6 +67,9 @@ def lines_around(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettin
     ``finer`` counts how often cells across the box were added.
     """
     lines = []
+    check_along(
+        np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size, f"mesh.inclusion_size {settings.inclusion_size:.3g} m"
+    )
     wanted = round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size)
     along = _cells_along(solid.bounds(), float(extent[2]), wanted, finer)
     for axis, ((low, high), center, length) in enumerate(zip(solid.bounds().T, solid.center, extent, strict=True)):
@@ -128,6 +132,7 @@ def _spaced(length: float, settings: BlockMeshSettings) -> Array:
     thickness = [_edge(settings)]
     while sum(thickness) + NEAREST * (further := min(thickness[-1] * (1 + settings.growth), settings.size)) <= length:
         thickness.append(further)
+        check_along(len(thickness), f"mesh.size, mesh.edge_size and mesh.growth ({_edge(settings):.3g} m at the faces)")
     steps = np.array(thickness)
     if len(steps) == 1:
         return np.array([0.0, length])

@@ -22,14 +22,18 @@ MARGIN = 0.25
 def edge_lengths(points: Array, size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> Array:
     """Wanted edge length (n,) in m at points (n, 3)."""
     wanted = np.full(len(points), settings.size)
-    at_edges = min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
-    wanted = np.minimum(wanted, at_edges + settings.growth * jaw_edge_distance(points, size, settings.jaw))
+    wanted = np.minimum(wanted, at_jaw_edges(settings) + settings.growth * jaw_edge_distance(points, size, settings.jaw))
     for inclusion in inclusions:
         at_surface = inclusion.refine(settings.inclusion_size)
         for solid in inclusion.solids(size):
             distance = np.abs(solid.signed_distance(points))
             wanted = np.minimum(wanted, at_surface + settings.growth * distance)
     return wanted
+
+
+def at_jaw_edges(settings: BlockMeshSettings) -> float:
+    """Wanted edge length in m at the edges of the jaws."""
+    return min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
 
 
 def jaw_edge_distance(points: Array, size: Array, jaw: tuple[float, float] | None) -> Array:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactsim.errors import InputError
+from tactsim.mesh.affordable import PER_TETRAHEDRON, check_along, check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled, fitted
@@ -47,11 +48,12 @@ def structured_block(
     Raises
     ------
     InputError
-        If the inclusions do not suit the block or the lines do not span it.
+        If the inclusions do not suit the block, the lines do not span it, or the cells are too many.
     """
     started, extent = time.perf_counter(), np.asarray(size, float)
     if len(cells) != 3 or min(cells) < 1:
         raise InputError(f"the numbers of cells are {cells}; allowed: three numbers from 1")
+    check_unknowns(unknowns_of_cells(cells), f"mesh.cells {list(cells)}")
     spaced = tuple(np.linspace(0.0, extent[k], cells[k] + 1) for k in range(3)) if lines is None else lines
     for axis, line in enumerate(spaced):
         if len(line) != cells[axis] + 1 or not (np.diff(line) > 0).all() or line[0] != 0 or line[-1] != extent[axis]:
@@ -76,7 +78,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     Raises
     ------
     InputError
-        If the inclusion is of another kind or does not suit the block.
+        If the inclusion is of another kind or does not suit the block, or the cells are too many.
     ConvergenceError
         If the mesh misses the volumes or the shape asked for.
     """
@@ -86,10 +88,13 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     if not isinstance(solid, EllipsoidSolid):
         raise InputError(f"a {inclusion.kind} cannot be meshed in layers; allowed: sphere, ellipsoid")
     radius, size_at = float(solid.semi_axes.max()), settings.inclusion_size
+    check_along(np.pi / 2 * radius / size_at, f"mesh.inclusion_size {size_at:.3g} m")
     around = max(LEAST_AROUND, 2 * round(np.pi / 4 * radius / size_at))
     cell = np.pi / 2 * radius / around
     within = max(1, round((1 - CORE) * radius / cell))
     beyond = outer_steps(max(cell, float(extent.mean()) / 2 - radius) / 2, cell, settings)
+    cells = around**3 + 6 * around**2 * (within + len(beyond))
+    check_unknowns(12 * PER_TETRAHEDRON * cells, "mesh.inclusion_size, mesh.size and mesh.growth")
     logical = product([np.linspace(-1, 1, around + 1)] * 3)
     core = grid((around,) * 3)
     shell, quads = skin(core, logical)
@@ -110,6 +115,7 @@ def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Ar
     steps = [cell]
     while sum(steps) < distance:
         steps.append(min(settings.size, steps[-1] * (1 + settings.growth)))
+        check_along(len(steps), f"mesh.size {settings.size:.3g} m at a growth of {settings.growth:.3g}")
     return np.cumsum(steps) / np.sum(steps)
 
 

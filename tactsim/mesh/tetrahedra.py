@@ -20,12 +20,14 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.deadline import check_time, seconds_left
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.mesh.affordable import check_unknowns, estimated_unknowns
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.labelling import Surfaces, tidied
-from tactsim.mesh.sizing import background
+from tactsim.mesh.sizing import at_jaw_edges, background
 from tactsim.mesh.solid import Inclusion, Triangles, outward
 from tactsim.outside.arrays import LARGEST, read_arrays
 from tactsim.outside.processes import Ended, machine_memory, run_child
@@ -53,13 +55,15 @@ def block_mesh(
     Raises
     ------
     InputError
-        If inclusions overlap, touch, protrude or do not suit the block.
+        If inclusions overlap, touch, protrude or do not suit the block, or the elements would be too many.
     ConvergenceError
         If the mesher fails or takes too long, or every mesh misses the volumes, the flatness or the shape asked for.
     """
     started = time.perf_counter()
     settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
     check_inclusions(extent, inclusions, settings.least_gap)
+    estimate = estimated_unknowns(extent, inclusions, settings, at_jaw_edges(settings))
+    check_unknowns(estimate, "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
     surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
     key = mesh_key(size, inclusions, settings)
     for part in ATTEMPTS:
@@ -132,13 +136,18 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
     ------
     ConvergenceError
         If the mesher dies, takes longer than ``time_limit`` in s, or gives no tetrahedra.
+    OutOfTime
+        If the time of the whole computation has passed.
     InputError
         If pytetwild is not installed.
     """
     with tempfile.TemporaryDirectory(prefix="tactsim-mesh-") as folder:
         asked, answer = Path(folder) / "request.npz", Path(folder) / "answer.npz"
         np.savez(asked, **request)  # type: ignore[arg-type]
-        done = run_child(MODULE, [str(asked), str(answer)], time_limit=time_limit)
+        allowed = max(0.0, min(time_limit, seconds_left()))
+        done = run_child(MODULE, [str(asked), str(answer)], time_limit=allowed)
+        if done.out_of_time:
+            check_time()
         if done.code or not answer.exists():
             raise _failure(done, time_limit)
         found = read_arrays(answer.read_bytes(), "the mesher's answer", largest=machine_memory() or LARGEST)

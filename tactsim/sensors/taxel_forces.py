@@ -20,6 +20,8 @@ AFFINE = 1e-9
 """A facet whose mid-side nodes are off the middles by less than this part of its size is taken as straight."""
 SUBDIVISION = 4
 """Parts per side into which a curved facet is divided, each taken as straight when it is cut."""
+FACETS_AND_TAXELS_AT_ONCE = 1000
+"""Facets that are cut together, and the taxels on them: their pieces fit the cache (100 x 100 taxels in 1.8 s, not 3.0 s)."""
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
@@ -53,11 +55,21 @@ def taxel_forces(layout: TaxelLayout, places: Array, forces: Array, points: Arra
     InputError
         If the points do not determine a quadratic polynomial.
     """
+    densities = _densities(forces, points)
+    taken = max(1, FACETS_AND_TAXELS_AT_ONCE * len(places) // (len(places) + layout.rows * layout.columns))
+    parts = [
+        _forces_of(layout, places[begin : begin + taken], densities[:, begin : begin + taken])
+        for begin in range(0, max(len(places), 1), taken)
+    ]
+    return TaxelForces(*(np.sum(amounts, axis=0) for amounts in zip(*parts, strict=True)))
+
+
+def _forces_of(layout: TaxelLayout, places: Array, densities: Array) -> tuple[Array, Array, Array]:
+    """Forces on the taxels, the gaps and outside of some facets."""
     pieces, facets = straight_pieces(places)
     for axis, along in enumerate("xy"):
-        for border in np.unique(layout.borders(along)):
-            pieces, facets = cut(pieces, facets, axis, float(border))
-    amounts = _integrals(pieces[:, :, 2:], facets, _densities(forces, points))
+        pieces, facets = cut(pieces, facets, axis, np.unique(layout.borders(along)))
+    amounts = _integrals(pieces[:, :, 2:], facets, densities)
     middles = pieces[:, :, :2].mean(axis=1)
     column, between_columns = _cell(middles[:, 0], layout.borders("x"))
     row, between_rows = _cell(middles[:, 1], layout.borders("y"))
@@ -65,9 +77,8 @@ def taxel_forces(layout: TaxelLayout, places: Array, forces: Array, points: Arra
     inside = between_columns & between_rows
     number, count = (row * layout.columns + column)[on], layout.rows * layout.columns
     taxels = np.stack([np.bincount(number, amount[on], count) for amount in amounts])
-    return TaxelForces(
-        taxels.reshape(3, layout.rows, layout.columns), amounts[:, inside & ~on].sum(axis=1), amounts[:, ~inside].sum(axis=1)
-    )
+    taxels = taxels.reshape(3, layout.rows, layout.columns)
+    return taxels, amounts[:, inside & ~on].sum(axis=1), amounts[:, ~inside].sum(axis=1)
 
 
 def straight_pieces(places: Array) -> tuple[Array, Array]:
@@ -87,21 +98,35 @@ def straight_pieces(places: Array) -> tuple[Array, Array]:
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
-def cut(pieces: Array, facets: Array, axis: int, border: float) -> tuple[Array, Array]:
-    """The triangles cut where their coordinate ``axis`` is ``border``: none crosses it any more."""
-    side = pieces[:, :, axis] - border
-    crossing = (side.min(axis=1) < 0) & (side.max(axis=1) > 0)
-    if not crossing.any():
-        return pieces, facets
-    kept, split = (pieces[~crossing], facets[~crossing]), (pieces[crossing], side[crossing])
+def cut(pieces: Array, facets: Array, axis: int, borders: Array) -> tuple[Array, Array]:
+    """The triangles cut where their coordinate ``axis`` is one of the ascending ``borders``: none crosses one any more.
+
+    All triangles are cut at once, each at the middle one of the borders that it crosses, so that the rounds grow only like the
+    logarithm of the number of borders.
+    """
+    done: list[tuple[Array, Array]] = []
+    while len(pieces):
+        values = pieces[:, :, axis]
+        first = np.searchsorted(borders, values.min(axis=1), side="right")
+        beyond = np.searchsorted(borders, values.max(axis=1), side="left")
+        crossing = beyond > first
+        done.append((pieces[~crossing], facets[~crossing]))
+        pieces = _halved(pieces[crossing], axis, borders[(first + beyond)[crossing] // 2])
+        facets = np.tile(facets[crossing], 3)
+    return (np.concatenate([part[0] for part in done]), np.concatenate([part[1] for part in done])) if done else (pieces, facets)
+
+
+def _halved(pieces: Array, axis: int, border: Array) -> Array:
+    """Three triangles instead of each of (T, 3, 4) that crosses its own border (T,) with its coordinate ``axis``."""
+    side = pieces[:, :, axis] - border[:, None]
     # The corner that is alone on its side comes first; a corner on the border belongs to the other two.
-    alone = np.where((split[1] > 0).sum(axis=1) == 1, (split[1] > 0).argmax(axis=1), (split[1] < 0).argmax(axis=1))
+    alone = np.where((side > 0).sum(axis=1) == 1, (side > 0).argmax(axis=1), (side < 0).argmax(axis=1))
     order = (alone[:, None] + np.arange(3)) % 3
-    a, b, c = np.moveaxis(np.take_along_axis(split[0], order[:, :, None], axis=1), 1, 0)
-    da, db, dc = np.take_along_axis(split[1], order, axis=1).T[:, :, None]
+    a, b, c = np.moveaxis(np.take_along_axis(pieces, order[:, :, None], axis=1), 1, 0)
+    da, db, dc = np.take_along_axis(side, order, axis=1).T[:, :, None]
     ab, ac = a + da / (da - db) * (b - a), a + da / (da - dc) * (c - a)
-    made = np.concatenate([np.stack(corners, axis=1) for corners in ((a, ab, ac), (ab, b, c), (ab, c, ac))])
-    return np.concatenate([kept[0], made]), np.concatenate([kept[1], np.tile(facets[crossing], 3)])
+    ab[:, axis] = ac[:, axis] = border  # exactly, or round-off would make it cross again
+    return np.concatenate([np.stack(corners, axis=1) for corners in ((a, ab, ac), (ab, b, c), (ab, c, ac))])
 
 
 def _divided(divisions: int) -> Array:

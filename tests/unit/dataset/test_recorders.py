@@ -142,7 +142,7 @@ def test_a_sample_that_takes_longer_than_it_may_is_marked_failed() -> None:
     sweep = load_sweep(CASES / "sweep_lumps.yaml", ("sweep.samples=3", "sweep.time_limit=1 us"))
     block = decoded(computed(sweep.text, [0]))
     assert block["status"].tolist() == [FAILED]
-    assert block["reason"].tolist() == ["OutOfTime: took longer than the 1e-06 s that it was given"]
+    assert block["reason"].tolist() == ["failed: took longer than the 1e-06 s that it was given"]
     assert np.isfinite(block["inclusion_radius"][0, 0])
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from solids import body_of, box, facets_where, held, on_plane
 
+from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
-from tactsim.fem.deadline import time_limit
 from tactsim.fem.linear import direct_solver
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.pressure import FollowerPressure

@@ -1,7 +1,8 @@
-"""A limit on the time that solving may take, for callers that would rather lose one case than wait for it."""
+"""A limit on the time that a computation may take, for those who would rather lose one case than wait for it."""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,12 +11,12 @@ from contextvars import ContextVar
 from tactsim.errors import OutOfTime
 
 _LIMIT: ContextVar[tuple[float, float] | None] = ContextVar("limit", default=None)
-"""When solving in this thread must end, on the monotonic clock, and the seconds that it had."""
+"""When the computation in this thread must end, on the monotonic clock, and the seconds that it had."""
 
 
 @contextmanager
 def time_limit(seconds: float | None) -> Iterator[None]:
-    """Solving inside ends with an error once so many seconds have passed; None means no limit."""
+    """The computation inside ends with an error once so many seconds have passed; None means no limit."""
     token = _LIMIT.set(None if seconds is None else (time.monotonic() + seconds, seconds))
     try:
         yield
@@ -23,8 +24,14 @@ def time_limit(seconds: float | None) -> Iterator[None]:
         _LIMIT.reset(token)
 
 
+def seconds_left() -> float:
+    """Time in s that is left, negative once the limit has passed, infinite without one."""
+    limit = _LIMIT.get()
+    return math.inf if limit is None else limit[0] - time.monotonic()
+
+
 def check_time() -> None:
-    """Called before each linear system.
+    """Called before each linear system, and in every other loop that may take long.
 
     Raises
     ------
@@ -32,5 +39,5 @@ def check_time() -> None:
         If the limit has passed.
     """
     limit = _LIMIT.get()
-    if limit is not None and time.monotonic() > limit[0]:
+    if limit is not None and seconds_left() < 0:
         raise OutOfTime(f"took longer than the {limit[1]:g} s that it was given")
