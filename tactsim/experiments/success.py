@@ -16,8 +16,8 @@ LARGEST_RESIDUAL = NewtonOptions().tolerance
 """Largest relative residual of an equilibrium."""
 ROUND_OFF = 1e-9
 """Relative excess of a penetration over its tolerance that is round-off."""
-MARGIN = 0.8
-"""Part of the tolerance that the estimate asks for that a user is advised to take, so that one more run suffices."""
+SATURATED = 0.99
+"""Estimate beyond which nearly all of the force is missing and nothing more can be told from it."""
 
 
 def judged(status: Status, reason: str, reported: Iterable[StepRecord], tolerance: float) -> tuple[Status, str]:
@@ -50,17 +50,25 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
     if error > LARGEST_FORCE_ERROR:
         return (
             f"penetration takes away {error:.2%} of the force by its estimate; allowed: {LARGEST_FORCE_ERROR:.1%}; "
-            f"take penetration_tolerance: at most {format_quantity(sufficient_tolerance(tolerance, error), 'm')}"
+            f"take penetration_tolerance: at most {format_quantity(sufficient_tolerance(values['max_penetration'], error), 'm')}"
         )
     return None
 
 
-def sufficient_tolerance(tolerance: float, error: float) -> float:
-    """A penetration tolerance in m with which the error should be allowed, rounded down to one digit.
+def sufficient_tolerance(penetration: float, error: float) -> float:
+    """A penetration in m with which an error that another one makes should be allowed, rounded down to one digit.
 
     Contact and tissue are two springs in series: the missing part of the force is e / (1 - e) of what remains.
     """
-    missing = min(error, 0.99)
-    enough = MARGIN * tolerance * LARGEST_FORCE_ERROR * (1 - missing) / missing
+    missing = min(error, SATURATED)
+    enough = penetration * LARGEST_FORCE_ERROR * (1 - missing) / missing
     digit = 10.0 ** math.floor(math.log10(enough))
     return digit * math.floor(enough / digit * (1 + ROUND_OFF))
+
+
+def within_layer(reason: str, deepest: float, thickness: float | None) -> tuple[Status, str]:
+    """Status and reason of a closed form with displacements up to ``deepest`` in m, on a layer if a thickness in m is given."""
+    if thickness is None or deepest < thickness:
+        return Status.CONVERGED, reason
+    given, most = format_quantity(deepest, "m"), format_quantity(thickness, "m")
+    return Status.FAILED, f"the displacement reaches {given}; allowed: less than the thickness of the layer, {most}; press less"
