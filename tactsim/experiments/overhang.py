@@ -36,7 +36,7 @@ def overhang_warnings(grasp: GraspSetup) -> list[str]:
         areas = covered_areas(grasp.jaw(side), size / 2 + getattr(grasp, side).offset, size, layout)
         beyond = areas < COVERED * layout.area
         if beyond.any():
-            row, column = np.unravel_index(areas.argmin(), areas.shape)
+            row, column = np.unravel_index((areas / layout.area).round(9).argmin(), areas.shape)
             covered, whole, least = 1e6 * areas[beyond].sum(), 1e6 * layout.area * beyond.sum(), 1e6 * areas.min()
             told.append(
                 f"{beyond.sum()} of {areas.size} taxels of the {side} jaw reach beyond the block: {covered:.4g} mm^2 of their "

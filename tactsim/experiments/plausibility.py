@@ -32,7 +32,7 @@ def oddities(
     tissue, bodies = tissue or {}, bodies or {}
     return [
         *_unusual_lengths(tissue, TISSUE_LENGTHS, "tissue"),
-        *_unusual_lengths(bodies, BODY_LENGTHS, "bodies that press on it"),
+        *_unusual_lengths(bodies, BODY_LENGTHS, "what presses on it"),
         *_far_apart(tissue, bodies),
         *(told for name, material in _different(materials) for told in _unusual_material(name, material)),
         *_unlike_stiffness(materials),
@@ -44,7 +44,7 @@ def _unusual_lengths(lengths: Mapping[str, float], usual: tuple[float, float], w
     for name, length in lengths.items():
         if not least <= length <= most:
             low, high, given = (format_quantity(value, "m") for value in (least, most, length))
-            yield f"{name} is {given}; {what} usually have {low} to {high}: is its unit right?"
+            yield f"{name} is {given}; usual for {what}: {low} to {high}: is its unit right?"
 
 
 def _far_apart(tissue: Mapping[str, float], bodies: Mapping[str, float]) -> Iterator[str]:

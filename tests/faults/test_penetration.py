@@ -42,7 +42,9 @@ def force_and_error(kind, tolerance, **changes):
 
 @pytest.mark.parametrize("tolerance", [1.0, 1e-3, 1e-4])
 def test_a_tolerance_as_large_as_the_displacement_is_refused(tolerance):
-    with pytest.raises(ValidationError, match=r"penetration_tolerance: .* is not small beside the .*; allowed: at most .*, a tenth"):
+    with pytest.raises(
+        ValidationError, match=r"penetration_tolerance: .* is not small beside the .*; allowed: at most .*, a tenth"
+    ):
         changed(Indentation, penetration_tolerance=tolerance, **SHALLOW)
 
 
