@@ -81,7 +81,7 @@ class IndentationRecord:
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
         self.steps.append(record)
-        self.reported["threshold" if threshold else "last"] = record
+        self.reported = {"threshold": record} if threshold else self.reported | {"last": record}
         if threshold:
             self.threshold, self._at_threshold = values, [(self.model, state)]
         else:

@@ -82,7 +82,7 @@ class SpaceIndentationRecord:
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
         self.steps.append(record)
-        self.reported["threshold" if threshold else "last"] = record
+        self.reported = {"threshold": record} if threshold else self.reported | {"last": record}
         self._kept["threshold" if threshold else "last"] = state
         if threshold:
             self.threshold = values
