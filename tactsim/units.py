@@ -29,8 +29,20 @@ _QUANTITY = re.compile(
     re.ASCII | re.DOTALL | re.IGNORECASE,
 )
 # One power of one digit per unit: pint evaluates longer towers, which a hostile file could make endless.
-_FACTOR = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\*\*|\^)-?\d)?|[%°]"
+_WORD = r"[cm]?mH2O|[^\W\d_]+(?:_[^\W\d_]+)*"
+_FACTOR = rf"(?:{_WORD})(?:(?:\*\*|\^)-?\d)?|[%°]"
 _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
+
+
+CUSTOMARY = """
+    meter micron angstrom inch foot thou gram pound metric_ton second minute hour day ampere kelvin degree_Celsius mole liter
+    newton dyne force_gram force_kilogram force_pound pascal bar standard_atmosphere torr meter_Hg meter_H2O
+    pound_force_per_square_inch joule erg calorie electron_volt watt volt ohm siemens farad coulomb henry tesla hertz
+    radian degree percent dimensionless poise stokes
+"""
+"""Units, as pint names them, that a case may use with any SI prefix: those of SI and those that laboratories and medicine print.
+Any other one that pint knows, from the furlong to the parsec, is a slip."""
+FEW_UNITS = "m, mm, inch, g, s, min, h, N, kgf, dyn, Pa, kPa, bar, mmHg, cmH2O, psi, V, A, ohm, S, F, J, eV, Hz, deg, rad, %"
 
 
 @lru_cache(maxsize=1)
@@ -62,13 +74,23 @@ def _factor_to(unit: str, given_unit: str) -> float:
     return one
 
 
+@lru_cache(maxsize=1024)
+def _unusual_unit(given_unit: str) -> str | None:
+    """The first word of a unit that is a unit, but none that tissue is measured in."""
+    for word in re.findall(_WORD, given_unit):
+        readings = _registry().parse_unit_name(word)
+        if readings and (readings[0][1] not in CUSTOMARY.split() or readings[0][0].endswith("bi")):  # as in kibi
+            return str(word)
+    return None
+
+
 def parse_quantity(text: str, unit: str) -> float:
     """The value of ``text`` ("0.8 mm") in ``unit`` ("m").
 
     Raises
     ------
     InvalidQuantity
-        If the text is not a finite number with a unit of the same dimension.
+        If the text is not a finite number with a customary unit of the same dimension, or a number so small that it becomes 0.
     """
     import pint
 
@@ -83,6 +105,10 @@ def parse_quantity(text: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(text)} has no unit; {expected}")
     if not _UNIT.fullmatch(given_unit):
         raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}")
+    if unusual := _unusual_unit(given_unit):
+        raise InvalidQuantity(
+            f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
+        )
     try:
         converted = value * _factor_to(unit, given_unit)
     except pint.DimensionalityError:
@@ -91,6 +117,8 @@ def parse_quantity(text: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}") from None
     if not math.isfinite(converted):
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
+    if converted == 0 and re.search("[1-9]", re.split("[eE]", parts["number"])[0]):
+        raise InvalidQuantity(f"{shown(text)} is too small to be told from 0; {expected}")
     return float(f"{converted:.15g}")  # so that "0.8 mm" and "800 um" are the same float
 
 

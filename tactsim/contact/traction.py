@@ -24,7 +24,8 @@ class ContactState:
     """What the last accepted step left at n surface points, in the body's frame.
 
     ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
-    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration.
+    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``crept`` (d, n) way
+    in m along the body since a point touched, in all steps in which friction held it: exact contact has none.
     """
 
     pressure: Array
@@ -32,6 +33,7 @@ class ContactState:
     points: Array
     normals: Array
     multiplier: Array | float = 0.0
+    crept: Array | float = 0.0
 
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
@@ -47,7 +49,7 @@ class ContactState:
         if share < 1:
             pressure = share * pressure + (1 - share) * self.pressure
             tangential = share * tangential + (1 - share) * self.tangential
-        return ContactState(pressure, tangential, self.points, now.normal, pressure)
+        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.crept)
 
 
 @dataclass(frozen=True)
@@ -70,9 +72,10 @@ class ContactTraction:
         """Traction (d, n) on the tissue in Pa."""
         return self.pressure * self.normal + self.tangential
 
-    def commit(self) -> ContactState:
-        """The state that an accepted step leaves behind."""
-        return ContactState(self.pressure, self.tangential, self.points, self.normal)
+    def commit(self, before: ContactState, pair: ContactPair) -> ContactState:
+        """The state that an accepted step from ``before`` leaves behind."""
+        crept = np.where(self.pressure > 0, before.crept + self._held_travel(before, pair), 0.0)
+        return ContactState(self.pressure, self.tangential, self.points, self.normal, crept=crept)
 
     def iterate(self) -> ContactIterate:
         """Its forces, for Newton to carry."""
@@ -80,12 +83,16 @@ class ContactTraction:
 
     def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
         """Way (n,) in m that points moved along the body since a state although friction holds them."""
+        return np.asarray(np.linalg.norm(self._held_travel(state, pair), axis=0))
+
+    def _held_travel(self, state: ContactState, pair: ContactPair) -> Array:
+        """That way (d, n) as a vector, zero where friction does not hold."""
         travel = self.points - state.points
         along = np.einsum("in,in->n", self.normal, travel)
         held = (self.pressure > 0) & (
             np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * pair.traction_limit(self.pressure)
         )
-        return np.where(held, np.linalg.norm(travel - along * self.normal, axis=0), 0.0)
+        return np.where(held, travel - along * self.normal, 0.0)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
 from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.mesh.structured_block import morphed_block, structured_block
+from tactsim.mesh.wholeness import check_whole
 from tactsim.outside.input_path import InputPath
 from tactsim.units import FrozenModel, format_quantity
 
@@ -161,6 +162,7 @@ class FileSource(FrozenModel):
                 f"{', '.join(format_quantity(v, 'm') for v in size)}; is mesh.unit right?"
             )
         surfaces = Surfaces(np.asarray(size, float), [inclusion.solids(np.asarray(size, float)) for inclusion in inclusions])
+        check_whole(mesh, surfaces, self.path)
         content, seconds = content_hash(mesh), time.perf_counter() - started
         made = assembled(mesh, surfaces, inclusions, key=f"file-{content}", seconds=seconds, straightened=0, fitting=False)
         _check_places(made, surfaces, self.path)

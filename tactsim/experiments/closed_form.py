@@ -10,11 +10,13 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.experiments.loading import AnyLoading, ForceLoading
+from tactsim.experiments.plausibility import oddities
+from tactsim.experiments.success import within_layer
 from tactsim.interfaces import Experiment, Material, Progress
 from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.viscoelasticity import shear_compliance
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Result, StepRecord
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -81,6 +83,11 @@ class ClosedForm(Experiment):
         check_closed_form(self.inner_radius, self.outer_radius, self.material)
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula} is for a half-space; on a layer only exact is known")
+        if self.thickness is not None and self.loading.control == "displacement":
+            deepest, thickness = max(map(abs, self.loading.least_and_most())), format_quantity(self.thickness, "m")
+            if deepest >= self.thickness:
+                given = format_quantity(deepest, "m")
+                raise ValueError(f"loading: displacement {given} must be smaller than the thickness of the layer, {thickness}")
         return self
 
     @classmethod
@@ -109,6 +116,7 @@ class ClosedForm(Experiment):
             force, displacement = history.value(times), annulus.displacement(history, times)
         else:
             force, displacement = annulus.force(history, times), history.value(times)
+        status, reason = within_layer("end of the history", float(np.abs(displacement).max()), self.thickness)
         columns = (times, displacement, force, annulus.rise(displacement))
         steps = [
             StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, values), strict=True)))
@@ -118,8 +126,8 @@ class ClosedForm(Experiment):
             progress(step)
         return Result(
             kind=self.kind,
-            status=Status.CONVERGED,
-            reason="end of the history",
+            status=status,
+            reason=reason,
             quantities=self._quantities(annulus, steps[-1].values, columns),
             assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
             warnings=tuple(self._warnings(times, force, displacement)),
@@ -164,4 +172,6 @@ class ClosedForm(Experiment):
         deepest = float(np.abs(displacement).max()) / self.outer_radius
         if deepest > SMALL:
             told.append(f"the displacement reaches {deepest:.3g} of the outer radius; linear theory is meant for up to {SMALL:g}")
-        return told
+        tissue = {} if self.thickness is None else {"thickness": self.thickness}
+        radii = {"inner_radius": self.inner_radius} if self.inner_radius else {}
+        return told + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})

@@ -8,6 +8,7 @@ from tactsim.experiments.contact_equilibrium import ContactEquilibrium
 from tactsim.experiments.contact_setup import ContactSetup
 from tactsim.experiments.ellipticity import elliptic_in
 from tactsim.experiments.indentation_model import IndentationModel
+from tactsim.experiments.plausibility import oddities
 from tactsim.fem.body import PastStress
 from tactsim.fem.memory import mean_stress
 from tactsim.interfaces import RigidBody
@@ -92,6 +93,17 @@ def _at_corners(model: IndentationModel, values: Array) -> Array:
     volume = np.repeat(weights.sum(axis=1), 3)
     total = np.repeat((weights * values).sum(axis=1), 3)
     return np.bincount(corners.ravel(), total) / np.bincount(corners.ravel(), volume)
+
+
+def contact_oddities(experiment: ContactSetup) -> list[str]:
+    """What in the case looks like a wrong unit."""
+    specimen, body = experiment.specimen, experiment.body
+    layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(specimen.layers)}
+    materials = {f"{name}.material": layer.material for name, layer in layers.items()} | {"specimen.material": specimen.material}
+    tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
+    tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
+    bodies = {f"body.{name}": getattr(body, name) for name in ("radius", "inner_radius", "outer_radius") if hasattr(body, name)}
+    return oddities(materials, tissue=tissue, bodies=bodies)
 
 
 def contact_assumptions(experiment: ContactSetup) -> list[str]:

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.experiments.indentation_model import IndentationModel
+from tactsim.experiments.penetration_bounds import check_penetration, default_penetration
 from tactsim.experiments.specimen import Specimen
 from tactsim.fem.space import Measure
 from tactsim.interfaces import ContactLaw, RigidBody
@@ -59,7 +60,8 @@ class ContactSetup(FrozenModel):
     recess: Annotated[Length, Field(gt=0)] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius."""
+    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 5e-3 of a prescribed
+    displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings()
     """Size of the elements."""
 
@@ -67,6 +69,11 @@ class ContactSetup(FrozenModel):
     @abstractmethod
     def depth(self) -> float:
         """Displacement in m that the mesh must serve."""
+
+    @property
+    def prescribed(self) -> float | None:
+        """Largest displacement in m that is prescribed; None if a force is."""
+        return None
 
     @model_validator(mode="after")
     def _fitting(self) -> Self:
@@ -83,7 +90,13 @@ class ContactSetup(FrozenModel):
             raise ValueError(f"mesh.finest {given} is too coarse for the body, whose contact is {width} wide: at most half of it")
         if self.recess is not None:
             self._check_recess(self.recess)
+        self._check_penetration()
         return self
+
+    def _check_penetration(self) -> None:
+        fillet, layers = getattr(self.body, "fillet", None), -np.diff(self.specimen.interfaces)
+        lengths = {"displacement": self.prescribed, "width of the contact": self._narrowest, "body's fillet": fillet}
+        check_penetration(self.penetration_tolerance, lengths | {"thickness of the thinnest layer": float(layers.min())})
 
     def _check_recess(self, recess: float) -> None:
         if self.body.kind != "annulus":
@@ -112,7 +125,7 @@ class ContactSetup(FrozenModel):
     @property
     def tolerance(self) -> float:
         """Largest penetration in m."""
-        return self.penetration_tolerance or 1e-4 * self.contact_radius
+        return self.penetration_tolerance or default_penetration(1e-4 * self.contact_radius, self.prescribed)
 
     def size(self) -> Size:
         """Wanted element size in m, at points in the frame of the body at first touch."""

@@ -18,6 +18,7 @@ from tactsim.experiments.durometer_report import DurometerRecord
 from tactsim.experiments.indentation import Indentation
 from tactsim.experiments.indentation_path import started
 from tactsim.experiments.indentation_setup import StepSettings
+from tactsim.experiments.penetration_bounds import check_penetration, default_penetration
 from tactsim.experiments.specimen import Specimen
 from tactsim.fem.loading import Event
 from tactsim.interfaces import Experiment, Progress
@@ -52,7 +53,8 @@ class Durometer(Experiment):
     stop: Literal["reading", "travel"] = "reading"
     """Whether the run ends at the reading, or goes on over the whole travel."""
     penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO."""
+    """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO.
+    At most a tenth of that radius, of the travel and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings(growth=0.8, adaptive=False)
     """Size of the elements."""
     steps: StepSettings = StepSettings()
@@ -69,6 +71,8 @@ class Durometer(Experiment):
             raise ValueError(
                 "a durometer is read without regard to time; give the constants at the time of reading, no relaxation"
             )
+        lengths = {"travel": self.scale.travel, "indentor's radius": self.indentor.radius}
+        check_penetration(self.penetration_tolerance, lengths)
         _ = self.indentation
         return self
 
@@ -81,7 +85,7 @@ class Durometer(Experiment):
             specimen=self.specimen,
             body=self.indentor,
             contact=self.contact,
-            penetration_tolerance=self.penetration_tolerance or 1e-3 * radius,
+            penetration_tolerance=self.penetration_tolerance or default_penetration(1e-3 * radius, self.scale.travel),
             stop="displacement",
             displacement=self.scale.travel,
             mesh=self.mesh,

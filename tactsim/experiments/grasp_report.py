@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import Any, ClassVar
 
@@ -9,15 +10,22 @@ import numpy as np
 
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.block_source import SourcedBlock
+from tactsim.experiments.contact_quality import ContactQuality
 from tactsim.experiments.ellipticity import elliptic_in
 from tactsim.experiments.grasp_model import SIDES, GraspModel
-from tactsim.experiments.grasp_quantities import final_quantities, history_quantities
+from tactsim.experiments.grasp_quantities import LAST, final_quantities, history_quantities
 from tactsim.experiments.grasp_readings import JawReading, deepest_penetration, jaw_readings
 from tactsim.experiments.grasp_setup import GraspSetup
+from tactsim.experiments.grasp_symmetry import mirror_asymmetry, mirror_axes
+from tactsim.experiments.grasp_warnings import ragged, suction, uneven, unlikely, unstable
 from tactsim.experiments.lumen_pressure import PulsePressure
+from tactsim.experiments.overhang import overhang_warnings
+from tactsim.experiments.penetration_effect import bonded_block_rate
 from tactsim.experiments.solid_fields import solid_frame
+from tactsim.experiments.success import judged
 from tactsim.experiments.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.experiments.timed_path import TimedPath, TimedState
+from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
@@ -26,10 +34,6 @@ MOST_COLUMNS = 8
 """Rows and columns of a matrix up to which the history has a column for every taxel."""
 MOST_LUMENS = 32
 AXES = "xyz"
-
-
-RAGGED, SUCTION = 0.05, 0.01
-"""Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is told."""
 
 
 class GraspRecord:
@@ -44,6 +48,7 @@ class GraspRecord:
         "max_penetration": "m",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
+        **ContactQuality.UNITS,
         **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
         **{
             f"taxel_force_{side}_{row}_{column}": "N"
@@ -58,6 +63,7 @@ class GraspRecord:
         self.steps: list[StepRecord] = []
         self.readings: list[dict[str, JawReading]] = []
         self._kept: dict[str, TimedState] = {}
+        self._quality = ContactQuality(_stiffest(experiment))
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._setup_time = time.perf_counter() - begin
         self._read: MatrixReading | None = None
@@ -90,6 +96,7 @@ class GraspRecord:
         values["max_penetration"] = deepest_penetration(self.model, state.contact)
         values["min_volume_ratio"] = float(state.contact.kinematics.J.min())
         values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
+        values |= self._quality.values(self.model.body, state.contact)
         values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
         if max(layout.rows, layout.columns) <= MOST_COLUMNS:
             for side, reading in readings.items():
@@ -106,7 +113,8 @@ class GraspRecord:
         self._kept["last"] = state
 
     def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
+        """The result with everything that was accepted; no success if the last state is none."""
+        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
         readout, layout = self.experiment.readout, self.experiment.matrix
         if readout is not None and self.steps:
             times = np.array([step.values["time"] for step in self.steps])
@@ -138,7 +146,10 @@ class GraspRecord:
         if not self.steps:
             return unknowns
         values = [step.values for step in self.steps]
-        found = final_quantities(values, self.readings[-1], self.experiment)
+        found = final_quantities(values, self.readings[-1], self.experiment) | self._quality.quantities(self.steps)
+        if (asymmetry := self._asymmetry()) is not None:
+            text = "largest difference of a taxel's force from that on its mirror image, over the largest force" + LAST
+            found["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
         found |= history_quantities(values, self.readings, self.experiment) | unknowns
         return found if self._read is None else found | readout_quantities(self._read)
 
@@ -177,35 +188,14 @@ class GraspRecord:
             told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         if self._unread:
             told.append(self._unread)
-        told += [*self._ragged(), *self._suction()]
-        share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
-        if share == 0:
-            return told
-        first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
-        at = format_quantity(first.values["displacement"], "m")
-        return [
-            *told,
-            f"{share:.1%} of the volume left strong ellipticity, first at a closing of {at} per jaw: "
-            "there the answer depends on the mesh; take a stable material set",
-        ]
+        told += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
+        told += [*overhang_warnings(self.experiment), *self._quality.warnings(), *unlikely(self.experiment)]
+        return [*told, *unstable(self.steps)]
 
-    def _ragged(self) -> list[str]:
-        """Regions whose volume the mesh misses."""
-        block = self._sourced.block
-        return [
-            f"the mesh gives {name} {100 * error:+.0f} % of its volume too much or too little: take smaller elements"
-            for name, error in zip(block.region_names, block.volume_errors, strict=True)
-            if abs(error) > RAGGED
-        ]
-
-    def _suction(self) -> list[str]:
-        """Taxels that are pulled, which contact without adhesion cannot do."""
-        forces = [reading[side].taxels.taxels[2] for reading in self.readings for side in SIDES]
-        least, most = (min(map(np.min, forces)), max(map(np.max, forces))) if forces else (0.0, 0.0)
-        if least >= -SUCTION * most:
-            return []
-        pull = format_quantity(-float(least), "N")
-        return [f"a taxel is pulled by up to {pull}: it is smaller than the mesh resolves; take smaller elements at the faces"]
+    def _asymmetry(self) -> float | None:
+        """How far the last forces are from their mirror images, None if the grasp is not its own."""
+        axes = mirror_axes(self.experiment)
+        return mirror_asymmetry(self.readings[-1], axes) if axes and self.readings else None
 
     def _frames(self) -> tuple[FieldFrame, ...]:
         """Fields of the kept states, by time."""
@@ -254,3 +244,10 @@ class GraspRecord:
         if last is None:
             return {side: self.model.touching_place(side).tolist() for side in SIDES}
         return {side: contact.place.tolist() for side, contact in zip(SIDES, last.contact.contacts, strict=True)}
+
+
+def _stiffest(experiment: GraspSetup) -> float:
+    """Bound of the growth of the contact pressure in Pa/m: needed where the pressure in a lumen presses against the jaws too."""
+    if not experiment.lumens:
+        return math.inf
+    return bonded_block_rate(shear_relaxation(experiment.block.tissue).instantaneous_modulus, experiment.block.size)

@@ -19,6 +19,7 @@ from tactsim.experiments.contact_setup import AnyLaw
 from tactsim.experiments.grasp_model import SIDES, GraspModel
 from tactsim.experiments.loading import AnyLoading, check_periods
 from tactsim.experiments.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
+from tactsim.experiments.penetration_bounds import check_penetration, default_penetration
 from tactsim.experiments.timed_indentation_setup import TimeSettings
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
@@ -35,6 +36,8 @@ OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
 PENETRATION = 2e-4
 """Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
+PENETRATION_OF_CLOSING = 1e-2
+"""That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SWITCH_LENGTH = 1e-3
@@ -124,7 +127,8 @@ class GraspSetup(FrozenModel):
     loading: AnyLoading
     """What both jaws follow: closing from first touch, each by that much, or force, each by that much."""
     penetration_tolerance: Positive | None = None
-    """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height."""
+    """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height, at most 1e-2 of a prescribed
+    closing. At most a tenth of that closing, of the block's height and of a jaw's fillet."""
     mesh: AnyBlockSource = TetrahedraSource()
     """Where the mesh comes from."""
     time: GraspTimeSettings = GraspTimeSettings()
@@ -135,7 +139,13 @@ class GraspSetup(FrozenModel):
     @property
     def tolerance(self) -> float:
         """Largest penetration in m."""
-        return self.penetration_tolerance or PENETRATION * self.block.size[2]
+        usual = PENETRATION * self.block.size[2]
+        return self.penetration_tolerance or default_penetration(usual, self._closing, PENETRATION_OF_CLOSING)
+
+    @property
+    def _closing(self) -> float | None:
+        """Largest closing in m that is prescribed; None if a force is."""
+        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
 
     @property
     def softness(self) -> float:
@@ -258,6 +268,13 @@ class GraspSetup(FrozenModel):
                     check_periods(lumen.rate, self.duration - lumen.rise)
                 except ValueError as error:
                     raise ValueError(f"inclusions.{number - 1}.lumen: rate: {error}") from None
+        return self
+
+    @model_validator(mode="after")
+    def _kept_out(self) -> Self:
+        fillets = {f"{side} jaw's fillet": getattr(self, side).fillet for side in SIDES}
+        lengths = {"closing": self._closing, "block's height": self.block.size[2]}
+        check_penetration(self.penetration_tolerance, lengths | fillets)
         return self
 
     @model_validator(mode="after")

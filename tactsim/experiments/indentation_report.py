@@ -8,9 +8,18 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
-from tactsim.experiments.contact_report import contact_assumptions, contact_values, elliptic_points, section_frame, tissue_rise
+from tactsim.experiments.contact_quality import ContactQuality
+from tactsim.experiments.contact_report import (
+    contact_assumptions,
+    contact_oddities,
+    contact_values,
+    elliptic_points,
+    section_frame,
+    tissue_rise,
+)
 from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.indentation_setup import IndentationSetup
+from tactsim.experiments.success import judged
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -32,12 +41,15 @@ class IndentationRecord:
         "max_pressure": "Pa",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
+        **ContactQuality.UNITS,
     }
 
     def __init__(self, experiment: IndentationSetup, model: IndentationModel, begin: float):
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
+        self.reported: dict[str, StepRecord] = {}
+        self._quality = ContactQuality()
         self._at_threshold: list[tuple[IndentationModel, ContactEquilibrium]] = []
         self._last: list[tuple[IndentationModel, ContactEquilibrium]] = []
         self.threshold: dict[str, float] = {}
@@ -69,6 +81,7 @@ class IndentationRecord:
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
         self.steps.append(record)
+        self.reported = {"threshold": record} if threshold else self.reported | {"last": record}
         if threshold:
             self.threshold, self._at_threshold = values, [(self.model, state)]
         else:
@@ -80,6 +93,7 @@ class IndentationRecord:
         weights = self.model.body.points.weights
         values, forces = contact_values(self.model, state)
         values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
+        values |= self._quality.values(self.model.body, state)
         if self.experiment.recess is not None:
             rise, axis = self.rise(state)
             values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": sum(forces[1:])}
@@ -91,7 +105,8 @@ class IndentationRecord:
         return tuple(section_frame(model, state, time=state.load) for model, state in kept)
 
     def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
+        """The result with everything that was accepted; no success if a reported state is none."""
+        status, reason = judged(status, reason, self.reported.values(), self.experiment.tolerance)
         total = time.perf_counter() - self.begin
         return Result(
             kind="indentation",
@@ -125,6 +140,7 @@ class IndentationRecord:
             found["unstable_volume_fraction"] = Quantity(
                 share, "1", "part of the volume outside strong ellipticity at any accepted step"
             )
+            found |= self._quality.quantities(self.steps)
         if self.threshold:
             force, area = self.threshold["reaction_force"], self.experiment.body.area
             found["threshold_force"] = Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor")
@@ -135,7 +151,7 @@ class IndentationRecord:
     def _warnings(self) -> list[str]:
         if not self.steps:
             return []
-        warnings = []
+        warnings = self._quality.warnings() + contact_oddities(self.experiment)
         share = self.steps[-1].values["unstable_volume_fraction"]
         if share > 0:
             first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)

@@ -41,6 +41,11 @@ class IndentationSetup(ContactSetup):
         """The displacement in m."""
         return self.displacement
 
+    @property
+    def prescribed(self) -> float:
+        """The displacement in m."""
+        return self.displacement
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.displacement >= self.specimen.thickness:

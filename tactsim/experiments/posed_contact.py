@@ -20,8 +20,8 @@ class PosedContact:
     """One contact pair on one surface, the body's reference point at ``place``.
 
     ``reference`` (d, n) are the undeformed surface points in m, ``place`` (d,) the body's reference point, ``state`` what the
-    last accepted step left, ``growth`` how its forces grew per m of the body's way in Pa/m, if that is known,
-    ``begin`` forces that Newton starts from, if not from those of the state.
+    last accepted step left, ``growth`` how its forces grew per m of the body's way in Pa/m, if that is known, and ``grown_over``
+    that way in m, ``begin`` forces that Newton starts from, if not from those of the state.
     """
 
     surface: SurfaceAssembly
@@ -31,6 +31,7 @@ class PosedContact:
     state: ContactState
     growth: ContactIterate | None = None
     begin: ContactIterate | None = None
+    grown_over: float = 0.0
 
     @classmethod
     def apart(cls, surface: SurfaceAssembly, reference: Array, pair: ContactPair, place: Array) -> PosedContact:
@@ -44,14 +45,14 @@ class PosedContact:
 
     def committed(self, displacement: Array) -> PosedContact:
         """The pair after a step was accepted at displacements (d, n) of the points."""
-        return replace(self, state=self.at(displacement).commit(), begin=None)
+        return replace(self, state=self.at(displacement).commit(self.state, self.pair), begin=None)
 
     def grown(self, start: PosedContact, way: float) -> PosedContact:
         """The pair after a step from ``start`` along ``way`` in m, with the growth of its forces."""
         if way == 0.0:
-            return replace(self, growth=None)
+            return replace(self, growth=None, grown_over=0.0)
         pressure, tangential = self.state.pressure - start.state.pressure, self.state.tangential - start.state.tangential
-        return replace(self, growth=ContactIterate(pressure / way, tangential / way))
+        return replace(self, growth=ContactIterate(pressure / way, tangential / way), grown_over=way)
 
     def expected(self, way: float) -> PosedContact:
         """The pair with the multipliers that it should have further on by ``way`` in m."""
@@ -81,15 +82,14 @@ class PosedContact:
         ``displacement`` (2, m) are those of the new points at the accepted state.
         """
         old = np.argsort(self.reference[0])
-        pressure, *tangential = (
-            np.interp(reference[0], self.reference[0, old], values[old])
-            for values in (self.state.pressure, *self.state.tangential)
-        )
+        fields = np.vstack([self.state.pressure, self.state.tangential, self.state.crept + np.zeros_like(self.reference)])
+        pressure, *others = (np.interp(reference[0], self.reference[0, old], values[old]) for values in fields)
+        tangential, crept = np.split(np.array(others), 2)
         points = reference + displacement - self.place[:, None]
         normals = self.pair.body.signed_distance(points)[1]
-        traction = np.array(tangential)
-        traction = traction - np.einsum("in,in->n", traction, normals) * normals
-        return replace(self, surface=surface, reference=reference, state=ContactState(pressure, traction, points, normals))
+        traction = tangential - np.einsum("in,in->n", tangential, normals) * normals
+        state = ContactState(pressure, traction, points, normals, crept=crept)
+        return replace(self, surface=surface, reference=reference, state=state)
 
     def at(self, displacement: Array) -> ContactTraction:
         """Contact that holds at displacements (d, n) of the points."""

@@ -9,11 +9,14 @@ from typing import ClassVar
 import numpy as np
 
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.experiments.contact_equilibrium import ContactEquilibrium
+from tactsim.experiments.contact_quality import ContactQuality
+from tactsim.experiments.contact_report import contact_values
 from tactsim.experiments.indentation_model import IndentationModel
 from tactsim.experiments.timed_indentation_path import TimedIndentationPath
 from tactsim.experiments.timed_indentation_setup import TimedIndentationSetup
+from tactsim.experiments.timed_path import TimedState
 from tactsim.fem.space import Measure
+from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 
 Array = np.ndarray
@@ -39,37 +42,39 @@ class ProbeIndentation(TimedIndentationSetup):
 @dataclass(frozen=True)
 class ProbeState:
     """An accepted state of the probe: time in s, depth in m, force on the whole probe in N, contact height in m on its sides,
-    forces in N on the switches (count,), and ``iterations`` and ``residual`` of Newton."""
+    forces in N on the switches (count,), and the ``record`` of the step by which success is judged."""
 
     time: float
     depth: float
     force: float
     contact_height: float
     switch_forces: Array
-    iterations: int
-    residual: float
+    record: StepRecord
 
 
-def probe_states(setup: ProbeIndentation, array: SwitchArray, *, width: float) -> Iterator[ProbeState]:
-    """The accepted states of a prescribed history, the probe ``width`` in m out of the plane.
+def probe_states(
+    setup: ProbeIndentation, array: SwitchArray, *, width: float, quality: ContactQuality | None = None
+) -> Iterator[ProbeState]:
+    """The accepted states of a prescribed history, the probe ``width`` in m out of the plane, followed by ``quality``.
 
     Raises
     ------
     ConvergenceError
         If the path cannot be followed to its end.
     """
-    model = setup.model()
+    model, quality = setup.model(), quality or ContactQuality()
     path = TimedIndentationPath(setup, model)
-    for state, _ in path.states():
-        yield _probe_state(model, state.contact, array, (state.time, width))
+    for number, (state, _) in enumerate(path.states(), 1):
+        values = contact_values(model, state.contact, state.past)[0] | quality.values(model.body, state.contact)
+        record = StepRecord(number, state.iterations, state.contact.residual, values)
+        yield _probe_state(model, state, array, width=width, record=record)
 
 
 def _probe_state(
-    model: IndentationModel, state: ContactEquilibrium, array: SwitchArray, time_and_width: tuple[float, float]
+    model: IndentationModel, state: TimedState, array: SwitchArray, *, width: float, record: StepRecord
 ) -> ProbeState:
-    time, width = time_and_width
-    contact = state.contacts[0]
-    traction = contact.at(model.displacement(state.unknowns))
+    contact = state.contact.contacts[0]
+    traction = contact.at(model.displacement(state.contact.unknowns))
     order = np.argsort(contact.reference[0])
     along = contact.reference[0, order]
     body = contact.pair.body
@@ -77,7 +82,7 @@ def _probe_state(
     height, carried = side_forces(along, traction.points[1, order], traction.pressure[order], array)
     force = -2 * width * float(model.surface.total(traction.traction)[1])
     contact_height = height if height > corner else 0.0
-    return ProbeState(time, state.load, force, contact_height, width * carried, state.iterations, state.residual)
+    return ProbeState(state.time, state.contact.load, force, contact_height, width * carried, record)
 
 
 def side_forces(along: Array, height: Array, pressure: Array, array: SwitchArray) -> tuple[float, Array]:

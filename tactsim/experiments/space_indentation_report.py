@@ -8,11 +8,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tactsim.experiments.contact_equilibrium import ContactEquilibrium
-from tactsim.experiments.contact_report import contact_assumptions
+from tactsim.experiments.contact_quality import ContactQuality
+from tactsim.experiments.contact_report import contact_assumptions, contact_oddities
 from tactsim.experiments.ellipticity import elliptic_in
 from tactsim.experiments.solid_fields import solid_frame
 from tactsim.experiments.space_indentation_model import SpaceIndentationModel
 from tactsim.experiments.space_indentation_setup import SpaceIndentationSetup
+from tactsim.experiments.success import judged
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
 
@@ -51,12 +53,15 @@ class SpaceIndentationRecord:
         "max_pressure": "Pa",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
+        **ContactQuality.UNITS,
     }
 
     def __init__(self, experiment: SpaceIndentationSetup, model: SpaceIndentationModel, begin: float):
         self.experiment, self.model, self.begin = experiment, model, begin
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
+        self.reported: dict[str, StepRecord] = {}
+        self._quality = ContactQuality()
         self.threshold: dict[str, float] = {}
         self.rejected_steps = 0
         self._kept: dict[str, ContactEquilibrium] = {}
@@ -77,6 +82,7 @@ class SpaceIndentationRecord:
         values = self._values(state)
         record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
         self.steps.append(record)
+        self.reported = {"threshold": record} if threshold else self.reported | {"last": record}
         self._kept["threshold" if threshold else "last"] = state
         if threshold:
             self.threshold = values
@@ -98,6 +104,7 @@ class SpaceIndentationRecord:
             "max_pressure": max(float(touch.pressure.max()) for touch in touches),
             "min_volume_ratio": float(state.kinematics.J.min()),
             "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
+            **self._quality.values(self.model.body, state),
         }
         if self.experiment.recess is not None:
             rise, axis = self.rise(state)
@@ -106,7 +113,8 @@ class SpaceIndentationRecord:
         return values
 
     def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
+        """The result with everything that was accepted; no success if a reported state is none."""
+        status, reason = judged(status, reason, self.reported.values(), self.experiment.tolerance)
         kept = sorted(self._kept.values(), key=lambda state: state.load)
         return Result(
             kind="indentation_3d",
@@ -133,6 +141,7 @@ class SpaceIndentationRecord:
         found["max_penetration"] = Quantity(deepest, "m", "largest penetration at any surface point in any step")
         share = last["unstable_volume_fraction"]
         found["unstable_volume_fraction"] = Quantity(share, "1", "part of the volume outside strong ellipticity at any step")
+        found |= self._quality.quantities(self.steps)
         if self.experiment.body.kind == "annulus":
             sectors = 4 * self.experiment.mesh.sectors
             around = self.model.surroundings(state.contacts[0], state.unknowns, sectors) / (self.experiment.body.area / sectors)
@@ -146,14 +155,16 @@ class SpaceIndentationRecord:
         return found
 
     def _warnings(self) -> list[str]:
+        told = self._quality.warnings() + contact_oddities(self.experiment)
         share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
         if share == 0:
-            return []
+            return told
         first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
         at = format_quantity(first.values["displacement"], "m")
         return [
+            *told,
             f"{share:.1%} of the volume left strong ellipticity, first at a displacement of {at}: "
-            "there the answer depends on the mesh; take a stable material set"
+            "there the answer depends on the mesh; take a stable material set",
         ]
 
     def _details(self) -> dict[str, Any]:

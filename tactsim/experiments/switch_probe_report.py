@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from tactsim.experiments.plausibility import oddities
+from tactsim.experiments.success import judged
 from tactsim.experiments.switch_probe_run import ProbeTouch, force_noise, thresholds
 from tactsim.experiments.switch_probe_setup import COUNT, SwitchProbeSetup
 from tactsim.results.result import Quantity, Result, Status, StepRecord
@@ -57,7 +60,9 @@ class SwitchProbeReport:
         return new
 
     def result(self, status: Status, reason: str) -> Result:
-        """The result with every touch that was made."""
+        """The result with every touch that was made; no success if the last state of one is none."""
+        for touch in self._touches:
+            status, reason = judged(status, reason, touch.states[-1:], self._setup.penetration)
         return Result(
             kind=self._kind,
             status=status,
@@ -84,6 +89,9 @@ class SwitchProbeReport:
                 height, "m", f"largest height that the tissue touches on the sides, {where}"
             )
             told |= self._read(number, where, main_touch(touch))
+            if touch.quality is not None:
+                found = touch.quality.quantities(touch.states)
+                told |= {f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in found.items()}
         return told
 
     def _read(self, number: int, where: str, found: Touch | None) -> dict[str, Quantity]:
@@ -139,9 +147,13 @@ class SwitchProbeReport:
             if touch.true.contact_height.max() < (1 - SUNK) * setup.depth:
                 height = format_quantity(float(touch.true.contact_height.max()), "m")
                 told.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
+            if touch.quality is not None:
+                told += [f"{where}: {warning}" for warning in touch.quality.warnings()]
             if touch.saturated:
                 told.append(f"{where}: {touch.saturated} samples were outside of the converter's range")
-        return told
+        materials = {f"tissue {tissue.name}": tissue.material for tissue in setup.tissues}
+        tissue = {"block.width": setup.block.width, "block.height": setup.block.height}
+        return told + oddities(materials, tissue=tissue, bodies={"probe.face": setup.probe.face, "width": setup.width})
 
     def _details(self) -> dict[str, Any]:
         """What the figures draw."""

@@ -9,9 +9,11 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.analytic.probe_force import ProbeForces, probe_forces
+from tactsim.experiments.contact_quality import ContactQuality
 from tactsim.experiments.probe_indentation import ProbeState, probe_states
 from tactsim.experiments.switch_probe_setup import ProbeTissue, SwitchProbeSetup
 from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 from tactsim.sensors.switch_reading import Touch, read_switches
 
@@ -28,7 +30,8 @@ class ProbeTouch:
     """A touch as it was and as it was read.
 
     ``time`` (n,) in s from the first contact on, negative before it; ``depth`` (n,) in m; ``true`` forces in N; ``force`` (n,)
-    and ``switches`` (n, count) in N as recorded; ``touches`` that the algorithm found; ``newton`` (iterations, largest residual).
+    and ``switches`` (n, count) in N as recorded; ``touches`` that the algorithm found; ``states`` that finite elements accepted,
+    with their ``quality``.
     """
 
     tissue: str
@@ -40,7 +43,13 @@ class ProbeTouch:
     switches: Array
     saturated: int
     touches: tuple[Touch, ...]
-    newton: tuple[int, float] = (0, 0.0)
+    states: tuple[StepRecord, ...] = ()
+    quality: ContactQuality | None = None
+
+    @property
+    def newton(self) -> tuple[int, float]:
+        """Iterations of Newton, and its largest residual."""
+        return sum(s.newton_iterations for s in self.states), max((s.residual for s in self.states), default=0.0)
 
     @property
     def loading(self) -> Array:
@@ -81,10 +90,11 @@ def touched(setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, generator
         If the finite elements cannot follow the way in.
     """
     time, depth = _course(setup, rate)
-    pressed, newton = _pressed(setup, tissue, rate, (time, depth))
+    quality = ContactQuality() if setup.model == "fem" else None
+    pressed, states = _pressed(setup, tissue, rate, (time, depth), quality)
     force, switches, saturated = recorded(setup, pressed, generator)
     touches = read_switches(thresholds(setup), time, force, switches).touches
-    return ProbeTouch(tissue.name, rate, time, depth, pressed, force, switches, saturated, touches, newton)
+    return ProbeTouch(tissue.name, rate, time, depth, pressed, force, switches, saturated, touches, states, quality)
 
 
 def _course(setup: SwitchProbeSetup, rate: float) -> tuple[Array, Array]:
@@ -101,17 +111,16 @@ def _course(setup: SwitchProbeSetup, rate: float) -> tuple[Array, Array]:
 
 
 def _pressed(
-    setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, course: tuple[Array, Array]
-) -> tuple[ProbeForces, tuple[int, float]]:
+    setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, course: tuple[Array, Array], quality: ContactQuality | None
+) -> tuple[ProbeForces, tuple[StepRecord, ...]]:
     time, depth = course
-    if setup.model == "fem":
-        states = list(probe_states(setup.indentation(tissue, rate), setup.array, width=setup.width))
+    states: list[ProbeState] = []
+    if quality is not None:
+        states = list(probe_states(setup.indentation(tissue, rate), setup.array, width=setup.width, quality=quality))
         found = _interpolated(states, time)
-        newton = sum(state.iterations for state in states), max(state.residual for state in states)
     else:
         found = probe_forces(time, depth, curve=CHAPTER_5, modulus=shear_relaxation(tissue.material), width=setup.width)
-        newton = 0, 0.0
-    return (found if setup.sides == "computed" else followed(setup, found, depth)), newton
+    return (found if setup.sides == "computed" else followed(setup, found, depth)), tuple(s.record for s in states)
 
 
 def _interpolated(states: list[ProbeState], time: Array) -> ProbeForces:

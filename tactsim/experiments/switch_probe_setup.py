@@ -11,6 +11,7 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.contact_setup import MeshSettings
 from tactsim.experiments.loading import DisplacementLoading
+from tactsim.experiments.penetration_bounds import default_penetration
 from tactsim.experiments.probe_indentation import ProbeIndentation
 from tactsim.experiments.specimen import Specimen
 from tactsim.experiments.timed_indentation_setup import TimeSettings
@@ -127,6 +128,11 @@ class SwitchProbeSetup(FrozenModel):
         """Time in s of one way at a rate in m/s."""
         return self.depth / rate
 
+    @property
+    def penetration(self) -> float:
+        """Largest penetration in m of the finite elements."""
+        return default_penetration(1e-3 * self.probe.radius, self.depth)
+
     def indentation(self, tissue: ProbeTissue, rate: float) -> ProbeIndentation:
         """The finite element simulation of the way in, in plane strain."""
         ramp = {"kind": "ramp", "to": self.depth, "duration": self.duration(rate)}
@@ -135,7 +141,7 @@ class SwitchProbeSetup(FrozenModel):
             body=self.probe,
             contact=self.contact,
             loading=DisplacementLoading.model_validate({"control": "displacement", "pieces": [ramp]}),
-            penetration_tolerance=1e-3 * self.probe.radius,
+            penetration_tolerance=self.penetration,
             mesh=self.mesh,
             time=self.time,
         )

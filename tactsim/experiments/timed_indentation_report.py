@@ -9,8 +9,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
-from tactsim.experiments.contact_report import contact_assumptions, contact_values, elliptic_points, section_frame, tissue_rise
+from tactsim.experiments.contact_quality import ContactQuality
+from tactsim.experiments.contact_report import (
+    contact_assumptions,
+    contact_oddities,
+    contact_values,
+    elliptic_points,
+    section_frame,
+    tissue_rise,
+)
 from tactsim.experiments.indentation_model import IndentationModel
+from tactsim.experiments.success import judged
 from tactsim.experiments.timed_indentation_path import TimedIndentationPath
 from tactsim.experiments.timed_indentation_setup import TimedIndentationSetup
 from tactsim.experiments.timed_path import TimedState
@@ -36,6 +45,7 @@ class TimedRecord:
         "max_pressure": "Pa",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
+        **ContactQuality.UNITS,
         "closed_form_displacement": "m",
         "closed_form_force": "N",
         "closed_form_difference": "1",
@@ -44,6 +54,7 @@ class TimedRecord:
     def __init__(self, experiment: TimedIndentationSetup, model: IndentationModel, path: TimedIndentationPath, begin: float):
         self.experiment, self.model, self._path, self._begin = experiment, model, path, begin
         self.steps: list[StepRecord] = []
+        self._quality = ContactQuality()
         self.touched = False
         self._kept: list[TimedState] = []
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
@@ -69,6 +80,7 @@ class TimedRecord:
         found, _ = contact_values(self.model, state.contact, state.past)
         values = {"time": state.time, **found}
         values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
+        values |= self._quality.values(self.model.body, state.contact)
         if self.experiment.body.kind == "annulus":
             values["tissue_rise"], values["tissue_rise_axis"] = self.rise(state)
         if self._closed_form is not None:
@@ -90,7 +102,8 @@ class TimedRecord:
         return {"closed_form_displacement": displacement, "closed_form_force": force, "closed_form_difference": difference}
 
     def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
+        """The result with everything that was accepted; no success if the last state is none."""
+        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
         return Result(
             kind="timed_indentation",
             status=status,
@@ -123,6 +136,7 @@ class TimedRecord:
             most = max(values[name] for values in series)
             key = name if name.startswith("max") else f"largest_{name}"
             found[key] = Quantity(most, self.UNITS[name], f"{name.replace('_', ' ')}, the largest of any accepted step")
+        found |= self._quality.quantities(self.steps)
         if self.touched:
             found["time_of_touch"] = Quantity(last["time"], "s", "time at which the tissue touches the inner sensor")
         if self._closed_form is not None:
@@ -142,7 +156,11 @@ class TimedRecord:
     def _warnings(self) -> list[str]:
         if not self.steps:
             return []
-        experiment, last, warnings = self.experiment, self.steps[-1].values, []
+        experiment, last, warnings = (
+            self.experiment,
+            self.steps[-1].values,
+            self._quality.warnings() + contact_oddities(self.experiment),
+        )
         share = last["unstable_volume_fraction"]
         if share > 0:
             warnings.append(f"{share:.1%} of the volume left strong ellipticity: there the answer depends on the mesh")

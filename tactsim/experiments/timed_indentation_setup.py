@@ -62,8 +62,12 @@ class TimedIndentationSetup(ContactSetup):
         """Displacement in m that the mesh must serve."""
         if self.deepest is not None:
             return self.deepest
-        prescribed = self.loading.least_and_most()[1] if self.loading.control == "displacement" else 0.0
-        return prescribed or 0.1 * self.contact_radius
+        return self.prescribed or 0.1 * self.contact_radius
+
+    @property
+    def prescribed(self) -> float | None:
+        """Largest displacement in m that is prescribed; None if a force is."""
+        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
 
     @property
     def shortest_time(self) -> float:

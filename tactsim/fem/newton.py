@@ -12,6 +12,7 @@ from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
+from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import FollowerLoad, Interface
 from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
@@ -136,7 +137,8 @@ class Problem:
         unknowns, halvings = guess.copy(), 0
         kinematics = self._admissible(unknowns, 0.0)
         if kinematics is None:
-            raise ConvergenceError("an element is inside out in the state that Newton starts from")
+            worst = inside_out_in_words(body, body.kinematics(unknowns))
+            raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
         forces = (interfaces, loads, nodal_force, push)
         state = self._balance(body, unknowns, kinematics, travel, forces)
         searching = False
@@ -160,6 +162,9 @@ class Problem:
             damping, state = self._searched(body, state, (step, further), (damping, admissible, search), forces)
             moves = self.displacements(step, interfaces, push, further)
             carried = [i.advanced(n, c, move, damping) for i, n, c, move in zip(interfaces, now, carried, moves, strict=True)]
+        if not np.isfinite(history[-1]):
+            where = not_finite_in_words(body, state.kinematics, state.internal, interfaces, state.tractions)
+            raise ConvergenceError(f"after {len(history)} iterations {where} is no finite number", history)
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
     def _balance(self, body: Body, unknowns: Array, kinematics: Kinematics, travel: float, forces: tuple[Any, ...]) -> _Iterate:
@@ -276,7 +281,8 @@ class Problem:
             if after is not None:
                 return damping, after
             damping /= 2
-        raise ConvergenceError("an element turns inside out in the direction that Newton wants")
+        worst = inside_out_in_words(self.body, self.body.kinematics(unknowns + 2 * damping * step))
+        raise ConvergenceError(f"an element turns inside out in the direction that Newton wants: {worst}")
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
         after = self.body.kinematics(unknowns)

@@ -28,7 +28,7 @@ def thin(**changes):
         "displacement": 0.15e-3,
         "mesh": COARSE,
         "steps": {"first": 0.03e-3},
-        "penetration_tolerance": 2e-6,
+        "penetration_tolerance": 5e-7,
     }
     return SpaceIndentation(**(given | changes))
 

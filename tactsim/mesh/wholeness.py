@@ -1,0 +1,76 @@
+"""Whether a mesh made elsewhere is one whole body: in one piece, and without a hole that the case does not know of."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from tactsim.errors import InputError
+from tactsim.mesh.block import FLATNESS
+from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import FACES
+
+Array = np.ndarray
+
+NEAR = 1.0
+"""Distance of a boundary facet from the wall of an empty space of the case, over its longest edge, up to which it may be that
+wall: a ragged mesh is as far off as its elements are large."""
+
+
+def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
+    """Nothing if the tetrahedra hang together by their sides and bound the block and its empty spaces only.
+
+    Raises
+    ------
+    InputError
+        With the number of pieces and the place of the smallest, or with the facets of a hole and where it is.
+    """
+    corners = mesh.elements[:, :4]
+    count, pieces = connected_components(_shared_sides(corners), directed=False)
+    if count > 1:
+        sizes = np.bincount(pieces)
+        place = _place(mesh.nodes[corners[pieces == sizes.argmin()]].reshape(-1, 3).mean(axis=0))
+        raise InputError(
+            f"{name}: the mesh is in {count} pieces that share no sides; the smallest has {sizes.min()} of {len(corners)} "
+            f"tetrahedra, around {place}; allowed: one piece; merge the nodes where they touch, or leave the others out"
+        )
+    facets, _ = mesh.boundary_facets()
+    stray = mesh.nodes[facets[~_known(mesh.nodes[facets], surfaces)][:, :3]]
+    if len(stray):
+        hollow = any(len(group) > 1 for group in surfaces.solids)
+        known = "the faces of the block and the lumen of a tube" if hollow else "the faces of the block"
+        raise InputError(
+            f"{name}: {len(stray)} boundary facets, around {_place(stray.reshape(-1, 3).mean(axis=0))}, lie inside the block: "
+            f"the mesh has a hole or a notch there; allowed are {known}; fill it, or describe it as a tube in inclusions"
+        )
+
+
+def _shared_sides(corners: Array) -> coo_array:
+    """Which of the tetrahedra (E, 4) share a side, (E, E)."""
+    sides = np.sort(np.concatenate([np.delete(corners, k, axis=1) for k in range(4)]), axis=1)
+    _, number = np.unique(sides, axis=0, return_inverse=True)
+    order = np.argsort(number.reshape(-1), kind="stable")
+    same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
+    first, second = order[same] % len(corners), order[same + 1] % len(corners)
+    return coo_array((np.ones(len(same)), (first, second)), shape=(len(corners),) * 2)
+
+
+def _known(facets: Array, surfaces: Surfaces) -> Array:
+    """Whether each boundary facet, by the places (F, 6, 3) of its nodes, lies on a face of the block or near an empty space."""
+    on = [
+        np.abs(facets[..., axis] - surfaces.size[axis] * end).max(axis=1) <= FLATNESS * surfaces.size.max()
+        for _, axis, end in FACES
+    ]
+    known = np.any(on, axis=0)
+    corners = facets[:, :3]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    for _, *spaces in surfaces.solids:
+        for space in spaces:
+            known |= np.abs(space.signed_distance(corners.mean(axis=1))) <= NEAR * longest
+    return np.asarray(known)
+
+
+def _place(point: Array) -> str:
+    return f"({', '.join(f'{1e3 * coordinate:.4g}' for coordinate in point)}) mm"
