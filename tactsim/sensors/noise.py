@@ -24,7 +24,7 @@ class Noise(FrozenModel):
     """Root mean square ``s`` of the white noise of a sample, all of it between 0 Hz and half the sampling rate."""
     line: Annotated[Voltage, Field(ge=0)] = 0.0
     """Amplitude ``a`` of the pick-up."""
-    line_frequency: Annotated[Frequency, Field(gt=0)] = 60.0
+    line_frequency: Annotated[Frequency, Field(gt=0, le=1e9)] = 60.0
     """Frequency ``f`` of the power line."""
 
     @property
