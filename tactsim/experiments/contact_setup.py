@@ -60,7 +60,7 @@ class ContactSetup(FrozenModel):
     recess: Annotated[Length, Field(gt=0)] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 5e-3 of a prescribed
+    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 2e-3 of a prescribed
     displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings()
     """Size of the elements."""

@@ -80,11 +80,11 @@ def test_a_tenth_of_every_length_is_allowed():
 
 
 def test_no_default_exceeds_what_a_small_displacement_allows():
-    assert changed(Indentation, stop="displacement", displacement=2e-6).tolerance == pytest.approx(10e-9)
+    assert changed(Indentation, stop="displacement", displacement=2e-6).tolerance == pytest.approx(4e-9)
     assert Indentation.example().tolerance == pytest.approx(1e-4 * 3e-3)
     closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-6, "duration": 1.0}]}
     assert changed(Grasp, loading=closing).tolerance == pytest.approx(10e-9)
-    assert changed(SwitchProbe, depth=1e-4).penetration == pytest.approx(0.5e-6)
+    assert changed(SwitchProbe, depth=1e-4).penetration == pytest.approx(0.2e-6)
 
 
 def test_a_run_that_loses_force_to_penetration_fails_and_tells_what_to_take():

@@ -28,7 +28,7 @@ THIN = {
     "stop": "displacement",
     "displacement": 0.1e-3,
     "steps": {"first": 0.05e-3},
-    "penetration_tolerance": 2e-6,
+    "penetration_tolerance": 2e-7,
 }
 SIZES = {"finest": 0.4e-3, "growth": 1.5, "adaptive": False}
 TILT = 0.02
