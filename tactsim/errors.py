@@ -9,6 +9,7 @@
     |   `-- UnknownName           a name that is not registered
     |-- Unfinished            3   a computation ended before its end
     |   |-- ConvergenceError      the solver gave up; carries its history
+    |   |-- Collapsed             an element is nearly inside out
     |   |-- OutOfTime             the time allowed has passed
     |   `-- OutOfMemory           the memory does not suffice
     |-- ValidationError       4   a validation row left its recorded state
@@ -66,6 +67,10 @@ class ConvergenceError(Unfinished):
         super().__init__(reason)
         self.history = tuple(history)
         self.solutions = max(len(self.history) - 1, 0) if solutions is None else solutions
+
+
+class Collapsed(Unfinished):
+    """An element has lost so much of its volume that it is about to turn inside out; no shorter load step helps."""
 
 
 class OutOfTime(Unfinished):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Protocol
 
 from tactsim.deadline import check_time, time_limit
-from tactsim.errors import ConvergenceError, OutOfMemory, Unfinished
+from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Result, Status, StepRecord
 
@@ -58,4 +58,4 @@ def ended_early(record: Record, steps: Iterable[StepRecord], progress: Progress)
 
 def failure(error: Unfinished) -> str:
     """The reason of a run that ended before its end."""
-    return f"stopped converging: {error}" if isinstance(error, ConvergenceError) else str(error)
+    return f"stopped converging: {error}" if isinstance(error, ConvergenceError | Collapsed) else str(error)

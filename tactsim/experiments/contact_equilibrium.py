@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from tactsim.contact.penalty import Regularisation
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Kinematics, PastStress
+from tactsim.fem.diagnosis import collapsed_in_words
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
@@ -55,6 +56,28 @@ class ContactEquilibrium:
 
 
 def contact_equilibrium(
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, **settings: Any
+) -> ContactEquilibrium:
+    """The state of ``_equilibrium``, or the reason why none can be reached from ``state`` by any shorter step.
+
+    Raises
+    ------
+    ConvergenceError
+        If Newton fails, or no penalty keeps the tissue out of the bodies.
+    Collapsed
+        If so, and an element of ``state`` is nearly inside out already.
+    """
+    try:
+        return _equilibrium(problem, state, load, guess, **settings)
+    except ConvergenceError as error:
+        if told := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
+            raise Collapsed(
+                f"{told}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
+            ) from error
+        raise
+
+
+def _equilibrium(
     problem: Problem,
     state: ContactEquilibrium,
     load: float,

@@ -11,6 +11,10 @@ from tactsim.fem.external_forces import Interface
 
 Array = np.ndarray
 
+COLLAPSED = 0.4
+"""Part of the volume that the pressure asks for, below which an element is about to turn inside out: the worst elements of grasps
+that converge keep 0.41 at least; in a fold beside a hollow tube it falls from 0.35 to 0.2 while steps only shrink."""
+
 
 def element_in_words(body: Body, element: int) -> str:
     """Number, undeformed centroid and region of an element."""
@@ -27,6 +31,16 @@ def inside_out_in_words(body: Body, kinematics: Kinematics) -> str:
     least = np.where(body.linear, np.inf, kinematics.J.min(axis=1))
     element = int(least.argmin())
     return f"{element_in_words(body, element)}, volume ratio {least[element]:.3g}"
+
+
+def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> str | None:
+    """The element that has kept the least part of the volume that the pressure asks for, if that is less than ``COLLAPSED``."""
+    asked = np.maximum(1 + body.compliance[:, None] * body.pressure(unknowns), 0.0)
+    kept = np.where(body.linear, np.inf, (kinematics.J / np.where(asked > 0, asked, np.inf)).min(axis=1))
+    element = int(kept.argmin())
+    if kept[element] >= COLLAPSED or asked[element].min() <= 0:
+        return None
+    return f"{element_in_words(body, element)} has kept {kept[element]:.0%} of its volume"
 
 
 def not_finite_in_words(
