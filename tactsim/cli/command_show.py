@@ -40,7 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, nargs="?", help=words)
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
-    parser.add_argument("--live", metavar="SOURCE", help="frames: a file that grows, - for a pipe, or tcp://127.0.0.1:PORT")
+    words = "frames: a file that grows, - for standard input (a named pipe: --live - < PIPE), or tcp://127.0.0.1:PORT"
+    parser.add_argument("--live", metavar="SOURCE", help=words)
     words = "result of the same grasp without a lump, which most estimators need; several for several closings"
     parser.add_argument("--reference", metavar="FOLDER", action="append", default=[], help=words)
     parser.add_argument(

@@ -10,7 +10,7 @@ import os
 import stat
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Self
+from typing import BinaryIO, Literal, Self
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
@@ -81,16 +81,35 @@ class OutsideFile:
         Unreadable
             If it has become something else, or longer than the limit, in the meantime.
         """
-        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOCTTY", 0)
         try:
-            with open(self.path, "rb", opener=lambda name, mode: os.open(name, flags)) as file:
-                _check(os.fstat(file.fileno()), self.kind, self.named, self.limit)
+            with self.stream() as file:
                 content = file.read(self.limit + 1)
+        except Unreadable:
+            raise
         except (OSError, ValueError) as error:
             raise _refused(self.kind, self.named, error) from None
         if len(content) > self.limit:
             raise _too_large(self.kind, self.named, self.limit)
         return content
+
+    def stream(self) -> BinaryIO:
+        """The file, open for reading from its begin.
+
+        Raises
+        ------
+        Unreadable
+            If it has become something else, or longer than the limit, in the meantime.
+        OSError
+            If the system refuses.
+        """
+        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOCTTY", 0)
+        file = open(self.path, "rb", opener=lambda name, mode: os.open(name, flags))  # noqa: SIM115  the caller closes it
+        try:
+            _check(os.fstat(file.fileno()), self.kind, self.named, self.limit)
+        except Unreadable:
+            file.close()
+            raise
+        return file
 
     def text(self) -> str:
         """The content as UTF-8, with or without a byte order mark.
