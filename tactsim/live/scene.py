@@ -22,6 +22,8 @@ LARGEST_FORCE = 1e6
 
 SHORTEST_LENGTH, LONGEST_LENGTH = 1e-6, 100.0
 """In m, of a block, a taxel or a pitch; another length is a mistaken unit."""
+FILLET = 0.25
+"""Largest fillet of an assumed jaw over the smallest side of its block."""
 LATEST = 1e12
 """Time in s beyond which differences of times mean nothing; seconds since 1970 are far below."""
 
@@ -77,9 +79,25 @@ class Scene:
         return places
 
 
+def check_extent(size: Array) -> None:
+    """Refuses what is not the extent (3,) in m of a block that can be drawn.
+
+    Raises
+    ------
+    InputError
+        With the allowed range.
+    """
+    if np.shape(size) != (3,) or not ((size >= SHORTEST_LENGTH) & (size <= LONGEST_LENGTH)).all():
+        told = f"needed: three lengths of {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m"
+        raise InputError(f"block_size is {shown(np.asarray(size).tolist())} m; {told}")
+
+
 def plain_scene(title: str, size: Array, layout: TaxelLayout, **known: Any) -> Scene:
     """A scene whose jaws, if nothing else is known, are a quarter wider than the block and touch it in its middle."""
-    jaws = {side: JawSettings().jaw(side, size.tolist()) for side in JAWS}
+    check_extent(size)
+    settings = JawSettings()
+    settings = settings.model_copy(update={"fillet": min(settings.fillet, FILLET * float(size.min()))})
+    jaws = {side: settings.jaw(side, size.tolist()) for side in JAWS}
     places = np.array([[size[0] / 2, size[1] / 2, size[2]], [size[0] / 2, size[1] / 2, 0.0]])
     return Scene(title, size, layout, **({"inclusions": None, "jaws": jaws, "places": places} | known))
 

@@ -15,7 +15,6 @@ from tactsim.live.estimating import frame_readings, shown_signal
 from tactsim.live.recorded import SOURCES
 from tactsim.live.samples import ANY, Samples
 from tactsim.live.scene import Recording
-from tactsim.outside.text import one_line
 
 Array = np.ndarray
 MOST_RANGED = 64
@@ -62,7 +61,7 @@ class Selection:
             return False
         if isinstance(command, ChooseSource):
             if command.name not in self._names():
-                raise UnknownName("source of forces", one_line(command.name, LONGEST_SHOWN), self._names())
+                raise UnknownName("source of forces", command.name[:LONGEST_SHOWN], self._names())
             self.source = command.name
         elif self._content.samples is None:
             raise InputError("there are no samples to choose from; open a data set")
@@ -75,7 +74,7 @@ class Selection:
     def _estimator(self, name: str) -> Choice:
         known = self._content.by_name
         if name not in known:
-            raise UnknownName("estimator", one_line(name, LONGEST_SHOWN), known)
+            raise UnknownName("estimator", name[:LONGEST_SHOWN], known)
         return known[name]
 
     def _narrow(self, split: str, status: str) -> None:
