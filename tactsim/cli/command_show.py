@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tactsim.cli import console
 from tactsim.errors import InputError
+from tactsim.outside.text import one_line
 
 NAME = "show"
 SUMMARY = "print a stored result or data set, save its figure, or open the live page"
@@ -32,6 +33,9 @@ null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_up
 """
 WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
+
+LONGEST_KIND = 60
+"""Characters of a foreign kind that a message shows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -86,10 +90,12 @@ def _show_result(arguments: argparse.Namespace) -> int:
         from tactsim.results.storage import replace_file
 
         figures, warnings = rendered_figures(stored.result)
+        for warning in warnings:
+            console.note(f"warning: {one_line(warning)}")
         if not figures:
-            raise InputError("; ".join(warnings) or f"a result of kind {stored.result.kind!r} has no figure")
+            raise InputError(f"a result of kind {one_line(stored.result.kind, LONGEST_KIND)!r} has no figure that can be drawn")
         replace_file(arguments.save, next(iter(figures.values())))
-        console.out(f"figure {arguments.save}")
+        console.out(f"figure {one_line(arguments.save)}")
     return 0
 
 
