@@ -84,5 +84,5 @@ def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
     (place / "result.json").unlink()
     with pytest.raises(StorageError, match=r"holds no result\.json"):
         read_result(place)
-    with pytest.raises(StorageError, match="cannot read the result of tactsim"):
+    with pytest.raises(StorageError, match="is not a folder"):
         read_result(tmp_path / "missing")
