@@ -84,7 +84,9 @@ def _show_result(arguments: argparse.Namespace) -> int:
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
     console.out(result_report(stored.result, str(case.get("title", "")) if isinstance(case, dict) else ""))
-    console.out(f"  case {stored.case_id}")
+    console.out(f"  case {one_line(stored.case_id)}")
+    for name in stored.changed:
+        console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
         from tactsim.cli.figures import rendered_figures
         from tactsim.results.storage import replace_file

@@ -41,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
+    from tactsim.results.writing import write_files
     from tactsim.validation import StudyRunner, compare, json_report, load_tables, markdown_report, terminal_report
 
     if arguments.workers < 1:
@@ -56,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         "validation.json": json_report(loaded, outcomes).encode(),
         "validation.md": markdown_report(loaded, outcomes, tuple(figures)).encode(),
     }
-    _write(arguments.out, reports | {f"figures/{name}": content for name, content in figures.items()})
+    write_files(reports | {f"figures/{name}": content for name, content in figures.items()}, arguments.out)
     for trouble in troubles:
         console.note(f"warning: {trouble}")
     left = [f"{outcome.name}.{row.row.id}" for outcome in outcomes for row in outcome.rows if not row.held]
@@ -97,12 +98,3 @@ def _figures(outcomes: Sequence[TableOutcome]) -> tuple[dict[str, bytes], list[s
             except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
                 troubles.append(f"figure {name} of {outcome.name}: {type(error).__name__}: {error}")
     return drawn, troubles
-
-
-def _write(out: Path, files: dict[str, bytes]) -> None:
-    from tactsim.results.storage import naming, replace_file
-
-    with naming(out):
-        (out / "figures").mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        replace_file(out / name, content)

@@ -12,9 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from tactsim.outside.text import one_line
+
 RESOLUTION = 160
 """In dots per inch."""
 
+LONGEST_TITLE = 200
+"""Characters; a case allows no longer title."""
 STYLE = {"font.size": 9.0, "axes.titlesize": 9.5, "axes.linewidth": 0.7, "legend.frameon": False, "lines.linewidth": 1.5}
 
 
@@ -39,7 +43,7 @@ def styled() -> AbstractContextManager[Any]:
 
 def entitle(figure: Figure, title: str, *, size: float = 11) -> None:
     """Writes a title above a figure letter by letter: what a user wrote is no TeX."""
-    figure.suptitle(title, x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
+    figure.suptitle(one_line(title, LONGEST_TITLE), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
 
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:

@@ -6,6 +6,7 @@ that a pipe cannot block a run, nor a device fill the memory; the size is known 
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from dataclasses import dataclass
@@ -83,14 +84,16 @@ class OutsideFile:
         """
         try:
             with self.stream() as file:
-                content = file.read(self.limit + 1)
+                content = bytearray()
+                while chunk := file.read(MEBIBYTE):
+                    content += chunk
+                    if len(content) > self.limit:
+                        raise _too_large(self.kind, self.named, self.limit)
         except Unreadable:
             raise
         except (OSError, ValueError) as error:
             raise _refused(self.kind, self.named, error) from None
-        if len(content) > self.limit:
-            raise _too_large(self.kind, self.named, self.limit)
-        return content
+        return bytes(content)
 
     def stream(self) -> BinaryIO:
         """The file, open for reading from its begin.
@@ -154,9 +157,13 @@ def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
     Unreadable
         If there is none, or it is no folder.
     """
-    found, place, state = _found(path, kind)
+    named = f"{one_line(path)} is not a folder with a {kind}"
+    try:
+        found, place, state = _found(path, kind)
+    except Unreadable as error:
+        raise Unreadable(f"{named}: {error.reason}", error.reason) from None
     if not stat.S_ISDIR(state.st_mode):
-        raise Unreadable(f"{one_line(path)} is not a folder with a {kind}", "it is not a folder")
+        raise Unreadable(named, "it is not a folder")
     return found, place
 
 
@@ -178,18 +185,18 @@ def _found(path: str | Path, kind: str) -> tuple[Path, Place, os.stat_result]:
     """The first of the places looked at that holds something, and its state."""
     beside = path.beside if isinstance(path, CasePath) else None
     tried: list[str] = []
-    refusal: OSError | ValueError | None = None
+    refusal: OSError | ValueError = FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
     for folder in _folders(Path(path), beside):
         candidate = folder / path
         try:
             state = os.stat(candidate)
         except (OSError, ValueError) as error:
-            refusal = refusal if refusal is not None and isinstance(error, FileNotFoundError) else error
+            refusal = refusal if isinstance(error, FileNotFoundError) else error
             tried += [{Path(): "the working folder", PROGRAM: "what comes with tactsim"}.get(folder, "the folder of the case")]
             continue
         return candidate, _place(candidate, beside), state
     looked = f"; looked in {' and in '.join(tried)}" if len(tried) > 1 else ""
-    raise _refused(kind, str(path), refusal or FileNotFoundError(2, "No such file or directory"), looked)
+    raise _refused(kind, str(path), refusal, looked)
 
 
 def _folders(path: Path, beside: Path | None) -> list[Path]:
@@ -224,8 +231,8 @@ def _too_large(kind: str, named: str, limit: int) -> TooLarge:
 
 
 def _refused(kind: str, named: str, error: OSError | ValueError, looked: str = "") -> Unreadable:
-    reason = getattr(error, "strerror", None) or one_line(error)
-    return Unreadable(f"cannot read the {kind} {one_line(named)}: {reason}{looked}", reason)
+    reason = f"{getattr(error, 'strerror', None) or one_line(error)}{looked}"
+    return Unreadable(f"cannot read the {kind} {one_line(named)}: {reason}", reason)
 
 
 def _what(mode: int) -> str:

@@ -90,12 +90,13 @@ class Worker:
 
     def __init__(self, module: str, arguments: Sequence[str] = (), *, environment: Mapping[str, str] | None = None):
         self.connection, other = Pipe()
+        self._words = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the process
+        streams = {"stdin": subprocess.DEVNULL, "stdout": self._words, "stderr": self._words, "pass_fds": (other.fileno(),)}
         try:
-            self._process = _started(
-                module, [str(other.fileno()), *arguments], None, environment, stdin=subprocess.DEVNULL, pass_fds=(other.fileno(),)
-            )
+            self._process = _started(module, [str(other.fileno()), *arguments], None, environment, **streams)
         except BaseException:
             self.connection.close()
+            self._words.close()
             raise
         finally:
             other.close()
@@ -109,11 +110,14 @@ class Worker:
         """Ends it at once."""
         self.connection.close()
         _killed(self._process)
+        self._words.close()
 
     def ended(self) -> str:
-        """How it ended, in words; waits for the end."""
+        """How it ended, in words, with the last line that it wrote; waits for the end."""
         self.connection.close()
-        return ending(self._process.wait())
+        how = Ended(self._process.wait(), _last_words(self._words))
+        self._words.close()
+        return f"{how.ending}: {how.last_line}" if how.last_line else how.ending
 
 
 def requests(descriptor: str) -> Connection:

@@ -13,6 +13,7 @@ from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
 from tactsim.results.fields import read_fields
 from tactsim.results.folder import RESULT_FILE
+from tactsim.results.manifest import changed, read_manifest
 from tactsim.results.result import Result
 from tactsim.results.storage import read_text
 
@@ -25,6 +26,8 @@ class StoredResult:
     case_id: str
     provenance: dict[str, Any]
     directory: Path
+    changed: tuple[str, ...] = ()
+    """Files that are read here and were changed since tactsim wrote them."""
 
 
 def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
@@ -42,7 +45,9 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     provenance = _provenance(folder / "provenance.json")
     result = result_of(document)
     frames = read_fields(folder) if fields else ()
-    return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder)
+    manifest = read_manifest(folder)
+    edited = () if manifest is None else tuple(changed(folder, manifest, frozenset({RESULT_FILE, "provenance.json"})))
+    return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited)
 
 
 def _provenance(path: Path) -> dict[str, Any]:

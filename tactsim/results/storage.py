@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened
+from tactsim.outside.text import one_line
 
 
 @contextmanager
@@ -19,8 +20,8 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
     except StorageError:
         raise
     except (OSError, ValueError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise StorageError(f"cannot {verb} {path}: {reason}") from error
+        reason = getattr(error, "strerror", None) or one_line(error)
+        raise StorageError(f"cannot {verb} {one_line(path)}: {reason}") from error
 
 
 def write_bytes(path: Path, content: bytes) -> None:

@@ -61,6 +61,26 @@ def fill(
         for name, content in figures.items():
             write_bytes(_inside(target / "figures", name), content)
         write_bytes(target / RESULT_FILE, document_text(result, case_id).encode())
+    folder.finish()
+
+
+def write_files(files: Mapping[str, bytes], directory: str | Path) -> Path:
+    """Writes files, by their paths with ``/``, as a folder that is complete or absent; an earlier one of tactsim gives way.
+
+    Raises
+    ------
+    StorageError
+        If the place holds anything else, is in use or cannot be written; nothing is then changed.
+    """
+    with claimed(directory, replace=True) as folder:
+        with naming(folder.path):
+            target = folder.start()
+            for name, content in files.items():
+                (target / name).parent.mkdir(exist_ok=True)
+                write_bytes(target / name, content)
+        folder.finish()
+        folder.publish()
+        return folder.path
 
 
 def history_table(result: Result) -> str:

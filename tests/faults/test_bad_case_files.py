@@ -91,7 +91,7 @@ def test_a_file_without_permission_is_an_input_output_error(
 ) -> None:
     import builtins
 
-    def refusing(path: object, *rest: object) -> object:
+    def refusing(path: object, *rest: object, **options: object) -> object:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(builtins, "open", refusing)

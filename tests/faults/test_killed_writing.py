@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import builtins
 import errno
 import os
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
-from unittest.mock import patch
 
 import pytest
+from disks import At, Killed, disk
 from pretence import PNG, pretended_result
 
 from tactsim.errors import StorageError
@@ -20,42 +18,11 @@ from tactsim.results import Status, StepRecord, read_result, write_result
 from tactsim.results.folder import OutputFolder
 
 RESULT = pretended_result(Status.CONVERGED, "done", (StepRecord(1, 4, 1e-11, {"displacement": 1e-4}),))
-CHANGES = ("mkdir", "rename", "replace", "fsync")
-REMOVALS = ("unlink", "rmdir", "remove")
 MOST_STEPS = 60
-
-
-class Killed(BaseException):
-    """The process is dead: nothing that it would do from here on happens."""
 
 
 def write(place: Path, case_id: str) -> None:
     write_result(RESULT, place, case_id=case_id, provenance={}, force=True, figures={"a.png": PNG})
-
-
-@contextmanager
-def disk(act: Callable[[], None]) -> Iterator[None]:
-    """Calls ``act`` before every step on the disk, which it may refuse."""
-
-    def guarded(function: Callable[..., Any], *, is_open: bool = False) -> Callable[..., Any]:
-        def call(*arguments: Any, **options: Any) -> Any:
-            mode = str(options.get("mode", arguments[1] if len(arguments) > 1 else "r"))
-            if not is_open or any(letter in mode for letter in "wxa+"):
-                act()
-            return function(*arguments, **options)
-
-        return call
-
-    names = CHANGES + REMOVALS
-    patches = [patch.object(os, name, guarded(getattr(os, name))) for name in names]
-    patches.append(patch.object(builtins, "open", guarded(builtins.open, is_open=True)))
-    for one in patches:
-        one.start()
-    try:
-        yield
-    finally:
-        for one in patches:
-            one.stop()
 
 
 def trouble_of(place: Path, act: Callable[[], None]) -> StorageError | None:
@@ -66,18 +33,6 @@ def trouble_of(place: Path, act: Callable[[], None]) -> StorageError | None:
     except StorageError as error:
         return error
     return None
-
-
-class At:
-    """Raises ``error`` at step ``number``, and if ``for_good`` at every later one too."""
-
-    def __init__(self, number: int, error: Callable[[], BaseException], *, for_good: bool):
-        self.number, self.error, self.for_good, self.count = number, error, for_good, 0
-
-    def __call__(self) -> None:
-        self.count += 1
-        if self.count == self.number or (self.for_good and self.count > self.number):
-            raise self.error()
 
 
 def steps_of_one_writing(place: Path) -> int:
@@ -141,5 +96,5 @@ def test_a_careless_exchange_would_be_caught(tmp_path: Path, monkeypatch: pytest
         folder.partial.rename(folder.path)
 
     monkeypatch.setattr(OutputFolder, "publish", careless)
-    with pytest.raises(StorageError, match=r"holds no result\.json"):
+    with pytest.raises(StorageError, match=r"which tactsim did not write|holds no result"):
         test_a_death_at_any_step_leaves_the_old_or_the_new(tmp_path, True)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,15 +13,20 @@ from tactsim.errors import StorageError
 from tactsim.results.folder import claimed
 
 
-def make_result(path: Path, mark: str = "old") -> None:
-    path.mkdir(parents=True)
-    (path / "result.json").write_text(mark, encoding="utf-8")
-
-
 def publish(path: Path, mark: str = "new", *, replace: bool = False, keep: bool = False) -> Path | None:
     with claimed(path, replace=replace) as folder:
         (folder.start() / "result.json").write_text(mark, encoding="utf-8")
+        folder.finish()
         return folder.publish(keep)
+
+
+def make_result(path: Path, mark: str = "old") -> None:
+    publish(path, mark)
+
+
+def make_without_manifest(path: Path, mark: str = "old") -> None:
+    path.mkdir(parents=True)
+    (path / "result.json").write_text(mark, encoding="utf-8")
 
 
 def mark_of(path: Path) -> str:
@@ -61,17 +68,49 @@ def test_an_empty_folder_may_be_filled(tmp_path: Path) -> None:
     assert mark_of(tmp_path / "out") == "new"
 
 
-@pytest.mark.parametrize("name", ["notes.txt", ".git", "fields_x.vtu"])
-def test_a_folder_with_other_files_never_gives_way(tmp_path: Path, name: str) -> None:
-    make_result(tmp_path / "out")
-    (tmp_path / "out" / name).write_text("mine", encoding="utf-8")
+@pytest.mark.parametrize("make", [make_result, make_without_manifest])
+@pytest.mark.parametrize("name", ["notes.txt", ".git", "fields_x.vtu", "figures/x.zip", "figures/deep/x.png", "empty/"])
+def test_a_folder_with_other_files_never_gives_way(tmp_path: Path, name: str, make: Callable[[Path], None]) -> None:
+    make(tmp_path / "out")
+    place = tmp_path / "out" / name
+    place.parent.mkdir(exist_ok=True, parents=True)
+    place.mkdir() if name.endswith("/") else place.write_text("mine", encoding="utf-8")
     with pytest.raises(StorageError, match="which tactsim did not write"):
         publish(tmp_path / "out", replace=True)
-    assert (tmp_path / "out" / name).exists()
+    assert place.exists()
+
+
+def test_a_file_that_somebody_changed_never_gives_way(tmp_path: Path) -> None:
+    make_result(tmp_path / "out")
+    (tmp_path / "out" / "result.json").write_text("my notes", encoding="utf-8")
+    with pytest.raises(StorageError, match=r"'result.json', which was changed since tactsim wrote it"):
+        publish(tmp_path / "out", replace=True)
+    assert mark_of(tmp_path / "out") == "my notes"
+
+
+def test_a_result_without_a_manifest_is_kept_beside_the_new_one(tmp_path: Path) -> None:
+    for number, mark in enumerate(("first", "second"), 1):
+        make_without_manifest(tmp_path / "out", mark)
+        kept = publish(tmp_path / "out", replace=True)
+        assert kept == tmp_path / f"out.earlier{'' if number == 1 else '-2'}"
+        assert mark_of(kept) == mark
+        shutil.rmtree(tmp_path / "out")
+
+
+def test_half_written_files_are_removed_but_not_those_of_others(tmp_path: Path) -> None:
+    (tmp_path / ".out.partial").mkdir()
+    (tmp_path / ".out.partial" / "fields_0001.vtu").write_text("half", encoding="utf-8")
+    publish(tmp_path / "out")
+    (tmp_path / ".out.partial").mkdir()
+    (tmp_path / ".out.partial" / "mine.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(StorageError, match=r"'mine.txt', which tactsim did not write"):
+        publish(tmp_path / "out", replace=True)
+    assert (tmp_path / ".out.partial" / "mine.txt").exists()
 
 
 def test_a_folder_without_a_result_never_gives_way(tmp_path: Path) -> None:
-    (tmp_path / "out" / "figures").mkdir(parents=True)
+    (tmp_path / "out").mkdir(parents=True)
+    (tmp_path / "out" / "history.csv").write_text("", encoding="utf-8")
     with pytest.raises(StorageError, match="holds no result of tactsim"):
         publish(tmp_path / "out", replace=True)
 
@@ -99,7 +138,7 @@ def test_two_runs_do_not_share_a_folder(tmp_path: Path) -> None:
 def test_a_folder_that_appears_during_the_run_is_not_overwritten(tmp_path: Path) -> None:
     with claimed(tmp_path / "out") as folder:
         (folder.start() / "result.json").write_text("new", encoding="utf-8")
-        make_result(tmp_path / "out", "other")
+        make_without_manifest(tmp_path / "out", "other")
         with pytest.raises(StorageError, match="exists"):
             folder.publish()
     assert mark_of(tmp_path / "out") == "other"

@@ -23,7 +23,8 @@ ORIGIN = {"seed": None, "case": {"title": "A case"}}
 
 def test_the_folder_holds_what_the_contract_names(tmp_path: Path) -> None:
     place = write_result(RESULT, tmp_path / "out", case_id="abc", provenance=ORIGIN, figures={"press.png": PNG})
-    names = ["fields.pvd", "fields_0001.vtu", "fields_0002.vtu", "figures", "history.csv", "provenance.json", "result.json"]
+    names = ["fields.pvd", "fields_0001.vtu", "fields_0002.vtu", "figures", "history.csv", "manifest.json"]
+    names += ["provenance.json", "result.json"]
     assert sorted(os.listdir(place)) == names
     assert (place / "figures" / "press.png").read_bytes() == PNG
     assert json.loads((place / "provenance.json").read_text(encoding="utf-8")) == ORIGIN
