@@ -396,6 +396,7 @@ def changed(content: Any, changes: Sequence[Change]) -> Any:
             holder["x\x1b" if number % 2 else "kind"] = holder.pop(key)
         else:
             holder[key] = VALUES[number % len(VALUES)]
+        content = json.loads(json.dumps(content))  # so that no part stands in two places
     return content
 
 
