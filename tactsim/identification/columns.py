@@ -66,5 +66,5 @@ def _column(table: Table, cell: str, units: dict[str, str]) -> tuple[str, float]
     try:
         return name, parse_quantity(f"1 {unit}", "dimensionless" if units[name] == "1" else units[name])
     except InvalidQuantity as error:
-        told = f": {error}" if table.expected else f" has another unit than {units[name]}"
+        told = f": {error}" if table.quotable else f" has another unit than {units[name]}"
         raise InvalidQuantity(f"{place}: column {name!r}{told}") from None

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.errors import InvalidQuantity
-from tactsim.outside.files import CasePath, opened
+from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
 
 MOST_LINES, MOST_CELLS = 3_000_000, 10_000_000
@@ -25,7 +25,7 @@ SEPARATORS = (
     "as CSV in English is written"
 )
 """What is said of a table of a program that writes decimal commas."""
-NOT_SHOWN = "what stands there (not shown: no table that stands beside the case or in the working folder)"
+NOT_SHOWN = "(not shown, as the file is no table beside the case or in the working folder)"
 """What a message says instead of the content of another file."""
 LONGEST_CELL = 80
 """Characters of a cell or a line that a message shows."""
@@ -35,12 +35,12 @@ LONGEST_CELL = 80
 class Table:
     """Header and data lines of a file with their numbers, without blanks and comments.
 
-    ``expected`` tells whether it stands where a table of its case belongs, ``numeric`` whether any row holds numbers.
+    ``quotable`` is as of ``OutsideFile``, ``numeric`` tells whether any row holds numbers.
     """
 
     name: str
     lines: tuple[tuple[int, str], ...]
-    expected: bool
+    quotable: bool
     numeric: bool
 
     @property
@@ -62,7 +62,7 @@ class Table:
 
     def quoted(self, text: str) -> str:
         """A cell of a row as a message shows it, once the header is known to be that of a table."""
-        return f"'{one_line(text, LONGEST_CELL)}'" if self.expected else NOT_SHOWN
+        return f"'{one_line(text, LONGEST_CELL)}'" if self.quotable else NOT_SHOWN
 
     def quoted_header(self, text: str) -> str:
         """What stands in the first line as a message shows it."""
@@ -112,8 +112,7 @@ def read_table(path: str | Path) -> Table:
         raise InvalidQuantity(f"{name}: no header and no data")
     if "," not in lines[0][1] and (";" in lines[0][1] or "\t" in lines[0][1]):
         raise InvalidQuantity(f"{name}: {SEPARATORS}")
-    expected = not isinstance(path, CasePath) or file.place != "elsewhere"
-    return Table(str(path), lines, expected, any(map(_is_row, (line for _, line in lines[1:]))))
+    return Table(str(path), lines, file.quotable, any(map(_is_row, (line for _, line in lines[1:]))))
 
 
 def _is_row(line: str) -> bool:

@@ -112,7 +112,7 @@ def _stress_factor(table: Table, name: str, unit: str) -> float:
     try:
         return parse_quantity(f"1 {unit}", "Pa")
     except InvalidQuantity as error:
-        raise InvalidQuantity(f"{place}: {error}" if table.expected else f"{place} has another unit than one of stress") from None
+        raise InvalidQuantity(f"{place}: {error}" if table.quotable else f"{place} has another unit than one of stress") from None
 
 
 def _strain_factor(table: Table, name: str, unit: str) -> float:

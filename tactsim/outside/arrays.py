@@ -25,7 +25,8 @@ MOST_ARRAYS = 100_000
 
 _ARCHIVE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
 _HEADER_TEXT = (SyntaxError, TokenError)
-DAMAGE = (OSError, ValueError, LookupError, EOFError, TypeError, ArithmeticError, RuntimeError, MemoryError, *_ARCHIVE, *_HEADER_TEXT)
+_CONTENT = (OSError, ValueError, LookupError, EOFError, TypeError, ArithmeticError, RuntimeError, MemoryError)
+DAMAGE = (*_ARCHIVE, *_HEADER_TEXT, *_CONTENT)
 """What the archive, its compression, the header of an array, which is Python text, and its numbers raise."""
 
 

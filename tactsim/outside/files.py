@@ -65,7 +65,10 @@ class TooLarge(Unreadable):
 
 @dataclass(frozen=True)
 class OutsideFile:
-    """A file that may be read: what it is, how the user named it, where it stands and how long it was in bytes."""
+    """A file that may be read: what it is, how the user named it, where it stands and how long it was in bytes.
+
+    It is ``quotable`` in messages unless a case, which may be a stranger's, names a file that stands anywhere on the machine.
+    """
 
     kind: str
     named: str
@@ -73,6 +76,7 @@ class OutsideFile:
     place: Place
     size: int
     limit: int
+    quotable: bool = True
 
     def read(self) -> bytes:
         """The content.
@@ -146,7 +150,8 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
     limit = LIMITS[kind] if limit is None else limit
     found, place, state = _found(path, kind)
     _check(state, kind, str(path), limit)
-    return OutsideFile(kind, str(path), found, place, state.st_size, limit)
+    quotable = place != "elsewhere" or not isinstance(path, CasePath)
+    return OutsideFile(kind, str(path), found, place, state.st_size, limit, quotable)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
