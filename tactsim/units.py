@@ -84,6 +84,19 @@ def _unusual_unit(given_unit: str) -> str | None:
     return None
 
 
+@lru_cache(maxsize=1024)
+def is_unit(text: str) -> bool:
+    """Whether ``text`` is a unit that numbers can be shown in; "" and "1" are that of a plain number."""
+    import pint
+
+    if text in ("", "1"):
+        return True
+    try:
+        return bool(_UNIT.fullmatch(text)) and bool(_registry().Quantity(1.0, text))
+    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+        return False
+
+
 def parse_quantity(text: str, unit: str) -> float:
     """The value of ``text`` ("0.8 mm") in ``unit`` ("m").
 

@@ -34,6 +34,9 @@ null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_up
 WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
 
+LONGEST_KIND = 60
+"""Characters of a foreign kind that a message shows."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
@@ -41,7 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, nargs="?", help=words)
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
-    parser.add_argument("--live", metavar="SOURCE", help="frames: a file that grows, - for a pipe, or tcp://127.0.0.1:PORT")
+    words = "frames: a file that grows, - for standard input (a named pipe: --live - < PIPE), or tcp://127.0.0.1:PORT"
+    parser.add_argument("--live", metavar="SOURCE", help=words)
     words = "result of the same grasp without a lump, which most estimators need; several for several closings"
     parser.add_argument("--reference", metavar="FOLDER", action="append", default=[], help=words)
     parser.add_argument(
@@ -88,10 +92,12 @@ def _show_result(arguments: argparse.Namespace) -> int:
         from tactsim.results.storage import replace_file
 
         figures, warnings = rendered_figures(stored.result)
+        for warning in warnings:
+            console.note(f"warning: {one_line(warning)}")
         if not figures:
-            raise InputError("; ".join(warnings) or f"a result of kind {stored.result.kind!r} has no figure")
+            raise InputError(f"a result of kind {one_line(stored.result.kind, LONGEST_KIND)!r} has no figure that can be drawn")
         replace_file(arguments.save, next(iter(figures.values())))
-        console.out(f"figure {arguments.save}")
+        console.out(f"figure {one_line(arguments.save)}")
     return 0
 
 

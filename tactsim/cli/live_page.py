@@ -25,7 +25,7 @@ def run_page(arguments: argparse.Namespace) -> int:
     from tactsim.live.content import opened_content
     from tactsim.live.feed import Feed
     from tactsim.live.feed_sources import FeedPlace, is_loopback
-    from tactsim.live.server import LOOPBACK, serve
+    from tactsim.live.server import LOOPBACK, Serving, serve
 
     if arguments.save is not None:
         raise InputError("--save and --web: one at a time; leave one out")
@@ -46,7 +46,7 @@ def run_page(arguments: argparse.Namespace) -> int:
         if not arguments.no_browser and _has_desktop():
             webbrowser.open(address)
 
-    serve(content, host=host, port=port, live=live, ready=ready)
+    serve(content, Serving(ready, console.note, host, port, live))
     return 0
 
 

@@ -13,7 +13,7 @@ from tactsim.units import format_quantity
 
 def result_report(result: Result, title: str = "") -> str:
     """Title, status, quantities with units, warnings and the number of assumptions."""
-    width = max((len(name) for name in result.quantities), default=0)
+    width = max((len(one_line(name)) for name in result.quantities), default=0)
     lines = [one_line(title)] if title else []
     lines.append(_ending(result))
     lines += [

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import math
 import re
 from pathlib import Path
 
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
+from tactsim.identification.table import Table, read_table
 from tactsim.interfaces import Array
-from tactsim.outside.files import opened
+from tactsim.outside.text import one_line
 from tactsim.units import parse_quantity
 
 _HEADER = re.compile(r"(?P<name>[^\[\]()]+?)\s*(?:[\[(](?P<unit>[^\[\]()]*)[\])])?")
@@ -37,76 +36,35 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
         If a column is unknown, repeated or missing, has no unit or a wrong one, or a row is not one finite number per
         column; with file and line.
     """
-    rows = data_lines(path)
-    header = [_column(path, cell, units) for cell in _cells(f"{path}:{rows[0][0]}", rows[0][1])]
+    table = read_table(path)
+    place, header = one_line(path), [_column(table, cell, units) for cell in table.header]
     names = [name for name, _ in header]
     for name in names:
         if names.count(name) > 1:
-            raise InvalidQuantity(f"{path}: column {name!r} stands there {names.count(name)} times; allowed: once")
+            raise InvalidQuantity(f"{place}: column {name!r} stands there {names.count(name)} times; allowed: once")
     missing = [name for name in units if name not in names] if complete else []
     if missing:
         allowed = ", ".join(f"{name} [{unit}]" for name, unit in units.items())
-        raise InvalidQuantity(f"{path}: no column {', '.join(missing)}; allowed: {allowed}")
-    values = np.array([_numbers(f"{path}:{number}", line, names) for number, line in rows[1:]]).reshape(-1, len(names))
+        raise InvalidQuantity(f"{place}: no column {', '.join(missing)}; allowed: {allowed}")
+    values = np.array(table.numbers(names), dtype=float).reshape(-1, len(names))
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
 
 
-def data_lines(path: str | Path) -> list[tuple[int, str]]:
-    """Header and data lines with their numbers, without blanks and comments.
-
-    Raises
-    ------
-    StorageError
-        If the file cannot be read.
-    InvalidQuantity
-        If nothing is left.
-    """
-    lines = opened(path, "table").text().splitlines()
-    rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not rows:
-        raise InvalidQuantity(f"{path}: no header and no data")
-    return rows
-
-
-def _column(path: str | Path, cell: str, units: dict[str, str]) -> tuple[str, float]:
+def _column(table: Table, cell: str, units: dict[str, str]) -> tuple[str, float]:
     """Name and SI factor of a header cell."""
-    match = _HEADER.fullmatch(cell.strip())
+    place, match = one_line(table.name), _HEADER.fullmatch(cell)
     name = " ".join(match["name"].lower().replace("_", " ").split()) if match else ""
     if match is None or name not in units:
-        hint = "; columns are separated by commas" if ";" in cell or "\t" in cell else ""
-        raise InvalidQuantity(f"{path}: unknown column {cell.strip()!r}; allowed: {', '.join(units)}, each with its unit{hint}")
-    if not (match["unit"] or "").strip():
-        raise InvalidQuantity(
-            f"{path}: column {cell.strip()!r} has no unit; write it in brackets after the name, like '{name} [{units[name]}]'"
-        )
-    if match["unit"].strip() == units[name]:
+        allowed = f"allowed: {', '.join(units)}, each with its unit"
+        raise InvalidQuantity(f"{place}: unknown column {table.quoted_header(cell)}; {allowed}")
+    unit = (match["unit"] or "").strip()
+    if not unit:
+        told = f"write it in brackets after the name, like '{name} [{units[name]}]'"
+        raise InvalidQuantity(f"{place}: column {name!r} has no unit; {told}")
+    if unit == units[name]:
         return name, 1.0
     try:
-        return name, parse_quantity(f"1 {match['unit'].strip()}", "dimensionless" if units[name] == "1" else units[name])
+        return name, parse_quantity(f"1 {unit}", "dimensionless" if units[name] == "1" else units[name])
     except InvalidQuantity as error:
-        raise InvalidQuantity(f"{path}: column {cell.strip()!r}: {error}") from None
-
-
-def _numbers(place: str, line: str, names: list[str]) -> list[float]:
-    """The finite numbers of one row."""
-    cells = _cells(place, line)
-    if len(cells) != len(names):
-        raise InvalidQuantity(f"{place}: {len(cells)} values in a row of {len(names)} columns")
-    return [_number(place, cell, name) for cell, name in zip(cells, names, strict=True)]
-
-
-def _cells(place: str, line: str) -> list[str]:
-    try:
-        return next(csv.reader([line]))
-    except csv.Error as error:
-        raise InvalidQuantity(f"{place}: {error}; allowed: one number per column") from None
-
-
-def _number(place: str, cell: str, name: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InvalidQuantity(f"{place}: {name} is {cell.strip()!r}; allowed: a finite number")
-    return value
+        told = f": {error}" if table.quotable else f" has another unit than {units[name]}"
+        raise InvalidQuantity(f"{place}: column {name!r}{told}") from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,14 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
-from tactsim.identification.columns import data_lines
+from tactsim.identification.table import Table, read_table
 from tactsim.interfaces import Array
+from tactsim.outside.text import one_line
 from tactsim.units import parse_quantity
 
 FEWEST_POINTS = 3
 
 STRETCH_COLUMNS = ("stretch", "strain", "engineering_strain")
-STRESS_COLUMNS = ("nominal_stress", "engineering_stress", "true_stress", "cauchy_stress")
+STRESS_COLUMNS = ("stress", "nominal_stress", "engineering_stress", "true_stress", "cauchy_stress")
 
 
 @dataclass(frozen=True)
@@ -59,11 +59,12 @@ class UniaxialCurve:
 
 
 def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
-    """The curve in a CSV file: a header such as ``stretch,nominal_stress_kPa``, rows in any order, ``#`` before comments.
+    """The curve in a CSV file: a header such as ``strain [%], nominal stress [kPa]``, rows in any order, ``#`` before comments.
 
-    The first column may be ``stretch``, ``strain`` or ``engineering_strain`` (with ``_%`` for percent); the second
-    ``nominal_stress``, ``engineering_stress``, ``true_stress`` or ``cauchy_stress``, with its unit after ``_`` or in brackets.
-    A true stress is divided by the stretch, as the material keeps its volume.
+    The first column may be ``stretch``, ``strain`` or ``engineering strain`` (with ``%`` for percent); the second ``stress``,
+    ``nominal stress``, ``engineering stress``, ``true stress`` or ``cauchy stress``, with its unit in brackets or after ``_``.
+    Capitals do not matter, nor whether ``_`` or a blank stands between words. A stress that is not called true is nominal; a true
+    stress is divided by the stretch, as the material keeps its volume.
 
     Raises
     ------
@@ -72,62 +73,51 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     InvalidQuantity
         If it holds no usable curve, with file and line.
     """
-    rows = data_lines(path)
-    header = [cell.strip() for cell in next(csv.reader([rows[0][1]]))]
-    strain_at, strain_name, percent = _column(path, header, STRETCH_COLUMNS)
-    stress_at, stress_name, unit = _column(path, header, STRESS_COLUMNS)
-    factor = _stress_factor(path, header[stress_at], unit)
-    values = np.array([_numbers(f"{path}:{number}", line, len(header)) for number, line in rows[1:]]).reshape(-1, len(header))
-    stretch = values[:, strain_at] * _strain_factor(path, header[strain_at], percent)
+    table, name = read_table(path), one_line(path)
+    strain_at, strain_name, percent = _column(table, STRETCH_COLUMNS)
+    stress_at, stress_name, unit = _column(table, STRESS_COLUMNS)
+    factor = _stress_factor(table, stress_name, unit)
+    values = np.array(table.numbers(), dtype=float).reshape(-1, len(table.header))
+    stretch = values[:, strain_at] * _strain_factor(table, strain_name, percent)
     if strain_name != "stretch":
         stretch = 1 + stretch
-    stress = values[:, stress_at] * factor
-    return UniaxialCurve(stretch, stress / stretch if stress_name in ("true_stress", "cauchy_stress") else stress, str(path))
+    with np.errstate(all="ignore"):  # what is no number is refused by the curve
+        stress = values[:, stress_at] * factor
+        nominal = stress / stretch if stress_name in ("true_stress", "cauchy_stress") else stress
+    return UniaxialCurve(stretch, nominal, name)
 
 
-def _column(path: str | Path, header: list[str], allowed: tuple[str, ...]) -> tuple[int, str, str]:
+def _column(table: Table, allowed: tuple[str, ...]) -> tuple[int, str, str]:
     """Position, name and unit text of the one column whose name is allowed."""
     found = []
-    for position, cell in enumerate(header):
+    for position, cell in enumerate(table.header):
         for name in sorted(allowed, key=len, reverse=True):
-            match = re.fullmatch(rf"{name}(?:[ _]*[(\[]?(?P<unit>[^()\[\]\s]+)[)\]]?)?", cell)
+            words = name.replace("_", "[ _]+")
+            match = re.fullmatch(rf"(?i:{words})(?:[ _]*[(\[]?(?P<unit>[^()\[\]\s]+)[)\]]?)?", cell)
             if match:
                 found.append((position, name, match["unit"] or ""))
                 break
     if len(found) != 1:
-        hint = "; columns are separated by commas" if any(";" in cell or "\t" in cell for cell in header) else ""
-        raise InvalidQuantity(f"{path}: header {', '.join(header)!r} must have exactly one column of {', '.join(allowed)}{hint}")
+        header = table.quoted_header(", ".join(table.header))
+        told = f"{', '.join(allowed)}, like 'strain [%], nominal stress [kPa]'"
+        raise InvalidQuantity(f"{one_line(table.name)}: header {header} must have exactly one column of {told}")
     return found[0]
 
 
-def _stress_factor(path: str | Path, column: str, unit: str) -> float:
+def _stress_factor(table: Table, name: str, unit: str) -> float:
     """Pa per unit of a stress column."""
+    place = f"{one_line(table.name)}: column {name!r}"
     if not unit:
-        raise InvalidQuantity(f"{path}: column {column!r} has no unit; write it after the name, like nominal_stress_kPa")
+        raise InvalidQuantity(f"{place} has no unit; write it after the name, like nominal_stress_kPa or nominal stress [kPa]")
     try:
         return parse_quantity(f"1 {unit}", "Pa")
     except InvalidQuantity as error:
-        raise InvalidQuantity(f"{path}: column {column!r}: {error}") from None
+        raise InvalidQuantity(f"{place}: {error}" if table.quotable else f"{place} has another unit than one of stress") from None
 
 
-def _strain_factor(path: str | Path, column: str, unit: str) -> float:
+def _strain_factor(table: Table, name: str, unit: str) -> float:
     """1 for a plain number, 0.01 for percent."""
-    if unit not in ("", "%", "percent"):
-        raise InvalidQuantity(
-            f"{path}: column {column!r}: stretch and strain are dimensionless; allowed are no unit, % or percent"
-        )
-    return 1.0 if unit == "" else 0.01
-
-
-def _numbers(place: str, line: str, columns: int) -> list[float]:
-    """The finite numbers of one row."""
-    cells = next(csv.reader([line]))
-    try:
-        numbers = [float(cell) for cell in cells]
-    except ValueError:
-        raise InvalidQuantity(f"{place}: {line.strip()!r} is not a row of numbers") from None
-    if len(numbers) != columns:
-        raise InvalidQuantity(f"{place}: {len(numbers)} values in a row of {columns} columns")
-    if not np.isfinite(numbers).all():
-        raise InvalidQuantity(f"{place}: {line.strip()!r} holds a value that is not finite")
-    return numbers
+    if unit.lower() not in ("", "-", "1", "%", "percent"):
+        place = f"{one_line(table.name)}: column {name!r} has the unit {table.quoted_header(unit)}"
+        raise InvalidQuantity(f"{place}: stretch and strain are dimensionless; allowed are no unit, % or percent")
+    return 0.01 if unit.lower() in ("%", "percent") else 1.0

@@ -1,7 +1,11 @@
-"""Who may ask the server: only a page whose address holds the token, under the name that the server was given."""
+"""Who may ask the server: only a page whose address holds the token, under the name that the server was given.
+
+The one place, too, where whatever a request does wrong becomes a short answer.
+"""
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import ipaddress
 from urllib.parse import urlsplit
@@ -9,6 +13,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 from aiohttp.typedefs import Handler, Middleware
 
+from tactsim.live.defects import report
 from tactsim.live.feed_sources import is_loopback
 
 HEADERS = {
@@ -34,20 +39,34 @@ def guard(token: str, host: str) -> Middleware:
 
     @web.middleware
     async def guarded(request: web.Request, handler: Handler) -> web.StreamResponse:
-        given = request.path.split("/")[1]
-        if not hmac.compare_digest(given.encode(), token.encode()) or not _known_host(request.host, host):
-            return web.Response(status=403, text="403: the address of this page needs its token", headers=HEADERS)
+        if not _allowed(request, token, host):
+            return _refusal(403, "the address of this page needs its token")
         if request.method not in ("GET", "HEAD"):
-            return web.Response(status=405, text="405: only GET", headers=HEADERS)
+            return _refusal(405, "only GET")
         try:
             response = await handler(request)
         except web.HTTPException as error:
-            return web.Response(status=error.status, text=f"{error.status}: {error.reason}", headers=HEADERS)
+            return _refusal(error.status, error.reason)
+        except (ConnectionError, asyncio.CancelledError):
+            raise
+        except Exception as error:  # noqa: BLE001  whatever a handler does wrong, the client gets an answer and the user a line
+            return _refusal(500, report(error))
         if not response.prepared:
             response.headers.update(HEADERS)
         return response
 
     return guarded
+
+
+def _refusal(status: int, words: str) -> web.Response:
+    return web.Response(status=status, text=f"{status}: {words}", headers=HEADERS)
+
+
+def _allowed(request: web.Request, token: str, host: str) -> bool:
+    """Whether the path begins with the token, compared in constant time, and the host named is this machine."""
+    given = request.path.removeprefix("/").partition("/")[0]
+    has_token = hmac.compare_digest(given.encode("utf-8", "replace"), token.encode())
+    return has_token and _known_host(request.headers.get("Host", ""), host)
 
 
 def _known_host(named: str, host: str) -> bool:
@@ -66,4 +85,4 @@ def _known_host(named: str, host: str) -> bool:
 
 def same_origin(request: web.Request) -> bool:
     """Whether a web socket is asked for by a page of this server; browsers always tell the origin."""
-    return request.headers.get("Origin") == f"{request.scheme}://{request.host}"
+    return request.headers.get("Origin") == f"{request.scheme}://{request.headers.get('Host', '')}"

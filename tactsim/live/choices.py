@@ -8,12 +8,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tactsim.errors import StorageError, TactsimError
+from tactsim.errors import StorageError
+from tactsim.live.recorded import DAMAGE
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.learned import LearnedEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import PARAMETERS, Estimate, EstimatedInclusion, Readings
+from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Quantity
 
@@ -84,8 +86,9 @@ def stored_choice(folder: str | Path) -> Choice | None:
     try:
         inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(result.details["estimates"])]
         found = Estimate(bool(inclusions), tuple(inclusions), result.reason)
-    except (LookupError, TypeError, ValueError, AttributeError, TactsimError) as error:
-        raise StorageError(f"{folder}/result.json is not a complete result of a localization: {error}; run it again") from None
+    except DAMAGE as error:
+        told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
+        raise StorageError(f"{told}; run it again") from None
     return Choice("stored", f"As stored: {result.details.get('estimator', 'estimate')}"[:60], StoredEstimate(found), False)
 
 

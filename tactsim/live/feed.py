@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from tactsim.errors import InputError
 from tactsim.live.frame_lines import LONGEST_LINE, LineSplitter, read_line
 from tactsim.live.scene import Frame, Scene
+from tactsim.outside.text import one_line
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Feed:
     def blame(self, fault: str) -> None:
         """Counts something that could not be read."""
         self._count["malformed"] += 1
-        self._fault = fault
+        self._fault = one_line(fault)
         self._wake()
 
     def tell(self, state: str) -> None:

@@ -28,6 +28,7 @@ from pydantic import Field, ValidationError
 from tactsim.errors import InputError, shown
 from tactsim.live.scene import LARGEST_FORCE, Frame, Scene, plain_scene
 from tactsim.localization.readings import JAWS
+from tactsim.outside.text import one_line
 from tactsim.sensors.taxel_layout import PositiveLength, TaxelLayout
 from tactsim.units import FrozenModel
 
@@ -52,7 +53,7 @@ class Description(FrozenModel):
 
     def scene(self) -> Scene:
         """What is drawn."""
-        return plain_scene(self.title, np.array(self.block_size), self.matrix)
+        return plain_scene(one_line(self.title), np.array(self.block_size), self.matrix)
 
 
 def read_line(line: bytes, scene: Scene | None) -> Scene | Frame:

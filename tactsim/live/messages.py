@@ -19,12 +19,15 @@ from tactsim.live.shapes import drawn_inclusions
 from tactsim.localization.interface import Readings
 from tactsim.localization.readings import JAWS
 from tactsim.localization.views import SHAPE, views
+from tactsim.outside.text import one_line
 
 Array = np.ndarray
 VIEWS = ("front", "left", "top")
 TRUE_COLOUR = "#009e73"
 """Of the true inclusions; with the estimate's it is told apart by colour-blind users, and the one is filled, the other lines."""
 LEVELS = 255
+LONGEST_TEXT = 1000
+"""Characters of a note or a reason on the page: more than any of this program's own has."""
 
 
 def scene_message(scene: Scene, **more: Any) -> str:
@@ -67,8 +70,18 @@ def colour_table() -> list[int]:
 
 
 def plain_json(content: Mapping[str, Any]) -> str:
-    """Strict JSON."""
-    return json.dumps(content, allow_nan=False, separators=(",", ":"))
+    """Strict JSON, in which the texts of files and sensors are harmless: one line each, bounded, without control characters."""
+    return json.dumps(_harmless(content), allow_nan=False, separators=(",", ":"))
+
+
+def _harmless(value: Any) -> Any:
+    if isinstance(value, str):
+        return one_line(value, LONGEST_TEXT)
+    if isinstance(value, Mapping):
+        return {one_line(key): _harmless(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return value if value and isinstance(value[0], float | int) else [_harmless(item) for item in value]
+    return value
 
 
 class Scales:
@@ -97,14 +110,14 @@ def frame_message(scene: Scene, frame: Frame, readings: Readings | TactsimError,
     The JSON is filled up with spaces so that what follows begins at a multiple of four. Without usable readings the pictures are
     empty. Integers and floats are little-endian.
     """
-    notes, meaning = list(frame.notes()), "force"
+    notes, meaning, forces = list(frame.notes()), "force", frame.shown_forces()
     if isinstance(readings, TactsimError):
         notes, pictures = notes or [str(readings)], [np.zeros(SHAPE) for _ in VIEWS]
     else:
         signal, meaning = shown_signal(readings)
         found = views(signal, SHAPE)
         pictures = [found.front, found.left, found.top]
-    scales.take(pictures, frame.forces)
+    scales.take(pictures, forces)
     content = {
         "is": "frame",
         "time": _known(frame.time),
@@ -118,7 +131,7 @@ def frame_message(scene: Scene, frame: Frame, readings: Readings | TactsimError,
     head = plain_json(content | more).encode()
     head += b" " * (-len(head) % 4)
     levels = [_levels(picture, end) for picture, end in zip(pictures, scales.ends[:3], strict=True)]
-    return b"".join([struct.pack("<I", len(head)), head, frame.forces.astype("<f4").tobytes(), *levels])
+    return b"".join([struct.pack("<I", len(head)), head, forces.astype("<f4").tobytes(), *levels])
 
 
 def _levels(picture: Array, end: float) -> bytes:

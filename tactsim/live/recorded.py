@@ -11,8 +11,9 @@ from pydantic import ValidationError
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.localization_source import saturated_taxels, true_inclusions
-from tactsim.live.scene import LARGEST_FORCE, Recording, Scene, plain_scene
+from tactsim.live.scene import LARGEST_FORCE, LATEST, Recording, Scene, plain_scene
 from tactsim.localization.readings import JAWS
+from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
 from tactsim.sensors.taxel_layout import TaxelLayout
@@ -21,6 +22,8 @@ Array = np.ndarray
 SOURCES = {"taxel_force": "forces of the solution", "read_force": "forces read through the sensors"}
 """Name of the forces -> what they are, in words."""
 _TIMES = {"taxel_force": "time_history", "read_force": "readout_time"}
+DAMAGE = (ValidationError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, MemoryError, TactsimError)
+"""What a result raises whose details are not those that a run writes: another type, a missing part, numbers that do not fit."""
 
 
 def result_recordings(folder: str | Path) -> dict[str, Recording]:
@@ -45,8 +48,9 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     try:
         scene = _scene(result, title)
         return {name: _recording(result, scene, name) for name in SOURCES if f"{name}_upper" in result.quantities}
-    except (ValidationError, LookupError, TypeError, ValueError, TactsimError) as error:
-        raise StorageError(f"{folder}/result.json is not a complete result of a grasp: {error}; run the grasp again") from None
+    except DAMAGE as error:
+        told = f"{one_line(folder)}/result.json is not a complete result of a grasp: {one_line(error)}"
+        raise StorageError(f"{told}; run the grasp again") from None
 
 
 def _scene(result: Result, title: str) -> Scene:
@@ -93,8 +97,8 @@ def checked_validity(forces: Array, times: Array, scene: Scene, saturated: Array
     needed = (len(times), len(JAWS), scene.layout.rows, scene.layout.columns)
     if forces.shape != needed or not len(times):
         raise InputError(f"the forces of the taxels have the shape {forces.shape}; needed: (step, jaw, row, column) = {needed}")
-    if not (np.isfinite(times).all() and (np.diff(times) > 0).all()):
-        raise InputError(f"the times {shown(times.tolist())} do not increase")
+    if not ((np.abs(times) <= LATEST).all() and (np.diff(times) > 0).all()):
+        raise InputError(f"the times {shown(times.tolist())} do not increase, or not all are within {LATEST:g} s")
     valid = np.isfinite(forces) & (np.abs(np.nan_to_num(forces)) <= LARGEST_FORCE)
     return valid if saturated is None else valid & ~saturated
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.contact.jaw import Jaw
+from tactsim.errors import InputError, shown
 from tactsim.experiments.grasp_setup import JawSettings
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.localization.readings import JAWS, named_taxels, silent_taxels, silent_words
@@ -18,6 +19,13 @@ from tactsim.sensors.taxel_layout import TaxelLayout
 Array = np.ndarray
 LARGEST_FORCE = 1e6
 """In N; a larger number is not a force on a taxel but a mistaken unit."""
+
+SHORTEST_LENGTH, LONGEST_LENGTH = 1e-6, 100.0
+"""In m, of a block, a taxel or a pitch; another length is a mistaken unit."""
+FILLET = 0.25
+"""Largest fillet of an assumed jaw over the smallest side of its block."""
+LATEST = 1e12
+"""Time in s beyond which differences of times mean nothing; seconds since 1970 are far below."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +42,11 @@ class Scene:
     places : (2, 3) in m of the middle of each jaw's face, the upper jaw first, at the closing ``closing`` in m of each jaw
     notes : what the user must know about these data
     noise : standard deviation of a reading in N
+
+    Raises
+    ------
+    InputError
+        If a length is not one that can be drawn.
     """
 
     title: str
@@ -46,6 +59,18 @@ class Scene:
     notes: tuple[str, ...] = ()
     noise: float = ROUNDING_NOISE
 
+    def __post_init__(self) -> None:
+        if np.shape(self.size) != (3,) or np.shape(self.places) != (len(JAWS), 3):
+            raise InputError(
+                f"a block of the extent {shown(self.size)} with jaws at {shown(self.places)}; needed: three lengths each"
+            )
+        lengths = {"block_size": self.size, "matrix.pitch": self.layout.pitch, "matrix.size": self.layout.size}
+        for name, value in lengths.items():
+            if not np.all((np.asarray(value) >= SHORTEST_LENGTH) & (np.asarray(value) <= LONGEST_LENGTH)):
+                raise InputError(f"{name} is {shown(value)} m; allowed: {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m")
+        if not (np.abs([*self.places.ravel(), self.closing]) <= LONGEST_LENGTH).all():
+            raise InputError(f"a jaw is beyond {LONGEST_LENGTH:g} m or nowhere: {shown(self.places)} at {shown(self.closing)} m")
+
     def places_at(self, closing: float | None) -> Array:
         """Middle (2, 3) in m of both faces when each jaw has closed by ``closing`` in m; None leaves them where they are."""
         places = self.places.copy()
@@ -54,9 +79,25 @@ class Scene:
         return places
 
 
+def check_extent(size: Array) -> None:
+    """Refuses what is not the extent (3,) in m of a block that can be drawn.
+
+    Raises
+    ------
+    InputError
+        With the allowed range.
+    """
+    if np.shape(size) != (3,) or not ((size >= SHORTEST_LENGTH) & (size <= LONGEST_LENGTH)).all():
+        told = f"needed: three lengths of {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m"
+        raise InputError(f"block_size is {shown(np.asarray(size).tolist())} m; {told}")
+
+
 def plain_scene(title: str, size: Array, layout: TaxelLayout, **known: Any) -> Scene:
     """A scene whose jaws, if nothing else is known, are a quarter wider than the block and touch it in its middle."""
-    jaws = {side: JawSettings().jaw(side, size.tolist()) for side in JAWS}
+    check_extent(size)
+    settings = JawSettings()
+    settings = settings.model_copy(update={"fillet": min(settings.fillet, FILLET * float(size.min()))})
+    jaws = {side: settings.jaw(side, size.tolist()) for side in JAWS}
     places = np.array([[size[0] / 2, size[1] / 2, size[2]], [size[0] / 2, size[1] / 2, 0.0]])
     return Scene(title, size, layout, **({"inclusions": None, "jaws": jaws, "places": places} | known))
 
@@ -90,6 +131,10 @@ class Frame:
         if (silent := silent_taxels(self.forces) & self.valid).any():
             told.append(silent_words(silent))
         return tuple(told)
+
+    def shown_forces(self) -> Array:
+        """The forces as they are drawn and sent: NaN where the number is no force."""
+        return np.where(np.abs(self.forces) <= LARGEST_FORCE, self.forces, np.nan)
 
     def readings(self, scene: Scene) -> Readings:
         """The frame as estimators take it.

@@ -7,17 +7,21 @@ from typing import Any
 import numpy as np
 
 from tactsim.dataset.variable import STATUS
-from tactsim.errors import InputError, TactsimError, UnknownName, shown
+from tactsim.errors import InputError, TactsimError, UnknownName
 from tactsim.live.choices import Choice
+from tactsim.live.commands import ChooseEstimator, ChooseSample, ChooseSource, Choosing, FilterSamples
 from tactsim.live.content import LIVE, Content
 from tactsim.live.estimating import frame_readings, shown_signal
 from tactsim.live.recorded import SOURCES
-from tactsim.live.samples import ANY
+from tactsim.live.samples import ANY, Samples
 from tactsim.live.scene import Recording
 
 Array = np.ndarray
 MOST_RANGED = 64
 """Steps of a recording from which the ends of the colour scales are taken beforehand."""
+
+LONGEST_SHOWN = 40
+"""Characters of an unknown name that a message shows."""
 
 
 class Selection:
@@ -44,7 +48,7 @@ class Selection:
         """What is shown if it is not the feed; None if there is nothing."""
         return self._recordings.get(self.source)
 
-    def take(self, command: dict[str, Any]) -> bool:
+    def take(self, command: Choosing) -> bool:
         """Makes a choice; whether another scene may result.
 
         Raises
@@ -52,27 +56,25 @@ class Selection:
         InputError
             If there is no such thing to choose.
         """
-        what = command["do"]
-        if what == "estimator":
-            self.choice = self._estimator(str(command["name"]))
+        if isinstance(command, ChooseEstimator):
+            self.choice = self._estimator(command.name)
             return False
-        if what == "source":
-            name = str(command["name"])
-            if name not in self._names():
-                raise UnknownName("source of forces", name[:40], self._names())
-            self.source = name
+        if isinstance(command, ChooseSource):
+            if command.name not in self._names():
+                raise UnknownName("source of forces", command.name[:LONGEST_SHOWN], self._names())
+            self.source = command.name
         elif self._content.samples is None:
             raise InputError("there are no samples to choose from; open a data set")
-        elif what == "filter":
-            self._narrow(str(command.get("split", ANY)), str(command.get("status", ANY)))
+        elif isinstance(command, FilterSamples):
+            self._narrow(command.split, command.status)
         else:
-            self._move(command)
+            self._move(command, self._content.samples)
         return True
 
     def _estimator(self, name: str) -> Choice:
         known = self._content.by_name
         if name not in known:
-            raise UnknownName("estimator", name[:40], known)
+            raise UnknownName("estimator", name[:LONGEST_SHOWN], known)
         return known[name]
 
     def _narrow(self, split: str, status: str) -> None:
@@ -81,16 +83,13 @@ class Selection:
         self._filter = (split, status)
         self._open_sample(number)
 
-    def _move(self, command: dict[str, Any]) -> None:
-        samples, here = self._content.samples, self._sample or 0
-        assert samples is not None
-        if "move" in command:
-            self._open_sample(samples.near(here, 1 if command["move"] > 0 else -1, *self._filter))
+    def _move(self, command: ChooseSample, samples: Samples) -> None:
+        if command.move is not None:
+            self._open_sample(samples.near(self._sample or 0, command.move, *self._filter))
             return
-        number = command["number"]
-        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < samples.count:
-            raise InputError(f"there is no sample {shown(number)}; allowed: 0 to {samples.count - 1}")
-        self._open_sample(number)
+        if command.number is None or command.number >= samples.count:
+            raise InputError(f"there is no sample {command.number}; allowed: 0 to {samples.count - 1}")
+        self._open_sample(command.number)
 
     def _open_sample(self, number: int | None) -> None:
         assert self._content.samples is not None

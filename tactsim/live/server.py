@@ -7,21 +7,34 @@ import secrets
 import signal
 from collections.abc import Callable
 from contextlib import AsyncExitStack, suppress
+from dataclasses import dataclass
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import PurePosixPath
 
-from aiohttp import WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, web
 
 from tactsim.errors import StorageError
 from tactsim.live.access import guard, same_origin
 from tactsim.live.content import Content
+from tactsim.live.defects import report, telling_defects
 from tactsim.live.feed_sources import FeedPlace, feeding
 from tactsim.live.session import Session
+from tactsim.live.threads import Threads
+from tactsim.outside.text import one_line
 
 LOOPBACK = "127.0.0.1"
 TOKEN_BYTES = 24
 LONGEST_COMMAND = 4096
 """Bytes of a message of the page."""
+LONGEST_REASON = 123
+"""Bytes of the reason of a closing, by the protocol."""
+MOST_PAGES = 32
+"""Pages that are open at the same time: more than a room has viewers, each costs time and memory."""
+GOODBYE = 0.5
+"""Time in s that each part of the end may take; with all of them the page ends within 2 s."""
+IDLE = 30
+"""Time in s after which a connection that asks for nothing is closed, so that many of them do not keep others out."""
 TYPES = {
     ".html": "text/html",
     ".css": "text/css",
@@ -32,6 +45,8 @@ TYPES = {
 }
 CONTENT = web.AppKey("content", Content)
 SOCKETS = web.AppKey("sockets", set[web.WebSocketResponse])
+FILES = web.AppKey("files", dict[str, Traversable])
+THREADS = web.AppKey("threads", Threads)
 
 
 def application(content: Content, token: str, host: str = LOOPBACK) -> web.Application:
@@ -39,6 +54,8 @@ def application(content: Content, token: str, host: str = LOOPBACK) -> web.Appli
     app = web.Application(middlewares=[guard(token, host)])
     app[CONTENT] = content
     app[SOCKETS] = set()
+    app[FILES] = _page_files()
+    app[THREADS] = Threads()
     app.router.add_get(f"/{token}/", _file)
     app.router.add_get(f"/{token}/ws", _socket)
     app.router.add_get(f"/{token}/{{name:.+}}", _file)
@@ -46,78 +63,124 @@ def application(content: Content, token: str, host: str = LOOPBACK) -> web.Appli
     return app
 
 
+def _page_files() -> dict[str, Traversable]:
+    """Everything that may be asked for, by its path below the token."""
+    found: dict[str, Traversable] = {}
+    folders = [("", files("tactsim.live") / "page")]
+    while folders:
+        above, folder = folders.pop()
+        for entry in folder.iterdir():
+            name = f"{above}{entry.name}"
+            if entry.is_dir():
+                folders.append((f"{name}/", entry))
+            elif PurePosixPath(name).suffix in TYPES:
+                found[name] = entry
+    return found
+
+
 async def _file(request: web.Request) -> web.StreamResponse:
     name = request.match_info.get("name", "index.html")
-    path = PurePosixPath(name)
-    if ".." in path.parts or path.is_absolute() or path.suffix not in TYPES or "\\" in name:
+    found = request.app[FILES].get(name)
+    if found is None:
         raise web.HTTPNotFound
-    found = files("tactsim.live") / "page"
-    for part in path.parts:
-        found = found / part
-    if not found.is_file():
-        raise web.HTTPNotFound
-    return web.Response(body=found.read_bytes(), content_type=TYPES[path.suffix], charset="utf-8")
+    return web.Response(body=found.read_bytes(), content_type=TYPES[PurePosixPath(name).suffix], charset="utf-8")
 
 
 async def _socket(request: web.Request) -> web.StreamResponse:
+    sockets = request.app[SOCKETS]
     if not same_origin(request):
         raise web.HTTPForbidden
-    socket = web.WebSocketResponse(heartbeat=20, max_msg_size=LONGEST_COMMAND, compress=False)
-    await socket.prepare(request)
-    request.app[SOCKETS].add(socket)
-    session = Session(request.app[CONTENT], socket)
-    pushing = asyncio.create_task(session.run())
-    pushing.add_done_callback(lambda task: task.cancelled() or task.exception() is None or asyncio.ensure_future(socket.close()))
+    if len(sockets) >= MOST_PAGES:
+        raise web.HTTPTooManyRequests
+    socket = web.WebSocketResponse(heartbeat=20, max_msg_size=LONGEST_COMMAND, compress=False, timeout=GOODBYE)
     try:
-        async for message in socket:
-            if message.type is WSMsgType.TEXT:
-                await session.receive(message.data)
+        await socket.prepare(request)
+    except ValueError:  # a key that is no base64 text
+        raise web.HTTPBadRequest from None
+    sockets.add(socket)
+    try:
+        await _converse(socket, Session(request.app[CONTENT], socket, request.app[THREADS]))
+    except Exception as error:  # noqa: BLE001  the page is told by the reason of the closing, the user by a line
+        await socket.close(code=WSCloseCode.INTERNAL_ERROR, message=report(error).encode()[:LONGEST_REASON])
     finally:
-        request.app[SOCKETS].discard(socket)
-        pushing.cancel()
-        with suppress(asyncio.CancelledError, ConnectionError):
-            await pushing
+        sockets.discard(socket)
     return socket
 
 
+async def _converse(socket: web.WebSocketResponse, session: Session) -> None:
+    """Takes commands while the session sends, until the page is gone."""
+    pushing = asyncio.create_task(session.run())
+    try:
+        async for message in socket:
+            if message.type in (WSMsgType.TEXT, WSMsgType.BINARY):
+                await session.receive(message.data)
+                await asyncio.sleep(0)  # other pages have their turn however fast the commands come
+    finally:
+        pushing.cancel()
+        with suppress(asyncio.CancelledError, ConnectionError):
+            await pushing
+
+
 async def _close_sockets(app: web.Application) -> None:
-    sockets = app[SOCKETS]
-    for socket in tuple(sockets):
-        await socket.close(code=1001, message=b"the server ends")
+    """Says goodbye to all pages at once; one that does not listen is cut off."""
+    closing = [
+        asyncio.create_task(socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server ends")) for socket in app[SOCKETS]
+    ]
+    if closing:
+        await asyncio.wait(closing, timeout=GOODBYE)
+    app[THREADS].close()
 
 
-def serve(
-    content: Content, *, host: str = LOOPBACK, port: int = 0, live: FeedPlace | None = None, ready: Callable[[str], None]
-) -> None:
-    """Serves until SIGINT or SIGTERM; ``ready`` is called once with the address of the page.
+@dataclass(frozen=True)
+class Serving:
+    """Where the page is served and who is told what."""
+
+    ready: Callable[[str], None]
+    """Called once with the address of the page."""
+    tell: Callable[[str], None]
+    """Called with a line about every defect of the server."""
+    host: str = LOOPBACK
+    port: int = 0
+    live: FeedPlace | None = None
+
+
+def serve(content: Content, serving: Serving) -> None:
+    """Serves until SIGINT or SIGTERM.
 
     Raises
     ------
     StorageError
         If the port is taken or the address is not one of this machine.
     """
-    asyncio.run(_serve(content, host, port, live, ready))
+    with telling_defects(serving.tell):
+        asyncio.run(_serve(content, serving))
 
 
-async def _serve(content: Content, host: str, port: int, live: FeedPlace | None, ready: Callable[[str], None]) -> None:
+async def _serve(content: Content, serving: Serving) -> None:
     token = secrets.token_urlsafe(TOKEN_BYTES)
     stop = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         with suppress(NotImplementedError, RuntimeError, ValueError):
             asyncio.get_running_loop().add_signal_handler(number, stop.set)
-    runner = web.AppRunner(application(content, token, host), access_log=None, shutdown_timeout=1.0)
+    runner = web.AppRunner(
+        application(content, token, serving.host),
+        access_log=None,
+        auto_decompress=False,
+        keepalive_timeout=IDLE,
+        lingering_time=GOODBYE,
+        shutdown_timeout=GOODBYE,
+    )
     async with AsyncExitStack() as stack:
-        if live is not None and content.feed is not None:
-            await stack.enter_async_context(feeding(content.feed, live))
+        if serving.live is not None and content.feed is not None:
+            await stack.enter_async_context(feeding(content.feed, serving.live))
         await runner.setup()
         stack.push_async_callback(runner.cleanup)
         try:
-            await web.TCPSite(runner, host, port).start()
-        except OSError as error:
-            raise StorageError(
-                f"cannot serve on {host} port {port}: {error.strerror or error}; give another --port or leave it out"
-            ) from None
-        ready(f"http://{_in_url(host)}:{runner.addresses[0][1]}/{token}/")
+            await web.TCPSite(runner, serving.host, serving.port).start()
+        except (OSError, ValueError) as error:
+            told = f"{getattr(error, 'strerror', None) or one_line(error)}; give another --port or leave it out"
+            raise StorageError(f"cannot serve on {one_line(serving.host)} port {serving.port}: {told}") from None
+        serving.ready(f"http://{_in_url(serving.host)}:{runner.addresses[0][1]}/{token}/")
         await stop.wait()
 
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Protocol
 
 from tactsim.errors import InputError, TactsimError
+from tactsim.live.commands import Choosing, Command, Drawn, Pause, Play, Show, read_command
 from tactsim.live.content import Content
+from tactsim.live.defects import report
 from tactsim.live.estimating import frame_readings
 from tactsim.live.messages import Scales, frame_message, plain_json, scene_message, shapes_message
 from tactsim.live.playback import Playback
 from tactsim.live.scene import Frame, Recording, Scene
 from tactsim.live.selection import Selection
 from tactsim.live.thinking import Thinking
+from tactsim.live.threads import Threads
 
 IN_FLIGHT = 2
 """Frames that are sent before the page says that it has drawn one: the rest is skipped, so that nothing piles up."""
@@ -40,7 +42,7 @@ class Socket(Protocol):
 class Session:
     """Commands come in by `receive`; `run` sends until it is cancelled."""
 
-    def __init__(self, content: Content, socket: Socket):
+    def __init__(self, content: Content, socket: Socket, threads: Threads):
         self._content, self._socket = content, socket
         self._chosen = Selection(content)
         self._playback = Playback()
@@ -49,10 +51,10 @@ class Session:
         self._scales = Scales()
         self._scene: Scene | None = None
         self._shown: Frame | None = None
-        self._thinking = Thinking(self._send_text)
+        self._thinking = Thinking(self._send_text, threads)
 
     async def run(self) -> None:
-        """Sends the scene and then frames, until it is cancelled."""
+        """Sends the scene and then frames, until it is cancelled or the page is gone."""
         feed = self._content.feed
         if feed is not None:
             feed.listen(self._changed)
@@ -62,64 +64,57 @@ class Session:
             await self._send_text(plain_json(self._chosen.offered()))
             while True:
                 await self._wait()
-                await self._push()
+                await self._push_or_tell()
         finally:
             words.cancel()
             self._thinking.cancel()
             if feed is not None:
                 feed.forget(self._changed)
 
-    async def receive(self, text: str) -> None:
-        """Takes a command of the page; one that cannot be used is told."""
+    async def _push_or_tell(self) -> None:
+        """What there is to send, or why it cannot be sent; what is chosen next may be."""
         try:
-            command = json.loads(text)
-            if not isinstance(command, dict) or command.get("do") not in self._commands:
-                raise InputError("the page sent a command that this server does not know; load it anew")
-            self._commands[command["do"]](self, command)
-            fault = ""
-        except (ValueError, TypeError, KeyError, RecursionError, TactsimError) as error:
-            fault = str(error) if isinstance(error, TactsimError) else f"a command could not be read: {error!r:.200}"
-        if fault:
-            await self._send_text(plain_json({"is": "fault", "words": fault}))
+            await self._push()
+        except ConnectionError:
+            raise
+        except Exception as error:  # noqa: BLE001  whatever the data hold, the page goes on and tells it
+            self._playback.pause()
+            await self._tell_fault(str(error) if isinstance(error, TactsimError) else report(error))
 
-    def _drawn_one(self, command: dict[str, Any]) -> None:
-        self._in_flight = max(0, self._in_flight - 1)
-        self._drawn.set()
+    async def receive(self, text: str | bytes) -> None:
+        """Takes a command of the page; one that cannot be used is answered by a fault."""
+        try:
+            if isinstance(text, bytes):
+                raise InputError("a command must be a text message")
+            self._do(read_command(text))
+        except TactsimError as error:
+            await self._tell_fault(str(error))
+        except Exception as error:  # noqa: BLE001  whatever a stored sample does, the page goes on and tells it
+            await self._tell_fault(report(error))
 
-    def _play(self, command: dict[str, Any]) -> None:
+    def _do(self, command: Command) -> None:
         recording = self._chosen.recording
-        if recording is not None:
-            self._playback.play(recording)
+        if isinstance(command, Drawn):
+            self._in_flight = max(0, self._in_flight - 1)
+            self._drawn.set()
+            return
+        if isinstance(command, Play):
+            if recording is not None:
+                self._playback.play(recording)
+        elif isinstance(command, Pause | Show):
+            self._playback.pause()
+            if recording is not None and isinstance(command, Show):
+                self._playback.go_to(recording, command.step)
+        else:
+            self._choose(command)
         self._changed.set()
 
-    def _pause(self, command: dict[str, Any]) -> None:
-        self._playback.pause()
-        self._changed.set()
-
-    def _show(self, command: dict[str, Any]) -> None:
-        self._playback.pause()
-        if self._chosen.recording is not None:
-            self._playback.go_to(self._chosen.recording, int(command["step"]))
-        self._changed.set()
-
-    def _choose(self, command: dict[str, Any]) -> None:
+    def _choose(self, command: Choosing) -> None:
         """Another estimator, other forces, another sample or another filter."""
         if self._chosen.take(command):
             self._playback.begin_anew(self._chosen.recording)
             self._scene = None
         self._scales = Scales()
-        self._changed.set()
-
-    _commands: dict[str, Callable[[Session, dict[str, Any]], None]] = {
-        "drawn": _drawn_one,
-        "play": _play,
-        "pause": _pause,
-        "show": _show,
-        "estimator": _choose,
-        "source": _choose,
-        "sample": _choose,
-        "filter": _choose,
-    }
 
     async def _wait(self) -> None:
         """Until there is something to send and room for it."""
@@ -186,6 +181,9 @@ class Session:
                 await self._send_text(told)
                 before = told
             await asyncio.sleep(TOLD)
+
+    async def _tell_fault(self, words: str) -> None:
+        await self._send_text(plain_json({"is": "fault", "words": words}))
 
     async def _send_text(self, text: str) -> None:
         with suppress(ConnectionError):

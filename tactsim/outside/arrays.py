@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import io
+import lzma
 import math
+import struct
 import zipfile
 import zlib
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -19,6 +22,12 @@ LARGEST = 2**30
 """Bytes that all arrays of a file may take together, where the reader names no other bound."""
 MOST_ARRAYS = 100_000
 """Entries of a file, each of which costs time."""
+
+_ARCHIVE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
+_HEADER_TEXT = (SyntaxError, TokenError)
+_CONTENT = (OSError, ValueError, LookupError, EOFError, TypeError, ArithmeticError, RuntimeError, MemoryError)
+DAMAGE = (*_ARCHIVE, *_HEADER_TEXT, *_CONTENT)
+"""What the archive, its compression, the header of an array, which is Python text, and its numbers raise."""
 
 
 def read_arrays(content: bytes, name: str, *, largest: int = LARGEST) -> dict[str, Array]:
@@ -43,9 +52,7 @@ def read_arrays(content: bytes, name: str, *, largest: int = LARGEST) -> dict[st
             return {entry.filename.removesuffix(".npy"): _array(archive, entry) for entry in entries}
     except StorageError:
         raise
-    except (OSError, ValueError, LookupError, EOFError, TypeError, SyntaxError, RuntimeError, MemoryError) as error:
-        raise StorageError(f"{one_line(name)} is damaged: {one_line(error)}") from None
-    except (zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
+    except DAMAGE as error:
         raise StorageError(f"{one_line(name)} is damaged: {one_line(error)}") from None
 
 

@@ -11,7 +11,7 @@ import os
 import stat
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Self
+from typing import BinaryIO, Literal, Self
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
@@ -65,7 +65,10 @@ class TooLarge(Unreadable):
 
 @dataclass(frozen=True)
 class OutsideFile:
-    """A file that may be read: what it is, how the user named it, where it stands and how long it was in bytes."""
+    """A file that may be read: what it is, how the user named it, where it stands and how long it was in bytes.
+
+    It is ``quotable`` in messages unless a case, which may be a stranger's, names a file that stands anywhere on the machine.
+    """
 
     kind: str
     named: str
@@ -73,6 +76,7 @@ class OutsideFile:
     place: Place
     size: int
     limit: int
+    quotable: bool = True
 
     def read(self) -> bytes:
         """The content.
@@ -82,10 +86,8 @@ class OutsideFile:
         Unreadable
             If it has become something else, or longer than the limit, in the meantime.
         """
-        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOCTTY", 0)
         try:
-            with open(self.path, "rb", opener=lambda name, mode: os.open(name, flags)) as file:
-                _check(os.fstat(file.fileno()), self.kind, self.named, self.limit)
+            with self.stream() as file:
                 content = bytearray()
                 while chunk := file.read(MEBIBYTE):
                     content += chunk
@@ -96,6 +98,25 @@ class OutsideFile:
         except (OSError, ValueError) as error:
             raise _refused(self.kind, self.named, error) from None
         return bytes(content)
+
+    def stream(self) -> BinaryIO:
+        """The file, open for reading from its begin.
+
+        Raises
+        ------
+        Unreadable
+            If it has become something else, or longer than the limit, in the meantime.
+        OSError
+            If the system refuses.
+        """
+        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOCTTY", 0)
+        file = open(self.path, "rb", opener=lambda name, mode: os.open(name, flags))  # noqa: SIM115  the caller closes it
+        try:
+            _check(os.fstat(file.fileno()), self.kind, self.named, self.limit)
+        except Unreadable:
+            file.close()
+            raise
+        return file
 
     def text(self) -> str:
         """The content as UTF-8, with or without a byte order mark.
@@ -129,7 +150,8 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
     limit = LIMITS[kind] if limit is None else limit
     found, place, state = _found(path, kind)
     _check(state, kind, str(path), limit)
-    return OutsideFile(kind, str(path), found, place, state.st_size, limit)
+    quotable = place != "elsewhere" or not isinstance(path, CasePath)
+    return OutsideFile(kind, str(path), found, place, state.st_size, limit, quotable)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:

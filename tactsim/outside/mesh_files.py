@@ -67,7 +67,8 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
         if done.out_of_memory:
             raise StorageError(f"{named}: it asks for more memory than a file of {file.size} bytes should; is it damaged?")
         if done.code or not answer.exists():
-            raise StorageError(f"{named}: {done.last_line or f'damaged or of an unknown format ({done.ending})'}")
+            reason = f"damaged or of an unknown format ({done.ending})"
+            raise StorageError(f"{named}: {(file.quotable and done.last_line) or reason}")
         return _unpacked(read_arrays(answer.read_bytes(), file.named, largest=largest))
 
 

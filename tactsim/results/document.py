@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from tactsim.errors import StorageError
+from tactsim.errors import StorageError, shown
+from tactsim.outside.json_text import read_json
+from tactsim.outside.text import one_line
 from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.units import is_unit
 
 SCHEMA_VERSION: Literal[1] = 1
 
@@ -19,22 +22,55 @@ class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
 
 
+def _rectangular(value: Any) -> Any:
+    """Refuses what is not a number, or a nested list whose parts at each depth have the same length."""
+    _shape(value)
+    return value
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    if type(value) in SCALARS:
+        return ()
+    if not isinstance(value, list):
+        raise ValueError(f"{type(value).__name__} found; allowed: a number, a nested list of numbers, or null")
+    inner = {()} if SCALARS.issuperset(map(type, value)) else set(map(_shape, value))
+    if len(inner) > 1:
+        raise ValueError("lists of different lengths inside each other; allowed: a rectangular array")
+    return (len(value), *inner.pop())
+
+
+def _known_unit(unit: str) -> str:
+    if not is_unit(unit):
+        raise ValueError(f"unknown unit {shown(unit)}; allowed: an SI unit, or 1")
+    return unit
+
+
+SCALARS = frozenset({int, float, bool, type(None)})
+"""Types of what a quantity holds; null stands for a number that is not finite."""
+LONGEST_NAME = 200
+"""Characters of the name of a quantity; those of this program have some forty."""
+Number = Annotated[float, Strict()]
+Count = Annotated[int, Strict()]
+Name = Annotated[str, Field(max_length=LONGEST_NAME)]
+Unit = Annotated[str, AfterValidator(_known_unit)]
+
+
 class QuantityPart(_Part):
     """A quantity in SI."""
 
-    value: Any
+    value: Annotated[Any, AfterValidator(_rectangular)]
     """Number, nested list of numbers, or null where it is not finite."""
-    unit: str
+    unit: Unit
     description: str
 
 
 class StepPart(_Part):
     """One accepted step."""
 
-    step: int
-    newton_iterations: int
-    residual: float | None
-    values: dict[str, float | None]
+    step: Count
+    newton_iterations: Count
+    residual: Number | None
+    values: dict[Name, Number | None]
     """History values in SI; their units stand in ``units``."""
 
 
@@ -46,11 +82,11 @@ class ResultDocument(_Part):
     kind: str
     status: Status
     reason: str
-    quantities: dict[str, QuantityPart]
+    quantities: dict[Name, QuantityPart]
     assumptions: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    timing: dict[str, float | None] = Field(default_factory=dict)
-    units: dict[str, str] = Field(default_factory=dict)
+    timing: dict[Name, Number | None] = Field(default_factory=dict)
+    units: dict[Name, Unit] = Field(default_factory=dict)
     steps: tuple[StepPart, ...] = ()
     details: dict[str, Any] = Field(default_factory=dict)
 
@@ -103,20 +139,18 @@ def parse_document(text: str, name: str) -> ResultDocument:
     StorageError
         If the text is not a result that this version of tactsim can read; the message begins with ``name``.
     """
-    try:
-        content = json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as error:
-        raise StorageError(f"{name} is damaged: {error}") from None
+    content = read_json(text, name)
     version = content.get("schema_version") if isinstance(content, dict) else None
     if not isinstance(version, int):
-        raise StorageError(f"{name} is not a result of tactsim: it has no schema_version")
+        raise StorageError(f"{one_line(name)} is not a result of tactsim: it has no schema_version")
     if version != SCHEMA_VERSION:
-        raise StorageError(f"{name} has schema_version {version}; this tactsim reads {SCHEMA_VERSION}, update tactsim")
+        raise StorageError(f"{one_line(name)} has schema_version {version}; this tactsim reads {SCHEMA_VERSION}, update tactsim")
     try:
         return ResultDocument.model_validate(content)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        raise StorageError(f"{name} is damaged: {'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        told = f"{one_line('.'.join(map(str, first['loc'])), LONGEST_NAME)}: {one_line(first['msg'])}"
+        raise StorageError(f"{one_line(name)} is damaged: {told}") from None
 
 
 def result_of(document: ResultDocument) -> Result:
@@ -140,7 +174,3 @@ def result_of(document: ResultDocument) -> Result:
 
 def _number(value: float | None) -> float:
     return math.nan if value is None else value
-
-
-def _refuse_constant(name: str) -> Any:
-    raise ValueError(f"{name} is not JSON")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened_folder
+from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
 from tactsim.results.fields import read_fields
@@ -51,10 +51,7 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
 
 
 def _provenance(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_text(path))
-    except (ValueError, RecursionError) as error:
-        raise StorageError(f"{path} is damaged: {error}") from None
+    content = read_json(read_text(path), str(path))
     if not isinstance(content, dict):
-        raise StorageError(f"{path} is damaged: it is not a mapping")
+        raise StorageError(f"{one_line(path)} is damaged: it is not a mapping")
     return content

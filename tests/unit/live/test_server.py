@@ -21,7 +21,7 @@ from tactsim.errors import InputError, StorageError
 from tactsim.live import session
 from tactsim.live.content import Content, opened_content
 from tactsim.live.feed import Feed
-from tactsim.live.server import application, serve
+from tactsim.live.server import Serving, application, serve
 
 TOKEN = "a-token_1"
 Client = TestClient[Any, Any]
@@ -207,7 +207,7 @@ def test_playing_begins_anew_at_the_end_and_stops_there(grasp: Content) -> None:
         ("nonsense", "could not be read"),
         ("[]", "does not know"),
         ('{"do": "__init__"}', "does not know"),
-        ('{"do": ["show"]}', "could not be read"),
+        ('{"do": ["show"]}', "does not know"),
         ('{"do": "show"}', "could not be read"),
         ('{"do": "show", "step": "x"}', "could not be read"),
         ('{"do": "estimator", "name": "guess"}', "unknown estimator 'guess'"),
@@ -305,7 +305,7 @@ def test_a_taken_port_is_told(grasp: Content) -> None:
         taken.listen()
         port = taken.getsockname()[1]
         with pytest.raises(StorageError, match=f"cannot serve on 127.0.0.1 port {port}"):
-            serve(grasp, port=port, ready=lambda address: None)
+            serve(grasp, Serving(ready=lambda address: None, tell=lambda line: None, port=port))
 
 
 def test_nothing_to_show_is_told(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_numpy_values_are_written_as_numbers() -> None:
         ("", "is damaged"),
         ("{", "is damaged"),
         ("[" * 100_000, "is damaged"),
-        ('{"schema_version": NaN}', "NaN is not JSON"),
+        ('{"schema_version": NaN}', "NaN is not a finite number of JSON"),
         ("[]", "not a result of tactsim"),
         ("{}", "not a result of tactsim"),
         ('{"schema_version": 2}', "this tactsim reads 1, update tactsim"),

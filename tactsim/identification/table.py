@@ -1,0 +1,129 @@
+"""The lines of a CSV file, and what of it a message may show.
+
+A case of a stranger may name any file of this machine as a table; what stands in it is shown only if it is a table and stands
+where a table of a case belongs.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tactsim.errors import InvalidQuantity
+from tactsim.outside.files import opened
+from tactsim.outside.text import one_line
+
+MOST_LINES, MOST_CELLS = 3_000_000, 10_000_000
+"""Lines and cells of a table, each of which takes some 50 bytes in memory: days of a signal of 10 Hz."""
+LINE_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
+"""Characters at which text is cut into lines."""
+SEPARATORS = (
+    "columns are separated by semicolons or tabs; needed: columns are separated by commas and numbers have decimal points, "
+    "as CSV in English is written"
+)
+"""What is said of a table of a program that writes decimal commas."""
+NOT_SHOWN = "(not shown, as the file is no table beside the case or in the working folder)"
+"""What a message says instead of the content of another file."""
+LONGEST_CELL = 80
+"""Characters of a cell or a line that a message shows."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Header and data lines of a file with their numbers, without blanks and comments.
+
+    ``quotable`` is as of ``OutsideFile``, ``numeric`` tells whether any row holds numbers.
+    """
+
+    name: str
+    lines: tuple[tuple[int, str], ...]
+    quotable: bool
+    numeric: bool
+
+    @property
+    def header(self) -> list[str]:
+        """The cells of the first line."""
+        number, line = self.lines[0]
+        return self.cells(number, line)
+
+    def cells(self, number: int, line: str) -> list[str]:
+        """The cells of a line, without blanks around them."""
+        try:
+            return [cell.strip() for cell in next(csv.reader([line]), [])]
+        except csv.Error as error:
+            raise InvalidQuantity(f"{self.place(number)}: {one_line(error)}; allowed: one number per column") from None
+
+    def place(self, number: int) -> str:
+        """A line as messages name it."""
+        return f"{one_line(self.name)}:{number}"
+
+    def quoted(self, text: str) -> str:
+        """A cell of a row as a message shows it, once the header is known to be that of a table."""
+        return f"'{one_line(text, LONGEST_CELL)}'" if self.quotable else NOT_SHOWN
+
+    def quoted_header(self, text: str) -> str:
+        """What stands in the first line as a message shows it."""
+        return self.quoted(text) if self.numeric else NOT_SHOWN
+
+    def numbers(self, names: Sequence[str] = ()) -> list[list[float]]:
+        """The finite numbers of every row below the header, as many as it has columns, which messages call by ``names``.
+
+        Raises
+        ------
+        InvalidQuantity
+            With file and line.
+        """
+        columns = names or [f"column {number}" for number in range(1, len(self.header) + 1)]
+        return [self._row(number, line, columns) for number, line in self.lines[1:]]
+
+    def _row(self, number: int, line: str, columns: Sequence[str]) -> list[float]:
+        cells, place = self.cells(number, line), self.place(number)
+        if ";" in line or "\t" in line:
+            raise InvalidQuantity(f"{place}: {SEPARATORS}")
+        if len(cells) != len(columns):
+            raise InvalidQuantity(f"{place}: {len(cells)} values in a row of {len(columns)} columns")
+        found = [_number(cell) for cell in cells]
+        for value, cell, name in zip(found, cells, columns, strict=True):
+            if not math.isfinite(value):
+                raise InvalidQuantity(f"{place}: {name} is {self.quoted(cell)}; allowed: a finite number")
+        return found
+
+
+def read_table(path: str | Path) -> Table:
+    """The table in a CSV file in UTF-8; blank lines and lines that begin with ``#`` are skipped.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be read.
+    InvalidQuantity
+        If nothing is left, it is too long, or its columns are not separated by commas.
+    """
+    file = opened(path, "table")
+    text, name = file.text(), one_line(path)
+    if sum(map(text.count, LINE_ENDS)) > MOST_LINES or text.count(",") > MOST_CELLS:
+        raise InvalidQuantity(f"{name}: more than {MOST_LINES} lines or {MOST_CELLS} cells; leave out what is not needed")
+    rows = ((number, line) for number, line in enumerate(text.splitlines(), 1))
+    lines = tuple((number, line) for number, line in rows if line.strip() and not line.lstrip().startswith("#"))
+    if not lines:
+        raise InvalidQuantity(f"{name}: no header and no data")
+    if "," not in lines[0][1] and (";" in lines[0][1] or "\t" in lines[0][1]):
+        raise InvalidQuantity(f"{name}: {SEPARATORS}")
+    return Table(str(path), lines, file.quotable, any(map(_is_row, (line for _, line in lines[1:]))))
+
+
+def _is_row(line: str) -> bool:
+    """Whether a line consists of two numbers or more, as every table has and no other text."""
+    cells = line.split(",")
+    return len(cells) > 1 and all(math.isfinite(_number(cell)) for cell in cells)
+
+
+def _number(cell: str) -> float:
+    """The number in a cell, NaN if there is none."""
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan

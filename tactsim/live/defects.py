@@ -1,0 +1,74 @@
+"""What goes wrong in the server itself: each defect is told once, in one line. What clients do wrong is answered, not told."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from aiohttp import ClientError, WebSocketError, web
+from aiohttp.http_exceptions import HttpProcessingError
+
+from tactsim.outside.text import one_line
+
+LOGGER = logging.getLogger("tactsim.live")
+SERVERS = ("tactsim.live", "aiohttp", "asyncio")
+"""Loggers of this page and of the libraries that serve it."""
+MOST_TOLD = 10
+"""Different defects that are told while the page is open; a client that provokes more of them cannot fill the terminal."""
+OF_CLIENTS = (
+    HttpProcessingError,
+    web.HTTPException,
+    web.RequestPayloadError,
+    ClientError,
+    WebSocketError,
+    ConnectionError,
+    EOFError,
+)
+"""What a client that sends nonsense or goes away makes the libraries log; it has been answered."""
+
+
+def report(error: BaseException) -> str:
+    """Words for a client about a defect, which the user is told of, too."""
+    LOGGER.error("%s", one_line(error), exc_info=error)
+    return f"internal error ({type(error).__name__}); please report it"
+
+
+@contextmanager
+def telling_defects(tell: Callable[[str], None]) -> Iterator[None]:
+    """A block whose logged errors are told by ``tell`` in one line each; nothing else of the libraries' logs is shown."""
+    teller = _Teller(tell)
+    loggers = [logging.getLogger(name) for name in SERVERS]
+    before = [(logger.propagate, logger.level) for logger in loggers]
+    for logger in loggers:
+        logger.addHandler(teller)
+        logger.propagate = False
+        logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        for logger, (propagate, level) in zip(loggers, before, strict=True):
+            logger.removeHandler(teller)
+            logger.propagate = propagate
+            logger.setLevel(level)
+
+
+class _Teller(logging.Handler):
+    """Makes one line of a record, unless a client caused it or it was told before."""
+
+    def __init__(self, tell: Callable[[str], None]):
+        super().__init__(logging.ERROR)
+        self._tell = tell
+        self._told: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Tells the record."""
+        error = record.exc_info[1] if record.exc_info else None
+        if isinstance(error, OF_CLIENTS):
+            return
+        first = record.getMessage().partition("\n")[0]  # asyncio adds the source of tasks and coroutines below
+        words = first if error is None else f"{type(error).__name__}: {one_line(error, 200)}"
+        line = f"warning: internal error of the page ({one_line(words, 300)}); please report it"
+        if line not in self._told and len(self._told) < MOST_TOLD:
+            self._told.add(line)
+            self._tell(line)
