@@ -1,4 +1,4 @@
-"""Every shipped case and sweep, changed at random: loaded, or refused by an error of ours. A long run: see `test_fuzzed_files`."""
+"""Every shipped case and sweep, changed at random: loaded, or refused by an error of ours. Long runs: see `test_fuzzed_files`."""
 
 from __future__ import annotations
 
