@@ -6,6 +6,7 @@ import io
 import lzma
 import math
 import struct
+import sys
 import zipfile
 import zlib
 from tokenize import TokenError
@@ -20,6 +21,8 @@ from tactsim.outside.text import one_line
 Array = np.ndarray
 LARGEST = 2**30
 """Bytes that all arrays of a file may take together, where the reader names no other bound."""
+KINDS = frozenset("biufcUS")
+"""numpy's letters for kinds of arrays that are read: truth values, numbers and text."""
 MOST_ARRAYS = 100_000
 """Entries of a file, each of which costs time."""
 
@@ -64,8 +67,19 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Array:
         told = math.prod(shape) * dtype.itemsize
         if told > entry.file_size:
             raise ValueError(f"{entry.filename} says that it holds {told} bytes and has {entry.file_size}")
+        if dtype.kind not in KINDS:
+            raise ValueError(f"{entry.filename} holds neither numbers nor text")
     with archive.open(entry) as file:
-        return npy.read_array(file, allow_pickle=False)
+        array = npy.read_array(file, allow_pickle=False)
+    if dtype.kind == "U" and not _is_text(array):
+        raise ValueError(f"{entry.filename} holds characters that do not exist")
+    return array
+
+
+def _is_text(array: Array) -> bool:
+    """Whether all characters exist; Python's strings crash on others."""
+    codes = np.ascontiguousarray(array).reshape(-1).view(np.dtype(np.uint32).newbyteorder(array.dtype.byteorder))
+    return bool((codes <= sys.maxunicode).all())
 
 
 def _header(file: Any) -> tuple[tuple[int, ...], np.dtype]:

@@ -26,6 +26,8 @@ UNPACKED = 50
 ANSWER_MEMORY, READER_MEMORY = 64 * MEBIBYTE, 512 * MEBIBYTE
 """Bytes that any mesh and any reader may take besides."""
 MODULE = "tactsim.outside.mesh_files"
+NODES = {"vertex": 1, "line": 2, "line3": 3, "triangle": 3, "triangle6": 6, "tetra": 4, "tetra10": 10}
+"""Nodes of a cell of the types that are used."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,18 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
         if done.code or not answer.exists():
             reason = f"damaged or of an unknown format ({done.ending})"
             raise StorageError(f"{named}: {(file.quotable and done.last_line) or reason}")
-        return _unpacked(read_arrays(answer.read_bytes(), file.named, largest=largest))
+        found = _unpacked(read_arrays(answer.read_bytes(), file.named, largest=largest))
+    if not _consistent(found):
+        raise StorageError(f"{named}: the numbers of points, nodes of cells and data do not fit each other; is it damaged?")
+    return found
+
+
+def _consistent(mesh: MeshArrays) -> bool:
+    """Whether points are rows, cells have as many nodes as their type, and data one row for each point or cell."""
+    points_fit = mesh.points.ndim == 2 and all(data.shape[:1] == mesh.points.shape[:1] for data in mesh.point_data.values())
+    cells_fit = all(cells.shape[1] == NODES.get(kind, cells.shape[1]) for kind, cells in mesh.cells)
+    sizes = [len(cells) for _, cells in mesh.cells]
+    return points_fit and cells_fit and all([len(part) for part in parts] == sizes for parts in mesh.cell_data.values())
 
 
 def _unpacked(arrays: dict[str, Array]) -> MeshArrays:
@@ -97,7 +110,7 @@ def main(path: str, answer: str, largest: str) -> int:
         mesh = meshio.read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
     point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}
-    cell_data = {name: [np.asarray(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
+    cell_data = {name: [np.atleast_1d(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
     point_data = {name: values for name, values in point_data.items() if values.dtype.kind in "fiub"}
     cell_data = {name: parts for name, parts in cell_data.items() if all(part.dtype.kind in "fiub" for part in parts)}
     groups = {name: int(np.ravel(value)[0]) for name, value in mesh.field_data.items()}

@@ -255,3 +255,13 @@ def test_a_table_of_millions_of_cells_is_refused_before_it_is_taken_apart(tmp_pa
 def test_arrays_without_length_take_nothing() -> None:
     with pytest.raises(StorageError):
         read_arrays(bomb("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 9223372036854775807, 9), }"), "a")
+
+
+@pytest.mark.parametrize("kind", ["<U4", ">U4"])
+def test_characters_that_do_not_exist_are_damage(kind: str) -> None:
+    text = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': (), }}".encode().ljust(117) + b"\n"
+    written = io.BytesIO()
+    with zipfile.ZipFile(written, "w") as archive:
+        archive.writestr("schema.npy", b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text + b"\x7f\x7f\x7f\x7f" * 4)
+    with pytest.raises(StorageError, match="characters that do not exist"):
+        read_arrays(written.getvalue(), "a")

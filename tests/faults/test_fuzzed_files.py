@@ -2,43 +2,47 @@
 
 Some 550 inputs, the same every time. A long run takes the number of inputs from the environment::
 
-    TACTSIM_FUZZ=20000 pytest tests/faults/test_fuzzed_files.py
+    TACTSIM_FUZZ=20000 pytest tests/faults/test_fuzzed_files.py tests/faults/test_fuzzed_cases.py
 
 Most meshes are read by what the child process runs, but in this one, under the same limits, as a child takes half a second.
 """
 
 from __future__ import annotations
 
-import io
-import json
 import math
-import os
 import resource
 import signal
 import traceback
-import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from functools import cache
 from pathlib import Path
-from typing import Any
 
-import meshio
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from damage import (
+    DAMAGES,
+    FORMATS,
+    HEADERS,
+    Damage,
+    accepted,
+    damaged,
+    fuzz,
+    kept_mesh,
+    weights,
+    with_damaged_entry,
+    with_header,
+    written_meshes,
+)
+from hypothesis import given
 from hypothesis import strategies as st
 from live_pages import description, frame_line, grasp_folder, line
-from ruamel.yaml import YAML
 
-from tactsim.case import load_case
-from tactsim.dataset.sweep import load_sweep
 from tactsim.errors import TactsimError
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_data import read_dma
 from tactsim.identification.uniaxial_data import read_uniaxial_curve
 from tactsim.live.feed import Feed
-from tactsim.localization.networks import LearnedWeights, Network, read_weights
+from tactsim.localization.networks import read_weights
 from tactsim.mesh import mesh_store
 from tactsim.mesh.foreign import read_foreign
 from tactsim.mesh.inclusions.surface import read_surface
@@ -49,25 +53,9 @@ from tactsim.outside.processes import Ended
 from tactsim.results.document import parse_document
 from tactsim.results.fields import read_fields, write_fields
 from tactsim.results.result import FieldFrame
-from tactsim.sensors.taxel_layout import TaxelLayout
 
-ROOT = Path(__file__).parents[2]
-INPUTS = int(os.environ.get("TACTSIM_FUZZ", "550"))
-"""Of all tests together."""
-MOST_TIME, MOST_MEMORY = 10.0, 2**30
-"""In s and in bytes, of one input."""
-
-
-def fuzz(share: float) -> settings:
-    """Settings of a test that takes a share of all inputs."""
-    checks = [
-        HealthCheck.function_scoped_fixture,
-        HealthCheck.too_slow,
-        HealthCheck.data_too_large,
-        HealthCheck.large_base_example,
-    ]
-    count = max(4, round(INPUTS * share))
-    return settings(derandomize=True, deadline=1e3 * MOST_TIME, max_examples=count, suppress_health_check=checks, database=None)
+MOST_MEMORY = 2**30
+"""In bytes, of all inputs."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -81,137 +69,17 @@ def memory() -> Iterator[None]:
     assert after[1] < max(MOST_MEMORY, before[1] + 1)
 
 
-NUMBERS = [
-    "0",
-    "-1",
-    "1e300",
-    "-1e300",
-    "1e-400",
-    "1e400",
-    "nan",
-    "inf",
-    "4000000000",
-    "99999999999999999999",
-    "0.5",
-    "",
-    "x",
-    "1 2",
-]
-Damage = tuple[str, float, float, bytes]
-DAMAGES = st.lists(
-    st.tuples(
-        st.sampled_from(["cut", "delete", "overwrite", "insert", "repeat", "number", "number", "number", "line"]),
-        st.floats(0, 1),
-        st.floats(0, 1),
-        st.binary(min_size=1, max_size=8) | st.sampled_from([number.encode() for number in NUMBERS]),
-    ),
-    min_size=1,
-    max_size=4,
-)
-"""What is done to a file, where as a part of its length, how long as a part of what remains, and with which bytes."""
-
-
-def damaged(content: bytes, damages: Sequence[Damage]) -> bytes:
-    """The content after all damages."""
-    for what, where, length, new in damages:
-        at = int(where * len(content))
-        end = at + int(length**4 * (len(content) - at)) + 1
-        if what == "cut":
-            content = content[:at]
-        elif what == "delete":
-            content = content[:at] + content[end:]
-        elif what == "overwrite":
-            content = content[:at] + new + content[at + len(new) :]
-        elif what == "insert":
-            content = content[:at] + new + content[at:]
-        elif what == "repeat":
-            content = content[:end] + content[at:end] * 3 + content[end:]
-        else:
-            content = _replaced(content, at, new, rb" \n\r\t,\"<>=[]" if what == "number" else b"\n")
-    return content
-
-
-def _replaced(content: bytes, at: int, new: bytes, borders: bytes) -> bytes:
-    """The content with another word or line where a place is."""
-    begin = max((content.rfind(bytes([border]), 0, at) for border in borders), default=-1) + 1
-    ends = [found for border in borders if (found := content.find(bytes([border]), at)) >= 0]
-    return content[:begin] + new + content[min(ends, default=len(content)) :]
-
-
-def accepted(read: Callable[[], Any]) -> None:
-    """Reads; only an error of ours may come."""
-    with suppress(TactsimError):
-        read()
-
-
 # Meshes and surfaces
-
-
-def _solid() -> meshio.Mesh:
-    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)
-    cells, tags = np.array([[0, 1, 2, 3], [1, 2, 3, 4]]), [np.array([1, 2])]
-    return meshio.Mesh(points, [("tetra", cells)], cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags, "region": tags})
-
-
-def _shell() -> meshio.Mesh:
-    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-    return meshio.Mesh(points, [("triangle", np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))])
-
-
-FORMATS: dict[str, tuple[str, Callable[[], meshio.Mesh], dict[str, Any]]] = {
-    "gmsh 4, text": (".msh", _solid, {"file_format": "gmsh", "binary": False}),
-    "gmsh 4, binary": (".msh", _solid, {"file_format": "gmsh", "binary": True}),
-    "gmsh 2, text": (".msh", _solid, {"file_format": "gmsh22", "binary": False}),
-    "gmsh 2, binary": (".msh", _solid, {"file_format": "gmsh22", "binary": True}),
-    "ansys": (".msh", _solid, {"file_format": "ansys"}),
-    "vtu, text": (".vtu", _solid, {"binary": False}),
-    "vtu, binary": (".vtu", _solid, {"compression": None}),
-    "vtu, zlib": (".vtu", _solid, {"compression": "zlib"}),
-    "vtu, lzma": (".vtu", _solid, {"compression": "lzma"}),
-    "vtk 4, text": (".vtk", _solid, {"file_format": "vtk42", "binary": False}),
-    "vtk 5, text": (".vtk", _solid, {"file_format": "vtk51", "binary": False}),
-    "vtk 5, binary": (".vtk", _solid, {"file_format": "vtk51", "binary": True}),
-    "medit, text": (".mesh", _solid, {}),
-    "medit, binary": (".meshb", _solid, {}),
-    "abaqus": (".inp", _solid, {}),
-    "nastran": (".bdf", _solid, {}),
-    "netgen": (".vol", _solid, {}),
-    "avs": (".avs", _solid, {}),
-    "dolfin": (".xml", _solid, {}),
-    "flac": (".f3grid", _solid, {}),
-    "kratos": (".mdpa", _solid, {}),
-    "permas": (".dato", _solid, {}),
-    "su2": (".su2", _solid, {}),
-    "tecplot": (".dat", _solid, {}),
-    "ugrid": (".ugrid", _solid, {}),
-    "xdmf": (".xdmf", _solid, {"data_format": "XML"}),
-    "stl, text": (".stl", _shell, {"binary": False}),
-    "stl, binary": (".stl", _shell, {"binary": True}),
-    "ply, text": (".ply", _shell, {"binary": False}),
-    "ply, binary": (".ply", _shell, {"binary": True}),
-    "obj": (".obj", _shell, {}),
-    "off": (".off", _shell, {}),
-}
 
 
 @pytest.fixture(scope="module")
 def formats(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[str, bytes]]:
     """Ending and content of a small valid file in each format."""
-    folder, found = tmp_path_factory.mktemp("formats"), {}
-    for number, (name, (suffix, mesh, options)) in enumerate(FORMATS.items()):
-        path = folder / f"{number}{suffix}"
-        written = mesh()
-        if name.startswith(
-            ("medit", "netgen", "flac", "kratos", "permas", "su2", "tecplot", "ugrid", "abaqus", "nastran", "ansys")
-        ):
-            written.cell_data = {}
-        if name == "ugrid":
-            path = path.with_name("ugrid.lb8.ugrid")
-        with np.errstate(all="ignore"), suppress(ImportError):
-            meshio.write(path, written, **options)
-            found[name] = (".lb8.ugrid" if name == "ugrid" else suffix, path.read_bytes())
-    assert len(found) >= len(FORMATS) - 2
-    return found
+    return written_meshes(tmp_path_factory.mktemp("formats"))
+
+
+IMPATIENCE = 1.0
+"""Time in s after which a reader that does not end is stopped here; a child has longer."""
 
 
 class _TimeIsUp(BaseException):
@@ -244,7 +112,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def run(module: str, arguments: Sequence[str], *, time_limit: float, memory: int, environment: object) -> Ended:
         try:
-            with limited(min(time_limit, 5.0), memory):
+            with limited(min(time_limit, IMPATIENCE), memory):
                 mesh_files.main(*arguments)
         except _TimeIsUp:
             return Ended(-1, "", out_of_time=True)
@@ -256,8 +124,11 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def read_all_ways(path: Path) -> None:
-    """Reads a file as mesh, as tetrahedra in regions and as surface."""
-    accepted(lambda: read_foreign(path))
+    """Reads a file as mesh and, if that is possible, as tetrahedra in regions and as surface."""
+    try:
+        read_foreign(path)
+    except TactsimError:
+        return
     accepted(lambda: read_mesh(path, unit="mm"))
     accepted(lambda: read_mesh(path, {1: 0, 2: 1}, unit="m", tag="region"))
     if path.suffix in (".stl", ".ply", ".obj"):
@@ -317,98 +188,6 @@ def test_damaged_meshes_in_a_child(
     accepted(lambda: read_foreign(path))
 
 
-# Cases
-
-
-CASES = sorted(path.name for path in (ROOT / "cases").glob("*.yaml"))
-VALUES: list[Any] = [
-    None,
-    True,
-    0,
-    -1,
-    10**30,
-    1e300,
-    1e-320,
-    "nan",
-    "1e-400 mm",
-    "1e400 mm",
-    "0 mm",
-    "-1 mm",
-    "1e300 m",
-    "1e300 N",
-    "1e9 Pa",
-    "1e-30 s",
-    "\x00",
-    "\x1b[31m",
-    "x" * 5000,
-    "1 furlong",
-    "../../../etc/passwd",
-    "/dev/zero",
-    [],
-    [[]],
-    {},
-    [0] * 2000,
-    ["1 mm"] * 500,
-    {"kind": "none"},
-    {"kind": ["x"]},
-    "sphere",
-]
-Change = tuple[float, str, int]
-CHANGES = st.lists(
-    st.tuples(
-        st.floats(0, 1, exclude_max=True),
-        st.sampled_from(["delete", "value", "value", "value", "repeat", "wrap", "rename"]),
-        st.integers(0, 999),
-    ),
-    min_size=1,
-    max_size=3,
-)
-
-
-@cache
-def case_content(name: str) -> str:
-    """A shipped case as JSON."""
-    return json.dumps(YAML(typ="safe", pure=True).load((ROOT / "cases" / name).read_text(encoding="utf-8")))
-
-
-def places(value: Any) -> Iterator[tuple[Any, Any]]:
-    """Every container in a document with each of its keys."""
-    entries = list(value.items()) if isinstance(value, dict) else list(enumerate(value)) if isinstance(value, list) else []
-    for key, item in entries:
-        yield value, key
-        yield from places(item)
-
-
-def changed(content: Any, changes: Sequence[Change]) -> Any:
-    """The document after all changes."""
-    for where, what, number in changes:
-        found = list(places(content))
-        if not found:
-            return content
-        holder, key = found[int(where * len(found))]
-        if what == "delete":
-            del holder[key]
-        elif what == "repeat":
-            holder[key] = [holder[key]] * (2 + number % 3)
-        elif what == "wrap":
-            holder[key] = {"kind": holder[key]}
-        elif what == "rename" and isinstance(holder, dict):
-            holder["x\x1b" if number % 2 else "kind"] = holder.pop(key)
-        else:
-            holder[key] = VALUES[number % len(VALUES)]
-        content = json.loads(json.dumps(content))  # so that no part stands in two places
-    return content
-
-
-@fuzz(0.2)
-@given(st.sampled_from(CASES), CHANGES)
-def test_changed_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: list[Change]) -> None:
-    monkeypatch.chdir(ROOT)
-    path = tmp_path / name
-    path.write_text(json.dumps(changed(json.loads(case_content(name)), changes)), encoding="utf-8")
-    accepted(lambda: (load_sweep if name.startswith("sweep") else load_case)(path))
-
-
 # Tables
 
 
@@ -462,61 +241,6 @@ def test_damaged_fields(result: Path, tmp_path: Path, in_this_process: None, dam
 
 
 # Arrays: weights and kept meshes
-
-
-def weights() -> bytes:
-    """Weights of a small learned estimator."""
-    layout, rng = TaxelLayout(rows=2, columns=2, pitch=1e-2, size=9e-3), np.random.default_rng(0)
-    place = Network((rng.normal(size=(10, 4)),), (rng.normal(size=4),))
-    presence = Network((rng.normal(size=(10, 1)),), (rng.normal(size=1),))
-    numbers = {"block_size": np.full(3, 0.02), "middle": np.zeros(10), "scale": np.ones(10), "growth": np.zeros(2)}
-    return LearnedWeights(layout=layout, places=(place,), presence=presence, covariance=np.eye(4), **numbers).content()
-
-
-def kept_mesh() -> bytes:
-    """A file of arrays such as the cache of meshes holds."""
-    content = io.BytesIO()
-    nodes, elements = np.zeros((10, 3)), np.arange(10)[None]
-    np.savez_compressed(content, nodes=nodes, elements=elements, regions=np.zeros(1, np.int64), content=np.array("x"))
-    return content.getvalue()
-
-
-def with_damaged_entry(content: bytes, entry: int, damages: Sequence[Damage]) -> bytes:
-    """The archive with one of its entries damaged, its checksum put right."""
-    written = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as new:
-        names = old.namelist()
-        for number, name in enumerate(names):
-            inner = old.read(name)
-            new.writestr(name, damaged(inner, damages) if number == entry % len(names) else inner)
-    return written.getvalue()
-
-
-HEADERS = [
-    "{'descr': '<f8', 'fortran_order': False, 'shape': (4000000000,), }",
-    "{'descr': '|O', 'fortran_order': False, 'shape': (), }",
-]
-HEADERS += [
-    "{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 4), }",
-    "{" * 500,
-    "{'descr': [('a', '<f8')] * 9, 'shape': ()}",
-]
-HEADERS += [
-    "{'descr': '<f8', 'fortran_order': False, 'shape': (0, 9000000000000000000), }",
-    "{'descr': '<U99999999', 'fortran_order': False, 'shape': (), }",
-]
-
-
-def with_header(content: bytes, entry: int, header: str) -> bytes:
-    """The archive with another header of one of its arrays."""
-    text = header.encode().ljust(117) + b"\n"
-    array = b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text + bytes(64)
-    written = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as new:
-        names = old.namelist()
-        for number, name in enumerate(names):
-            new.writestr(name, array if number == entry % len(names) else old.read(name))
-    return written.getvalue()
 
 
 @fuzz(0.11)
