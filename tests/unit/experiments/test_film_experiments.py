@@ -175,8 +175,8 @@ def test_files_that_cannot_be_read_are_named(tmp_path):
     path.write_text("time [s], force [N]\n1, 0\n", encoding="utf-16")
     with pytest.raises(StorageError, match="save it as UTF-8"):
         _ = Record(kind="file", path=str(path)).duration
-    with pytest.raises(StorageError, match="null"):
-        _ = Record(kind="file", path="a\0b").duration
+    with pytest.raises(ValidationError, match="without a null character"):
+        Record(kind="file", path="a\0b")
 
 
 def test_errors_by_range_and_hysteresis():
