@@ -28,7 +28,8 @@ from tactsim.dataset.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers
 from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store, chunk_samples
+from tactsim.dataset.store import Store
+from tactsim.dataset.store_writing import chunk_samples
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import Variable
 from tactsim.errors import CaseError, StorageError, TactsimError
@@ -214,7 +215,7 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
 
     sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with monkeypatch.context() as patch, opened_run(sweep, place) as going:
-        patch.setattr(Store, "write", full)
+        patch.setattr(running, "write", full)
         with pytest.raises(StorageError, match="no room"):
             going.compute(Inline(sweep), lambda tally: None)
     assert [finding.kind for finding in check(place).findings] == ["missing", "unfinished"]
