@@ -49,6 +49,7 @@ def check(path: str | Path) -> Checked:
         If the folder is not a data set, its description is damaged, or a link leads into it.
     """
     store = Store.open(path, damaged=True)
+    store.array("status")
     sweep, layout = stored_layout(store)
     same_code = store.attributes["codes"][-1] == code_identity()
     findings = [*_arrays(store, layout.variables, sweep.samples), *_wording(store, layout.variables, sweep, same_code)]

@@ -14,8 +14,6 @@ from tactsim.dataset.variable import DONE, FAILED, PENDING, STATUS
 from tactsim.outside.text import one_line
 
 Array = np.ndarray
-LONGEST = 120
-"""Characters of a unit or a meaning that are shown."""
 MOST_REASONS = 50
 """Reasons of failures that are told; the rest are counted."""
 
@@ -78,8 +76,8 @@ def variable_rows(store: Store) -> list[tuple[str, str, str, str]]:
     rows = []
     for name, array in store.described.items():
         sizes = zip(array.dimensions[1:], array.shape[1:], strict=True)
-        shape = ", ".join(f"{one_line(dimension, LONGEST)} {size}" for dimension, size in sizes)
-        units, meaning = (one_line(array.attributes[key], LONGEST) for key in ("units", "long_name"))
+        shape = ", ".join(f"{one_line(dimension)} {size}" for dimension, size in sizes)
+        units, meaning = (one_line(array.attributes[key]) for key in ("units", "long_name"))
         rows.append((name, shape, units, meaning))
     return rows
 
@@ -94,5 +92,5 @@ def ranges(store: Store) -> list[tuple[str, str, str, str]]:
         values = np.asarray(store.read(name, computed), dtype=float)
         finite = values[np.isfinite(values)]
         low, high = (f"{finite.min():.4g}", f"{finite.max():.4g}") if finite.size else ("-", "-")
-        rows.append((name, one_line(array.attributes["units"], LONGEST), low, high))
+        rows.append((name, one_line(array.attributes["units"]), low, high))
     return rows

@@ -39,6 +39,8 @@ KINDS = {
 ARRAYS = "arrays"
 """Attribute: names of all arrays. A store that has it holds a file for every chunk with a sample that was computed, so that a
 missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
+SPARE = 20
+"""Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
 NAME = re.compile(r"\w[\w.-]{0,199}")
 """Names of variables, which are names of folders."""
 DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
@@ -70,12 +72,13 @@ class Store:
         from tactsim.dataset.guarded_files import GuardedFiles
 
         folder = _folder(path)
+        _refuse_few_descriptors(folder)
         attributes = read_attributes(folder)
         found, faults = _arrays(folder, attributes)
         if not damaged and faults:
             raise StorageError(next(iter(faults.values())))
         if "status" not in found and not damaged:
-            raise StorageError(f"{one_line(folder)} is damaged: it has no variable status; compute it anew, or bring back a copy")
+            raise StorageError(_without(folder, "status"))
         files = GuardedFiles(folder, found, read_only=not writing)
         with reading(folder), zarr.config.set({"array.write_empty_chunks": True}):
             group = zarr.open_group(files, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
@@ -97,8 +100,7 @@ class Store:
         import zarr
 
         if name not in self.described:
-            reason = self.faults.get(name, f"{one_line(self.path)} has no variable {one_line(name)}; bring back a copy of it")
-            raise StorageError(reason)
+            raise StorageError(self.faults.get(name) or _without(self.path, name))
         with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
             return self.group[name]
 
@@ -183,6 +185,25 @@ def read_attributes(folder: Path) -> dict[str, Any]:
     if not isinstance(names, list) or not all(isinstance(name, str) and NAME.fullmatch(name) for name in names):
         raise StorageError(f"{one_line(folder)} is damaged: {ARRAYS} in {META} are no names of arrays; bring back a copy")
     return attributes
+
+
+def _refuse_few_descriptors(folder: Path) -> None:
+    """Refuses to begin where Zarr, which reads several chunks at once, would break off within."""
+    spare: list[int] = []
+    try:
+        spare.append(os.open(folder, os.O_RDONLY))
+        spare.extend(os.dup(spare[0]) for _ in range(SPARE - 1))
+    except OSError as error:
+        reason = f"{error.strerror}; {SPARE} files must be free to be opened, raise the limit with: ulimit -n 256"
+        raise StorageError(f"cannot read {one_line(folder)}: {reason}") from None
+    finally:
+        for descriptor in spare:
+            os.close(descriptor)
+
+
+def _without(folder: Path, name: str) -> str:
+    remedy = "bring back a copy, or make it anew with: tactsim sweep CASE --out STORE --resume"
+    return f"{one_line(folder)} is damaged: it has no variable {one_line(name)}; {remedy}"
 
 
 def _folder(path: str | Path) -> Path:

@@ -91,14 +91,16 @@ def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: 
         for name in walked(folder)
         if name not in known
         and name.rpartition("/")[2] not in IGNORED
-        and not _is_chunk(name, chunks)
+        and not _is_chunk(name, chunks, names)
         and not is_torn(name, names)
     )
 
 
-def _is_chunk(name: str, chunks: Mapping[str, tuple[ArrayDescription, int]]) -> bool:
+def _is_chunk(name: str, chunks: Mapping[str, tuple[ArrayDescription, int]], own: set[str]) -> bool:
     parts = name.split("/")
-    if len(parts) < 3 or parts[1] != "c" or not parts[2].isdecimal() or parts[0] not in chunks:
+    if len(parts) < 3 or parts[0] not in own or parts[1] != "c" or not all(part.isdecimal() for part in parts[2:]):
         return False
+    if parts[0] not in chunks:
+        return True  # of an array whose description is gone
     array, count = chunks[parts[0]]
     return int(parts[2]) < count and name == array.chunk_key(int(parts[2]))

@@ -29,7 +29,7 @@ from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers
 from tactsim.dataset.running import opened_run
 from tactsim.dataset.store import Store
-from tactsim.dataset.store_writing import chunk_samples
+from tactsim.dataset.store_writing import chunk_samples, tell
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import Variable
 from tactsim.errors import CaseError, StorageError, TactsimError
@@ -182,7 +182,7 @@ def test_what_is_not_a_data_set_is_left_alone(tmp_path: Path, thing: str) -> Non
 
 def test_a_store_of_another_schema_is_refused(whole: Path, tmp_path: Path) -> None:
     place = Path(shutil.copytree(whole, tmp_path / "s.zarr"))
-    Store.open(place, writing=True).tell(schema="tactsim/dataset/2")
+    tell(Store.open(place, writing=True), schema="tactsim/dataset/2")
     with pytest.raises(StorageError, match=r"schema 'tactsim/dataset/2'; this tactsim reads 'tactsim/dataset/1'"):
         Store.open(place)
 
