@@ -20,6 +20,8 @@ DEEPEST = 16
 """Levels of folders; an array has one for each of its dimensions and two more."""
 IGNORED = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What systems put into every folder that is looked at."""
+EARLIER = re.compile(rf"{FIGURES}/[a-z]+\.png")
+"""Figures in a store that is older than the list of own files."""
 TORN_CHUNK = re.compile(r"(zarr|\d+)\.[0-9a-f]{32}\.partial")
 """A file that Zarr had not renamed yet."""
 TORN_FILE = re.compile(r"\.(README\.md|\.tactsim\.json|[a-z_]+\.png)\.\d+\.partial")
@@ -85,13 +87,14 @@ def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: 
     """Files that tactsim does not write there, sorted; ``own`` are the names of all its arrays."""
     known = {META, MANIFEST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
     chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
-    names = set(own)
+    names, listed = set(own), os.path.lexists(folder / MANIFEST)
     return sorted(
         name
         for name in walked(folder)
         if name not in known
         and name.rpartition("/")[2] not in IGNORED
         and not _is_chunk(name, chunks, names)
+        and not (EARLIER.fullmatch(name) and not listed)
         and not is_torn(name, names)
     )
 

@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from sweeps import TEXT, assert_same, run_sweep, small_store, sweep_file
+from sweeps import TEXT, Inline, assert_same, run_sweep, small_store, sweep_file
 
-from tactsim.cli import main
+from tactsim.cli import command_sweep, main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
+from tactsim.display import dataset_card
 from tactsim.errors import StorageError
 
 OLD_SWEEP = "arrays"
@@ -31,6 +32,14 @@ OLD_SWEEP = "arrays"
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small store of two chunks that stays as it is; samples 0 to 15 are in the first."""
     return small_store(tmp_path_factory.mktemp("kept"))
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps start no processes, draw nothing and do not wait for the disk."""
+    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
 
 
 @pytest.fixture
