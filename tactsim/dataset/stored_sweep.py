@@ -7,6 +7,7 @@ from tactsim.dataset.layout import Layout, layout_of
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.errors import InputError, StorageError
+from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 
 UNUSABLE = (InputError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RuntimeError)
@@ -25,7 +26,7 @@ def stored_sweep(store: Store) -> Sweep:
     if not isinstance(parsed_json(text, f"the sweep in {one_line(store.path)}"), dict):
         raise StorageError(f"{one_line(store.path)}: the sweep in it is no mapping; bring back a copy of zarr.json")
     try:
-        return sweep_of_text(text)
+        return sweep_of_text(text, str(store.path.absolute().parent))
     except UNUSABLE as error:
         raise _unusable(store, error) from None
 
@@ -41,6 +42,9 @@ def stored_layout(store: Store) -> tuple[Sweep, Layout]:
     sweep = stored_sweep(store)
     try:
         return sweep, layout_of(sweep)
+    except Unreadable as error:
+        told = f"{error}; files that a sweep names are looked for beside the store and in the working folder: run tactsim there"
+        raise StorageError(f"{one_line(store.path)}: {told}") from None
     except UNUSABLE as error:
         raise _unusable(store, error) from None
 
