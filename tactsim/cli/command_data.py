@@ -21,7 +21,8 @@ NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
 DESCRIPTION = """\
 check reads every sample and finds damaged content (checksums), missing, doubled, constant and
-not finite samples, and specimens that are in two splits; the exit code is 4 if it finds one.
+not finite samples, specimens that are in two splits, arrays with other names, units, types,
+shapes or words than the sweep writes, and files of others; the exit code is 4 if it finds one.
 info prints counts, splits and variables with their units. export writes the samples that are
 done as one HDF5 file, or as a folder with an index (Parquet) and shards (npz).
 

@@ -35,7 +35,8 @@ cluster whose scheduler answers at --scheduler:
   tactsim sweep CASE --out STORE --scheduler tcp://HOST:8786
 
 On SLURM, dask-jobqueue starts the workers. What was computed survives a kill at any moment:
-the same command with --resume goes on. A worker that dies costs its samples one try; after
+the same command with --resume goes on, after it has verified every sample that is there;
+damaged ones are computed again. A worker that dies costs its samples one try; after
 three they are marked failed, with the reason. If a sample failed the exit code is 3.
 """
 EXAMPLES = """\

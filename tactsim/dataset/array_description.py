@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.settings import MOST_SAMPLES
-from tactsim.dataset.variable import Variable, index_variables
+from tactsim.dataset.variable import MOST_SAMPLES, Variable, index_variables
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line

@@ -49,7 +49,7 @@ class Tally:
         told = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             told.append(f"{self.before} samples were there before")
-        if self.again:
+        if self.damaged:
             told.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             told += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
         return told + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]

@@ -110,7 +110,7 @@ class SweepRun:
                 block = decoded(content)
                 refuse_unfitting(block, self.layout.variables, self.store.samples)
             except StorageError as error:
-                self.tally.damaged[f"journal: {error}"] = self.tally.damaged.get(f"journal: {error}", 0) + 1
+                self.tally.damaged["block of the journal passed over: " + str(error)] = 1
                 continue
             block["code"] = np.full_like(block["code"], len(self.store.attributes["codes"]) - 1)
             self.blocks.append(block)

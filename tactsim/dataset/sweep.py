@@ -19,7 +19,8 @@ from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
 from tactsim.dataset.designs import grid_size
 from tactsim.dataset.places import Place, places_of
-from tactsim.dataset.settings import MOST_SAMPLES, SCHEMA, SweepSettings
+from tactsim.dataset.settings import SCHEMA, SweepSettings
+from tactsim.dataset.variable import MOST_SAMPLES
 from tactsim.errors import CaseError, suggestion
 
 SECTION = "sweep"
