@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from pathlib import Path
 
 from tactsim.dataset.array_description import read_json
@@ -19,6 +20,8 @@ from tactsim.results.storage import naming, replace_file
 
 MANIFEST = ".tactsim.json"
 SCHEMA = "tactsim/manifest/1"
+NAME = re.compile(r"\w[\w.-]*(/\w[\w.-]*)?")
+"""Files that are listed stand in the folder or in one within it."""
 
 
 class ForeignFile(StorageError):
@@ -47,7 +50,7 @@ class OwnFiles:
         except StorageError as error:
             raise ForeignFile(f"{error}; move {one_line(path)} away, what it lists is then kept as yours") from None
         files = told.get("files") if isinstance(told, dict) and told.get("schema") == SCHEMA else None
-        if not isinstance(files, dict) or not all(isinstance(sums, list) for sums in files.values()):
+        if not isinstance(files, dict) or not all(NAME.fullmatch(n) and isinstance(sums, list) for n, sums in files.items()):
             raise ForeignFile(f"{one_line(path)} is no list of tactsim's files; move it away")
         return {str(name): [str(one) for one in sums] for name, sums in files.items()}
 

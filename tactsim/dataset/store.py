@@ -41,7 +41,7 @@ ARRAYS = "arrays"
 missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
 SPARE = 20
 """Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
-NAME = re.compile(r"\w[\w.-]{0,199}")
+NAME = re.compile(r"\w[\w.-]{0,254}")
 """Names of variables, which are names of folders."""
 DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
 """What Zarr and its codecs raise on content that they cannot read."""
