@@ -60,7 +60,9 @@ class Cluster(Executor):
         return [self._outcome(future, self._tasks.pop(future)) for future in done]
 
     def close(self) -> None:
-        """Leaves the cluster."""
+        """Leaves the cluster; once is enough."""
+        if self._client.status == "closed":
+            return
         self._client.cancel(list(self._tasks))
         self._tasks = {}
         self._client.close()

@@ -148,4 +148,4 @@ def test_the_command_writes_report_and_figures(
     names = {file.name for file in (tmp_path / "out").iterdir()}
     assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
-    assert "no such file" in capsys.readouterr().err
+    assert "No such file" in capsys.readouterr().err
