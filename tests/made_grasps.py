@@ -129,7 +129,7 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
     place = folder / "made.zarr"
     with opened_run(load_sweep(path), place, resume=False, accept_changes=False):
         pass
-    group, told = Store.open(place, writing=True).group, truths(40)
+    store, told = Store.open(place, writing=True), truths(40)
     if not done:
         return place
     forces = made_forces(told, table)
@@ -146,8 +146,9 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
         "split": np.where(np.arange(40) < 30, 0, 2),
         "status": np.full(40, DONE),
     }
-    if "read_force" in group:
+    if "read_force" in store.described:
         values["read_force"] = 0.8 * forces[:, None]
-    for name, content in values.items():
-        group[name][...] = np.asarray(content, dtype=group[name].dtype)
+    for name in store.described:
+        array = store.array(name)
+        array[...] = np.asarray(values[name], dtype=array.dtype) if name in values else array[...]
     return place

@@ -94,7 +94,7 @@ def small_store(folder: Path, text: str = TEXT) -> Path:
 def content(place: Path) -> dict[str, np.ndarray]:
     """Every variable but wall times and code."""
     store = Store.open(place)
-    return {name: store.read(name) for name in store.arrays if name not in ("wall_time", "code")}
+    return {name: store.read(name) for name in store.described if name not in ("wall_time", "code")}
 
 
 def assert_same(one: Path, other: Path) -> None:
@@ -113,10 +113,10 @@ def main() -> None:
     import os
     import sys
 
-    from tactsim.dataset import journal, running, store
+    from tactsim.dataset import building, journal, running, store_writing
 
     running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
-    journal.sync = store.sync = lambda path: None  # a kill leaves what the system holds
+    journal.sync = building.sync = store_writing.sync = lambda path: None  # a kill leaves what the system holds
     sweep, place = load_sweep(sys.argv[1]), Path(sys.argv[2])
     layout_of(sweep)
     for _ in sys.stdin:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, ValidationError
+from tactsim.errors import InputError, StorageError, TactsimError, ValidationError
+from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking_source import JudgedSamples
@@ -19,7 +21,8 @@ NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
 DESCRIPTION = """\
 check reads every sample and finds damaged content (checksums), missing, doubled, constant and
-not finite samples, and specimens that are in two splits; the exit code is 4 if it finds one.
+not finite samples, specimens that are in two splits, arrays with other names, units, types,
+shapes or words than the sweep writes, and files of others; the exit code is 4 if it finds one.
 info prints counts, splits and variables with their units. export writes the samples that are
 done as one HDF5 file, or as a folder with an index (Parquet) and shards (npz).
 
@@ -41,6 +44,9 @@ examples:
   tactsim data rank judged.zarr --reference results/plain --learned lumps_estimator.npz --out ranking
   tactsim data confusion classes.zarr --reference results/plain --noise '0.63 mN' --out confusion
 """
+MOST_FINDINGS, MOST_NOTES = 100, 10
+"""Lines that are told; the rest of the findings are counted."""
+REPORT = ("report.json", "report.md")
 RANKING, CONFUSION = "ranking", "confusion"
 
 
@@ -71,11 +77,15 @@ def _check(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.checking import check
 
     checked = check(arguments.store)
-    for finding in checked.findings:
+    for note in checked.notes[:MOST_NOTES]:
+        console.note(f"note: {one_line(note)}")
+    for finding in checked.findings[:MOST_FINDINGS]:
         console.out(str(finding))
+    if len(checked.findings) > MOST_FINDINGS:
+        console.out(f"and {len(checked.findings) - MOST_FINDINGS} more")
     counts = ", ".join(f"{count} {name}" for name, count in checked.counts.items())
     verdict = f"{len(checked.findings)} findings" if checked.findings else "nothing found"
-    console.out(f"{arguments.store}: {counts or 'not read'}; {verdict}")
+    console.out(f"{one_line(arguments.store)}: {counts or 'not read'}; {verdict}")
     return ValidationError.exit_code if checked.findings else 0
 
 
@@ -106,6 +116,8 @@ def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.localization.estimators.thesis import ThesisEstimator
     from tactsim.localization.interface import Estimator
 
+    folder = arguments.out or Path(RANKING)
+    _refuse_place(folder)
     samples = _samples(arguments)
     estimators: dict[str, Estimator] = {
         "thesis": ThesisEstimator(),
@@ -116,7 +128,7 @@ def _rank(arguments: argparse.Namespace) -> int:
         estimators["learned"] = LearnedEstimator.checked(arguments.learned)
     ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
     about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed}
-    content, folder = record(ranked, samples, about), arguments.out or Path(RANKING)
+    content = record(ranked, samples, about)
     drawn = _drawn(lambda: ranking_figures(content))
     text = as_text(ranked, samples, tuple(drawn))
     _write(folder, content, text, drawn)
@@ -135,12 +147,14 @@ def _confusion(arguments: argparse.Namespace) -> int:
 
     if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
+    folder = arguments.out or Path(CONFUSION)
+    _refuse_place(folder)
     estimator, given = HypothesesEstimator(), _noise(arguments)
     noise = ROUNDING_NOISE if given is None else given
     split, seed = arguments.split, arguments.seed
     table, others = store_confusion(arguments.store, _references(arguments)[0], estimator, split=split, noise=noise, seed=seed)
     about = {"store": arguments.store.name, "split": split, "seed": seed, "estimator": estimator.kind, "noise": noise}
-    content, folder = record(table, others, about), arguments.out or Path(CONFUSION)
+    content = record(table, others, about)
     title = f"{arguments.store.name}: {verdict(content)}"
     drawn = _drawn(lambda: {"confusion.png": lambda: png(confusion_figure(content["counts"], content["classes"], title))})
     text = as_text(content, drawn)
@@ -155,19 +169,45 @@ def _drawn(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> dict[st
     try:
         return {name: draw() for name, draw in drawings().items()}
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {error}")
+        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
         return {}
 
 
 def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping[str, bytes]) -> None:
     """Writes report.json, in which every number is finite, report.md and the figures."""
-    from tactsim.results.storage import naming, replace_file
+    from tactsim.dataset.own_files import OwnFiles
+    from tactsim.results.storage import naming
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    record = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode()
-    for name, written in {"report.json": record, "report.md": text.encode(), **figures}.items():
-        replace_file(folder / name, written)
+    record, own = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), OwnFiles(folder)
+    own.refuse_foreign(*REPORT, *figures)
+    for name, written in {**dict(zip(REPORT, (record, text.encode()), strict=True)), **figures}.items():
+        own.replace(name, written)
+
+
+def _refuse_place(folder: Path) -> None:
+    """Refuses a folder for a report that holds something else, before anything is computed."""
+    from tactsim.dataset.own_files import OwnFiles
+
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise StorageError(f"{one_line(folder)} exists and is not a folder; choose another with --out")
+    if os.path.lexists(folder / "zarr.json"):
+        raise StorageError(f"{one_line(folder)} is a data set; choose another folder with --out")
+    OwnFiles(folder).refuse_foreign(*REPORT)
+
+
+def _refuse_file(path: Path) -> None:
+    """Refuses a place for an estimator at which something else than an estimator stands."""
+    from tactsim.localization.estimators.learned import LearnedEstimator
+
+    if not os.path.lexists(path):
+        return
+    try:
+        LearnedEstimator.checked(path)
+    except TactsimError as error:
+        told = f"{one_line(path)} exists and is no estimator that tactsim wrote; choose another with --out ({error})"
+        raise StorageError(told) from None
 
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
@@ -205,6 +245,7 @@ def _train(arguments: argparse.Namespace) -> int:
 
     if arguments.out is None or arguments.out.suffix != ".npz":
         raise InputError("train: --out is missing; name a file ending in .npz")
+    _refuse_file(arguments.out)
     learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
     replace_file(arguments.out, learned.content())
     console.out(f"{learned.told()}; estimator in {arguments.out}")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from tactsim.cli import console
 from tactsim.cli.interruption import interruptible
 from tactsim.errors import ConvergenceError, InputError, Interrupted
+from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.executor import Executor
@@ -34,7 +35,8 @@ cluster whose scheduler answers at --scheduler:
   tactsim sweep CASE --out STORE --scheduler tcp://HOST:8786
 
 On SLURM, dask-jobqueue starts the workers. What was computed survives a kill at any moment:
-the same command with --resume goes on. A worker that dies costs its samples one try; after
+the same command with --resume goes on, after it has verified every sample that is there;
+damaged ones are computed again. A worker that dies costs its samples one try; after
 three they are marked failed, with the reason. If a sample failed the exit code is 3.
 """
 EXAMPLES = """\
@@ -67,7 +69,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
-    from tactsim.dataset.card import write_card
     from tactsim.dataset.running import opened_run
     from tactsim.dataset.sweep import load_sweep
 
@@ -77,15 +78,25 @@ def run(arguments: argparse.Namespace) -> int:
             raise InputError(f"--{name} {given} is out of range; must be at least 1")
     with interruptible() as interruption:
         sweep = load_sweep(arguments.case, tuple(arguments.set), arguments.samples)
+        _check_inputs(sweep)
         executor = _executor(sweep, arguments)  # before anything is written: a scheduler may not answer
         changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}
         with closing(executor), opened_run(sweep, arguments.out, **changes) as going:
-            write_card(going.store, sweep, going.layout)
+            _card(going)
             stopped = _computed(going, executor, arguments)
             with interruption.deferred():
                 _draw(arguments.out)
-                write_card(going.store, sweep, going.layout)
+                _card(going)
                 return _finish(going, arguments, stopped or interruption.requested)
+
+
+def _check_inputs(sweep: Sweep) -> None:
+    """Looks for the files that the sweep names, by its first possible case, before anything is computed."""
+    from tactsim.case.inputs import check_inputs
+    from tactsim.dataset.layout import first_case
+
+    for line in check_inputs(first_case(sweep), sweep.document, sweep.where):
+        console.note(f"warning: {line}")
 
 
 def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace) -> bool:
@@ -99,28 +110,40 @@ def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace
     return False
 
 
+def _card(going: SweepRun) -> None:
+    """Writes the card, unless another file stands in its place."""
+    from tactsim.dataset.card import adopt_earlier_files, write_card
+    from tactsim.dataset.own_files import ForeignFile
+    from tactsim.display.dataset_card import FIGURE_FILES
+
+    try:
+        adopt_earlier_files(going.store.path, FIGURE_FILES)
+        write_card(going.store, going.sweep, going.layout)
+    except ForeignFile as error:
+        console.note(f"warning: the card is not written: {error}")
+
+
 def _draw(store: Path) -> None:
     """Draws the figures of the card; one that cannot be drawn never costs the data."""
     try:
-        from tactsim.dataset.card import FIGURES
+        from tactsim.dataset.own_files import OwnFiles
+        from tactsim.dataset.store_files import FIGURES
         from tactsim.display.dataset_card import card_figures
-        from tactsim.results.storage import replace_file
 
         for name, draw in card_figures(store).items():
-            (store / FIGURES).mkdir(exist_ok=True)
-            replace_file(store / FIGURES / name, draw())
+            OwnFiles(store).replace(f"{FIGURES}/{name}", draw())
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
-        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {error}")
+        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
 
 
 def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:
     if arguments.scheduler:
         from tactsim.dataset.cluster import Cluster
 
-        return Cluster(sweep.text, arguments.scheduler)
+        return Cluster(sweep.text, arguments.scheduler, folder=sweep.folder)
     from tactsim.dataset.local_workers import LocalWorkers, usable_cores
 
-    return LocalWorkers(sweep.text, arguments.workers or usable_cores())
+    return LocalWorkers(sweep.text, arguments.workers or usable_cores(), folder=sweep.folder)
 
 
 def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
@@ -138,12 +161,16 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
 
 
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
+    from tactsim.dataset.card import empty_split_lines
+    from tactsim.dataset.description import empty_splits, split_counts
     from tactsim.dataset.variable import FAILED
 
     failed = int((going.store.read("status") == FAILED).sum())
     if not arguments.quiet:
         for line in going.tally.summary():
             console.out(line)
+        for line in empty_split_lines(empty_splits(split_counts(going.store), going.sweep.settings.splits)):
+            console.note(line)
         left = len(going.store.pending())
         if left:
             console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")

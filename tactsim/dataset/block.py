@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import io
-import zipfile
 from collections.abc import Iterable
 
 import numpy as np
 
 from tactsim.dataset.variable import CHECKSUM_BYTES, Variable
 from tactsim.errors import StorageError
+from tactsim.outside.arrays import read_arrays
 
 Array = np.ndarray
 Block = dict[str, Array]
@@ -34,11 +34,26 @@ def decoded(content: bytes) -> Block:
     StorageError
         If the bytes are not one.
     """
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            return {name: arrays[name] for name in arrays.files}
-    except (ValueError, OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise StorageError(f"a block of samples is damaged: {error}") from None
+    return read_arrays(content, "a block of samples")
+
+
+def refuse_unfitting(block: Block, variables: Iterable[Variable], samples: int) -> None:
+    """Refuses a block that is none of these variables.
+
+    Raises
+    ------
+    StorageError
+        Naming the first that is missing or has another type or shape.
+    """
+    numbers = block.get("sample", np.arange(0))
+    fits = numbers.ndim == 1 and numbers.dtype.kind == "i" and numbers.size and numbers.min() >= 0 and numbers.max() < samples
+    if not fits or len(np.unique(numbers)) != len(numbers):
+        raise StorageError(f"a block of samples is damaged: its samples are not among the {samples} of the data set")
+    for variable in variables:
+        values = block.get(variable.name)
+        kind = "U" if variable.dtype == "str" else np.dtype(variable.dtype).kind
+        if values is None or values.dtype.kind != kind or values.shape != (len(numbers), *variable.sizes):
+            raise StorageError(f"a block of samples is damaged: {variable.name} is missing or has another type or shape")
 
 
 def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:

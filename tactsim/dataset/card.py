@@ -6,14 +6,18 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from tactsim.dataset.description import failures, ranges, redrawn, split_counts, status_counts, variable_rows
+from tactsim.dataset.description import empty_splits, failures, ranges, redrawn, split_counts, status_counts, variable_rows
 from tactsim.dataset.layout import Layout
+from tactsim.dataset.own_files import MANIFEST, OwnFiles
 from tactsim.dataset.store import Store
+from tactsim.dataset.store_files import CARD, FIGURES
 from tactsim.dataset.sweep import Sweep
-from tactsim.results.storage import replace_file
+from tactsim.outside.text import one_line
 
-CARD = "README.md"
-FIGURES = "figures"
+TAGS = "tags: [tactile, simulation, tactsim]"
+"""A line of the head by which a card is known that was written before there were lists of own files."""
+SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`<[]"} | {"|": "/"})
+"""Characters that begin code, tags and links, escaped; a bar would end the cell of a table."""
 GENERAL_LIMITS = (
     "Simulated, not measured: the sensor's film and electronics are models, and tissue is homogeneous but for what is named.",
     "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
@@ -22,20 +26,43 @@ GENERAL_LIMITS = (
 
 
 def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
-    """Writes the card."""
-    replace_file(store.path / CARD, card_text(store, sweep, layout).encode())
+    """Writes the card.
+
+    Raises
+    ------
+    ForeignFile
+        If another file stands in its place, which is kept.
+    """
+    OwnFiles(store.path).replace(CARD, card_text(store, sweep, layout).encode())
+
+
+def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
+    """Counts card and figures as own that a tactsim wrote which kept no list of them."""
+    card, own = path / CARD, OwnFiles(path)
+    if (path / MANIFEST).exists() or not card.is_file() or card.is_symlink():
+        return
+    with open(card, "rb") as file:
+        head = file.read(1000).decode("utf-8", "replace")
+    if TAGS in head.splitlines():
+        for name in (CARD, *(f"{FIGURES}/{figure}" for figure in figures)):
+            own.adopt(name)
+
+
+def plain(text: object) -> str:
+    """Text of others on one line that cannot break the Markdown around it."""
+    return one_line(text).translate(SPECIAL)
 
 
 def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
     """The card in Markdown."""
     told = store.attributes
-    title = told["title"] or f"Data set {told['sweep_id']}"
-    head = ["---", f"license: {told['license'].lower()}", "tags: [tactile, simulation, tactsim]", "---", f"# {title}", ""]
+    title = plain(told["title"] or f"Data set {told['sweep_id']}")
+    head = ["---", f"license: {plain(told['license']).lower()}", TAGS, "---", f"# {title}", ""]
     parts = [
         layout.recorder.describe(),
         "",
         *_how(store, sweep),
-        *_counts(store),
+        *_counts(store, sweep),
         *_figures(store.path),
         *_use(layout),
         *_limits(told["limits"]),
@@ -48,7 +75,7 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
 
 def _how(store: Store, sweep: Sweep) -> list[str]:
     told, settings = store.attributes, sweep.settings
-    versions = ", ".join(f"{name} {number}" for name, number in told["versions"].items())
+    versions = plain(", ".join(f"{name} {number}" for name, number in told["versions"].items()))
     shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
     hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
     specimens, draws = redrawn(store)
@@ -57,22 +84,33 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
         f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
         f"Sample k depends on the seed and on k only{hypercube}.",
         f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
-        f"Computed by tactsim {', '.join(told['codes'])}; {versions}.",
+        f"Computed by tactsim {plain(', '.join(told['codes']))}; {versions}.",
         "",
     ]
 
 
-def _counts(store: Store) -> list[str]:
+def _counts(store: Store, sweep: Sweep) -> list[str]:
     rows = [(name, str(count)) for name, count in status_counts(store).items()]
-    splits = [(name, str(count)) for name, count in split_counts(store).items()]
+    counts = split_counts(store)
+    splits = [(name, str(count)) for name, count in counts.items()]
     told = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
+    told += [*empty_split_lines(empty_splits(counts, sweep.settings.splits)), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
     return told + (_table("Failures", ("reason", "samples"), failed) if failed else [])
 
 
+def empty_split_lines(names: Sequence[str]) -> list[str]:
+    """A sentence on parts of the data set without a sample, if there are any."""
+    if not names:
+        return []
+    which = f"the split {names[0]} has" if len(names) == 1 else f"the splits {', '.join(names)} have"
+    return [f"warning: {which} no sample that is done; take more samples, or other shares in sweep.splits."]
+
+
 def _figures(path: Path) -> list[str]:
-    drawn = sorted((path / FIGURES).glob("*.png")) if (path / FIGURES).is_dir() else []
-    return ["## Figures", *(f"![{figure.stem}]({FIGURES}/{figure.name})" for figure in drawn), ""] if drawn else []
+    own = OwnFiles(path)
+    drawn = sorted(name for name in own.sums() if name.startswith(f"{FIGURES}/") and own.written(name))
+    return ["## Figures", *(f"![{Path(name).stem}]({name})" for name in drawn), ""] if drawn else []
 
 
 def _use(layout: Layout) -> list[str]:
@@ -111,9 +149,14 @@ def _names(layout: Layout, role: str) -> list[str]:
 
 
 def _limits(own: str) -> list[str]:
-    return ["## Known limits", *(f"- {line}" for line in GENERAL_LIMITS), *(["", own.strip()] if own.strip() else []), ""]
+    return [
+        "## Known limits",
+        *(f"- {line}" for line in GENERAL_LIMITS),
+        *(f"- {plain(line)}" for line in own.splitlines() if line.strip()),
+        "",
+    ]
 
 
 def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
-    cells = [" | ".join(cell.replace("|", "/") for cell in row) for row in rows]
+    cells = [" | ".join(plain(cell) for cell in row) for row in rows]
     return [f"## {title}", f"| {' | '.join(head)} |", "|" + " --- |" * len(head), *(f"| {row} |" for row in cells), ""]

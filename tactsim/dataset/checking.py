@@ -1,46 +1,43 @@
-"""Whether a data set is what its sweep wrote: complete, undamaged, finite, without doubles, splits apart."""
+"""Whether a data set is what its sweep wrote: complete, undamaged, finite, no doubles, splits apart, and nothing else in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from tactsim.dataset.block import checksum
-from tactsim.dataset.layout import Layout, layout_of
-from tactsim.dataset.running import JOURNAL
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import sweep_of_text
-from tactsim.dataset.variable import DONE, FAILED, PENDING, STATUS, Variable
-from tactsim.errors import InputError, StorageError
+from tactsim.code_identity import code_identity
+from tactsim.dataset.checking_arrays import WORDS, differences
+from tactsim.dataset.checking_samples import leaks, value_findings
+from tactsim.dataset.finding import Finding
+from tactsim.dataset.holes import JOURNAL, lost_status
+from tactsim.dataset.identity import attributes_of
+from tactsim.dataset.layout import Layout
+from tactsim.dataset.own_files import MANIFEST, OwnFiles
+from tactsim.dataset.store import ARRAYS, Store, consolidated_metadata
+from tactsim.dataset.store_files import CARD, foreign_files, is_torn, walked
+from tactsim.dataset.stored_sweep import stored_layout
+from tactsim.dataset.sweep import Sweep
+from tactsim.dataset.variable import FAILED, PENDING, STATUS, Variable
+from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
 
 Array = np.ndarray
-SHOWN = 10
-"""Samples named in one finding."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing that is wrong: its kind, the samples, and what it is in words."""
-
-    kind: str
-    samples: tuple[int, ...]
-    words: str
-
-    def __str__(self) -> str:
-        more = f" and {len(self.samples) - SHOWN} more" if len(self.samples) > SHOWN else ""
-        which = f"; samples {', '.join(map(str, self.samples[:SHOWN]))}{more}" if self.samples else ""
-        return f"{self.kind}: {self.words}{which}"
+COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
+RESUME = "go on with --resume, which computes them again"
+MADE_LATER = ("codes", "versions", "schema", ARRAYS)
+"""Attributes that do not follow from the sweep."""
 
 
 @dataclass(frozen=True)
 class Checked:
-    """Counts by status, and what was found."""
+    """Counts by status, what was found, and what could not be verified."""
 
     counts: dict[str, int]
     findings: tuple[Finding, ...]
+    notes: tuple[str, ...] = ()
 
 
 def check(path: str | Path) -> Checked:
@@ -49,113 +46,124 @@ def check(path: str | Path) -> Checked:
     Raises
     ------
     StorageError
-        If the folder is not a data set, or its description is damaged.
+        If the folder is not a data set, its description is damaged, or a link leads into it.
     """
-    store = Store.open(path)
+    store = Store.open(path, damaged=True)
+    store.array("status")
+    sweep, layout = stored_layout(store)
+    same_code = store.attributes["codes"][-1] == code_identity()
+    findings = [*_arrays(store, layout.variables, sweep.samples), *_wording(store, layout.variables, sweep, same_code)]
+    findings += [*_attributes(store, sweep, layout), *_consolidated(store), *_files(store, layout.variables)]
+    notes = tuple(_notes(store, same_code, layout.variables, sweep))
+    if any(finding.kind in ("missing", "description") for finding in findings):
+        return Checked({}, tuple(findings), notes)
     try:
-        sweep = sweep_of_text(store.attributes["sweep"])
-        layout = layout_of(sweep)
-    except (KeyError, InputError, ValueError) as error:
-        raise StorageError(f"{path}: the case in it cannot be read by this tactsim: {error}") from None
-    findings = list(_arrays_missing(store, layout, sweep.samples))
-    if findings:
-        return Checked({}, tuple(findings))
-    status = store.read("status")
+        status = store.read("status")
+    except StorageError as error:
+        return Checked({}, (*findings, Finding("damaged", (), f"{error}")), notes)
     counts = {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
-    findings += [*_missing(store, status), *_leaks(store, status)]
-    findings += _values(store, layout, status)
-    return Checked(counts, tuple(findings))
+    findings += [*_missing(store, status), *leaks(store, status), *value_findings(store, layout, status)]
+    return Checked(counts, tuple(findings), notes)
 
 
-def _arrays_missing(store: Store, layout: Layout, samples: int) -> Iterator[Finding]:
-    for variable in layout.variables:
-        if variable.name not in store.group:
-            yield Finding("missing", (), f"the variable {variable.name}")
-        elif store.group[variable.name].shape != (samples, *variable.sizes):
-            yield Finding("missing", (), f"{variable.name} has the shape {store.group[variable.name].shape} of {samples} samples")
+def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
+    """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
+    own = {variable.name for variable in variables}
+    for name in sorted(store.faults.keys() & own):
+        yield Finding("description", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
+    for variable in variables:
+        if variable.name in store.faults:
+            continue
+        if variable.name not in store.described:
+            yield Finding("missing", (), f"the variable {variable.name}; {RESUME}, or bring back a copy")
+            continue
+        array = store.described[variable.name]
+        if array.shape[0] != samples:
+            words = f"{variable.name} has {array.shape[0]} of {samples} samples; go on with --resume --samples {samples}"
+            yield Finding("missing", (), words)
+        for key, words in differences(array, variable):
+            if key not in WORDS:
+                yield Finding("description", (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
+
+
+def _wording(store: Store, variables: Iterable[Variable], sweep: Sweep, same_code: bool) -> Iterator[Finding]:
+    """Meanings that are not what this code says, where the store is of this code; names of splits in any case."""
+    for variable in variables:
+        if variable.name not in store.described:
+            continue
+        for key, words in differences(store.described[variable.name], variable):
+            if key == "flag_meanings" or (key in WORDS and same_code):
+                yield Finding("description", (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
+
+
+def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]:
+    """Attributes of the store that do not follow from its sweep."""
+    expected, found = attributes_of(sweep, layout), store.attributes
+    same_code = found["codes"][-1] == code_identity()
+    for name in sorted((expected.keys() | found.keys()) - set(MADE_LATER)):
+        if name == "description" and not same_code:
+            continue
+        if found.get(name) != expected.get(name):
+            told = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
+            yield Finding("attribute", (), f"{told}; bring back a copy of zarr.json")
+    names = [variable.name for variable in layout.variables]
+    if store.keeps_all_chunks and sorted(found[ARRAYS]) != sorted(names):
+        yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
+
+
+def _consolidated(store: Store) -> Iterator[Finding]:
+    """The descriptions in the store's own zarr.json, which xarray reads, beside those of the arrays."""
+    gathered = consolidated_metadata(store.path)
+    differing = [name for name, array in store.described.items() if gathered.get(name) != array.told]
+    if differing:
+        named = ", ".join(differing[:10])
+        told = (
+            f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"
+        )
+        yield Finding("gathered", (), told)
+
+
+def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
+    """What tactsim did not write, what a killed run left, and what of its own is gone or changed."""
+    names = [variable.name for variable in variables]
+    torn = sum(is_torn(name, names) for name in walked(store.path))
+    if torn:
+        yield Finding("unfinished", (), f"{torn} files that a killed run left half written; --resume removes them")
+    foreign = foreign_files(store.path, store.described, names)
+    if foreign:
+        more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
+        shown = ", ".join(one_line(name, 80) for name in foreign[:10])
+        yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
+    own = OwnFiles(store.path)
+    for name in sorted(own.sums()):
+        if own.written(name) is None:
+            state = "is not what tactsim wrote" if (store.path / name).exists() else "is gone"
+            yield Finding("file", (), f"{one_line(name, 80)} {state}; move away what stands there, --resume writes it anew")
 
 
 def _missing(store: Store, status: Array) -> Iterator[Finding]:
-    pending = np.flatnonzero(status == PENDING)
-    if pending.size:
+    pending, lost = np.flatnonzero(status == PENDING), lost_status(store)
+    if lost.size:
+        yield Finding("missing", tuple(lost.tolist()), f"the status of {lost.size} samples that were computed is gone; {RESUME}")
+    elif pending.size:
         yield Finding("missing", tuple(pending.tolist()), f"{pending.size} samples are not computed; go on with --resume")
     if (store.path / JOURNAL).exists():
         yield Finding("unfinished", (), "samples wait in the journal; a sweep is running, or was killed: --resume")
     unknown = np.flatnonzero(status > FAILED)
     if unknown.size:
-        yield Finding("damaged", tuple(unknown.tolist()), "the status is unknown")
+        yield Finding("damaged", tuple(unknown.tolist()), f"the status is unknown; {RESUME}")
 
 
-def _leaks(store: Store, status: Array) -> Iterator[Finding]:
-    """Specimens in two splits, and case ids in two splits or twice."""
-    split, specimen, case = store.read("split"), store.read("specimen"), store.read("case_id")
-    computed = np.flatnonzero(status != PENDING)
-    for what, keys in (("specimen", specimen), ("case", case)):
-        own = computed if what == "specimen" else computed[case[computed] != ""]
-        _, inverse = np.unique(keys[own], return_inverse=True)
-        low, high = np.full(len(own), 10**6), np.full(len(own), -1)
-        np.minimum.at(low, inverse, split[own].astype(int))
-        np.maximum.at(high, inverse, split[own].astype(int))
-        leaking = own[low[inverse] != high[inverse]] if len(own) else own
-        if leaking.size:
-            yield Finding("leakage", tuple(leaking.tolist()), f"a {what} is in two splits")
-        if what == "case" and len(own):
-            twice = own[np.bincount(inverse)[inverse] > 1]
-            if twice.size:
-                yield Finding("duplicate", tuple(twice.tolist()), "the same case more than once")
-
-
-def _values(store: Store, layout: Layout, status: Array) -> list[Finding]:
-    """Checksums, numbers that are not finite, readings that never change, samples with equal readings."""
-    damaged: list[int] = []
-    equal: list[int] = []
-    infinite: dict[str, list[int]] = {}
-    constant: dict[str, list[int]] = {}
-    seen: dict[bytes, int] = {}
-    step = int(store.group["status"].chunks[0])
-    for begin in range(0, len(status), step):
-        chunk = {v.name: np.asarray(store.group[v.name][begin : begin + step]) for v in layout.variables}
-        for row in np.flatnonzero(status[begin : begin + step] != PENDING):
-            sample = {name: values[row] for name, values in chunk.items()}
-            number = begin + int(row)
-            if (checksum(sample, layout.variables) != sample["checksum"]).any():
-                damaged.append(number)
-            if sample["status"] != DONE:
-                continue
-            for name in _not_finite(sample, layout):
-                infinite.setdefault(name, []).append(number)
-            for variable in _readings(layout):
-                if (
-                    not variable.prescribed
-                    and variable.sizes
-                    and np.prod(variable.sizes) > 1
-                    and np.ptp(sample[variable.name]) == 0
-                ):
-                    constant.setdefault(variable.name, []).append(number)
-            key = b"".join(np.ascontiguousarray(sample[v.name]).tobytes() for v in _readings(layout))
-            equal += [number] if key in seen else []
-            seen.setdefault(key, number)
-    return _told(damaged, infinite, constant, equal)
-
-
-def _told(
-    damaged: list[int],
-    infinite: dict[str, list[int]],
-    constant: dict[str, list[int]],
-    equal: list[int],
-) -> list[Finding]:
-    found = [Finding("checksum", tuple(damaged), "the content is not what was written")] if damaged else []
-    found += [Finding("not finite", tuple(numbers), name) for name, numbers in infinite.items()]
-    found += [Finding("constant", tuple(numbers), f"{name} has one value throughout") for name, numbers in constant.items()]
-    found += [Finding("duplicate", tuple(equal), "the same readings as an earlier sample")] if equal else []
-    return found
-
-
-def _not_finite(sample: dict[str, Array], layout: Layout) -> Iterator[str]:
-    for variable in _readings(layout):
-        if not (variable.optional or np.isfinite(sample[variable.name]).all()):
-            yield variable.name
-
-
-def _readings(layout: Layout) -> list[Variable]:
-    return [variable for variable in layout.variables if variable.role == "reading"]
+def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: Sweep) -> Iterator[str]:
+    """What cannot be verified."""
+    if not store.keeps_all_chunks:
+        yield "the store is of an earlier tactsim, which left out chunks of nothing but fill values; checksums stand for them"
+    if not (store.path / MANIFEST).exists() and (store.path / CARD).exists():
+        yield f"{CARD} and figures cannot be verified: an earlier tactsim kept no checksums of them"
+    if same_code:
+        return
+    for variable in variables:
+        if variable.name in store.described:
+            for key, words in differences(store.described[variable.name], variable):
+                if key == "long_name":
+                    yield f"the store is of other code, and perhaps therefore {variable.name}: {words}"

@@ -20,7 +20,7 @@ TASKS_PER_THREAD = 2
 class Cluster(Executor):
     """A client of a Dask scheduler; losing it ends the sweep, losing a worker does not."""
 
-    def __init__(self, text: str, address: str):
+    def __init__(self, text: str, address: str, *, folder: str | None = None):
         try:
             import distributed
         except ImportError:
@@ -31,7 +31,7 @@ class Cluster(Executor):
             self._client: Any = distributed.Client(address, timeout=CONNECTING, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             raise StorageError(f"no Dask scheduler answers at {address}: {error}; start one with: dask scheduler") from None
-        self._text = text
+        self._text, self._folder = text, folder
         self._tasks: dict[Any, tuple[int, ...]] = {}
 
     @property
@@ -43,7 +43,7 @@ class Cluster(Executor):
         """Sends a task to the cluster."""
         from tactsim.dataset.computing import computed
 
-        self._tasks[self._client.submit(computed, self._text, samples, pure=False)] = samples
+        self._tasks[self._client.submit(computed, self._text, samples, folder=self._folder, pure=False)] = samples
 
     def wait(self, seconds: float) -> list[Outcome]:
         """What the cluster finished, and the tasks that it gave up."""
@@ -60,7 +60,9 @@ class Cluster(Executor):
         return [self._outcome(future, self._tasks.pop(future)) for future in done]
 
     def close(self) -> None:
-        """Leaves the cluster."""
+        """Leaves the cluster; once is enough."""
+        if self._client.status == "closed":
+            return
         self._client.cancel(list(self._tasks))
         self._tasks = {}
         self._client.close()

@@ -22,9 +22,16 @@ Array = np.ndarray
 LONGEST_REASON = 500
 
 
-def computed(text: str, samples: Sequence[int], lost: str = "") -> bytes:
-    """The samples of these numbers as bytes of a block; with ``lost``, the reason for which they are given up, nothing is run."""
-    sweep = sweep_of_text(text)
+def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str | None = None) -> bytes:
+    """The samples of these numbers as bytes of a block.
+
+    Parameters
+    ----------
+    text : of the sweep
+    lost : the reason for which the samples are given up; nothing is run then
+    folder : of the sweep's file, in which the files that it names are looked for first
+    """
+    sweep = sweep_of_text(text, folder)
     layout = layout_of(sweep)
     done = []
     for specimen, numbers in itertools.groupby(samples, key=lambda number: number // sweep.per_specimen):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import shutil
+import os
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -12,13 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tactsim.dataset.card import CARD
+from tactsim.dataset.array_description import refuse_link
+from tactsim.dataset.building import built_beside, owned, remove_leftover
 from tactsim.dataset.loading import load, split_names
 from tactsim.dataset.store import Store
+from tactsim.dataset.store_files import CARD
 from tactsim.dataset.variable import FAILED
 from tactsim.errors import InputError, StorageError
+from tactsim.outside.files import opened
 from tactsim.outside.processes import run_child
-from tactsim.results.storage import naming
+from tactsim.outside.text import one_line
+from tactsim.results.storage import naming, write_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -46,26 +50,37 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
         If the place exists or cannot be written.
     """
     target = Path(place)
-    if target.exists():
-        raise StorageError(f"{target} exists; choose another place with --to")
-    data = load(store, split=split)
-    if not data.sizes["sample"]:
-        raise InputError(f"{store} has no sample that is done{f' in {split}' if split else ''}")
-    waiting = target.with_name(f".{target.name}.partial")
-    with naming(target):
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _removed(waiting)
-        try:
+    _refuse_inside(target, Path(store))
+    with owned(target, f"{one_line(target)} is being written by another export; wait for it or choose another place with --to"):
+        with naming(target):
+            remove_leftover(target)
+        if os.path.lexists(target):
+            raise StorageError(f"{one_line(target)} exists; choose another place with --to")
+        data = load(store, split=split)
+        if not data.sizes["sample"]:
+            raise InputError(f"{one_line(store)} has no sample that is done{f' in {split}' if split else ''}")
+        with built_beside(target) as waiting, naming(target):
             if target.suffix in (".h5", ".hdf5"):
-                _hdf5_apart(store, split, waiting)
+                _hdf5_apart(store, split, waiting, target)
             else:
                 _shards(data, Store.open(store).attributes | {"failed": _failed(store, split)}, waiting)
-                if (card := Path(store) / CARD).is_file():
-                    shutil.copyfile(card, waiting / CARD)
-            waiting.rename(target)
-        finally:
-            _removed(waiting)
+                if card := _card(Path(store)):
+                    write_bytes(waiting / CARD, card.encode())
     return int(data.sizes["sample"])
+
+
+def _refuse_inside(target: Path, store: Path) -> None:
+    if Path(os.path.realpath(target)).is_relative_to(os.path.realpath(store)):
+        raise StorageError(f"{one_line(target)} lies in the data set itself; choose another place with --to")
+
+
+def _card(store: Path) -> str:
+    """The card of a store, empty if it has none."""
+    path = store / CARD
+    if not os.path.lexists(path):
+        return ""
+    refuse_link(path)
+    return opened(path, "description").text()
 
 
 def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[str, Any]]:
@@ -76,25 +91,20 @@ def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[s
     return [{"sample": int(sample), "reason": str(reason)} for sample, reason in pairs]
 
 
-def _removed(waiting: Path) -> None:
-    """Removes what an export left that was broken off."""
-    if waiting.is_dir():
-        shutil.rmtree(waiting)
-    waiting.unlink(missing_ok=True)
-
-
-def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, target: Path) -> None:
+def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: Path, target: Path) -> None:
     """Writes HDF5 in a process of its own: on a full disk the library ends the process that it is in."""
     if importlib.util.find_spec("h5py") is None:
         raise InputError("HDF5 needs h5py; install it with: pip install 'tactsim[export]'")
     names = None if split is None else [split] if isinstance(split, str) else list(split)
-    arguments = [str(Path(store).absolute()), str(target.absolute()), json.dumps(names)]
+    arguments = [str(Path(store).absolute()), str(waiting.absolute()), json.dumps(names)]
     done = run_child(MODULE, arguments, time_limit=LONGEST)
     if done.out_of_time:
-        raise StorageError(f"cannot write {target.name}: it took longer than {LONGEST:g} s")
+        raise StorageError(f"cannot write {one_line(target)}: it took longer than {LONGEST:g} s")
     if done.code:
         full = "No space left" in done.said or "File too large" in done.said
-        raise StorageError(f"cannot write {target.name}: {'no room left on the disk' if full else done.last_line or done.ending}")
+        raise StorageError(
+            f"cannot write {one_line(target)}: {'no room left on the disk' if full else done.last_line or done.ending}"
+        )
 
 
 def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, beside: tuple[list[dict[str, Any]], str]) -> None:
@@ -151,6 +161,8 @@ def _column(name: Any, values: xarray.DataArray, data: xarray.Dataset) -> Any:
     content = values.values
     if name == "split":
         known = split_names(data)
+        if content.size and content.max() >= len(known):
+            raise StorageError("a sample has an unknown split; tactsim data check tells which")
         return [known[int(number)] for number in content]
     return content if content.dtype.kind in "fiub" else [str(value) for value in content]
 
@@ -165,10 +177,8 @@ def _listed(value: Any) -> Any:
 
 def main(store: str, target: str, splits: str) -> int:
     """Writes HDF5; what the process of its own does."""
-    names, card = json.loads(splits), Path(store) / CARD
-    told = Store.open(store).attributes
-    words = card.read_text(encoding="utf-8") if card.is_file() else ""
-    _hdf5(load(store, split=names), told, Path(target), beside=(_failed(store, names), words))
+    names, told = json.loads(splits), Store.open(store).attributes
+    _hdf5(load(store, split=names), told, Path(target), beside=(_failed(store, names), _card(Path(store))))
     return 0
 
 

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.code_identity import code_identity
+from tactsim.dataset.array_description import META, parsed_json
 from tactsim.dataset.layout import Layout
 from tactsim.dataset.sweep import Sweep
 from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
 from tactsim.results.provenance import PACKAGES
 
 LICENCE = "CC-BY-4.0"
@@ -47,10 +49,12 @@ def check_same(sweep: Sweep, attributes: dict[str, Any], place: Path) -> None:
     """
     if attributes.get("sweep_id") == sweep.identity:
         return
-    earlier, now = (json.loads(text) for text in (attributes["sweep"], sweep.text))
-    where = _difference(earlier, now, "") or "its number of samples"
+    earlier, now = (parsed_json(text, f"the sweep in {place}") for text in (attributes["sweep"], sweep.text))
+    where = one_line(_difference(earlier, now, ""))
+    if not where:
+        raise StorageError(f"{one_line(place)}/{META}: sweep_id is not that of its sweep; bring back a copy of it")
     raise StorageError(
-        f"the data set {place} holds another sweep: {where} differs; choose another with --out, "
+        f"the data set {one_line(place)} holds another sweep: {where} differs; choose another with --out, "
         "or go on with the case it was made with"
     )
 

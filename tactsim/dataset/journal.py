@@ -8,6 +8,8 @@ import struct
 from collections.abc import Iterator
 from pathlib import Path
 
+from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
 from tactsim.results.storage import naming, sync
 
 HEAD = struct.Struct("<8sQ32s")
@@ -23,8 +25,9 @@ class Journal:
     def blocks(self) -> Iterator[bytes]:
         """Every complete block; what a kill left incomplete is passed over, and nothing stands behind it."""
         with naming(self.path, "read"):
-            if not self.path.exists():
+            if not os.path.lexists(self.path):
                 return
+            self.refuse_foreign()
             with open(self.path, "rb") as file:
                 size = os.fstat(file.fileno()).st_size
                 while len(head := file.read(HEAD.size)) == HEAD.size:
@@ -35,6 +38,23 @@ class Journal:
                     if hashlib.sha256(content).digest() != digest:
                         return
                     yield content
+
+    def refuse_foreign(self) -> None:
+        """Refuses anything else than a journal in its place.
+
+        Raises
+        ------
+        StorageError
+            If it is a link, no regular file, or does not begin like a journal.
+        """
+        if not os.path.lexists(self.path):
+            return
+        plain = self.path.is_file() and not self.path.is_symlink()
+        if plain:
+            with open(self.path, "rb") as file:
+                plain = MARK.startswith(file.read(len(MARK)))
+        if not plain:
+            raise StorageError(f"{one_line(self.path)} is no journal of tactsim; move it away")
 
     def append(self, content: bytes) -> None:
         """Adds a block and brings it down to the disk.

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.case.model import experiment_kinds
+from tactsim.case.model import Case, experiment_kinds
 from tactsim.dataset.distributions import Listed
-from tactsim.dataset.drawing import Drawn, drawn_specimen, fault_of
+from tactsim.dataset.drawing import drawn_specimen, fault_of
 from tactsim.dataset.places import is_distribution
 from tactsim.dataset.recorder import Recorder, Values, recorder_for
 from tactsim.dataset.settings import Condition
@@ -51,8 +51,7 @@ def layout_of(sweep: Sweep) -> Layout:
         told = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), told)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
-    first = _first_case(sweep)
-    index, own = index_variables(sweep.settings.splits.names), recorder.variables(first.case.experiment)  # type: ignore[union-attr]
+    index, own = index_variables(sweep.settings.splits.names), recorder.variables(first_case(sweep).experiment)
     labels = [variable for variable in own if variable.role == "label"]
     readings = [variable for variable in own if variable.role == "reading"]
     variables = (*index, *varied_variables(sweep), *labels, *readings)
@@ -64,7 +63,14 @@ def layout_of(sweep: Sweep) -> Layout:
     return Layout(recorder, variables)
 
 
-def _first_case(sweep: Sweep) -> Drawn:
+def first_case(sweep: Sweep) -> Case:
+    """The first possible case of a sweep.
+
+    Raises
+    ------
+    CaseError
+        If none of the first is possible.
+    """
     fault, last = fault_of(sweep), None
     if fault:
         raise CaseError(fault)
@@ -72,7 +78,7 @@ def _first_case(sweep: Sweep) -> Drawn:
     for specimen in range(min(tried, -(-sweep.samples // sweep.per_specimen))):
         last = drawn_specimen(sweep, specimen)[0]
         if last.case is not None:
-            return last
+            return last.case
     raise CaseError(last.refusal if last else "the sweep has no samples")
 
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tactsim.dataset.variable import DONE
+from tactsim.dataset.variable import DONE, FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
 
 if TYPE_CHECKING:
     import xarray
+
+    from tactsim.dataset.store import Store
 
 Array = np.ndarray
 
@@ -38,14 +40,21 @@ def load(
     UnknownName
         If there is no such split or variable.
     StorageError
-        If the folder is not a data set or was written by another version.
+        If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
+        gone. What a chunk holds is looked at when it is read; a damaged one is refused then.
     """
-    whole = opened(store)
-    keep = list(map(str, whole.data_vars if variables is None else variables))
+    from tactsim.dataset.holes import refuse_holes
+    from tactsim.dataset.store import Store
+
+    place = Store.open(store)
+    whole = dataset_of(place)
+    names = [*map(str, whole.data_vars), *place.missing]
+    keep = names if variables is None else list(map(str, variables))
     for name in keep:
-        if name not in whole:
-            raise UnknownName("variable", name, map(str, whole.data_vars))
+        if name not in names:
+            raise UnknownName("variable", name, names)
     chosen = chosen_samples(whole, split, failed=failed)
+    refuse_holes(place, dict.fromkeys((*keep, "split")), chosen)
     return whole[keep].assign_coords(sample=np.arange(whole.sizes["sample"])).isel(sample=chosen)
 
 
@@ -55,22 +64,35 @@ def opened(store: str | Path) -> xarray.Dataset:
     Raises
     ------
     StorageError
-        If the folder is not a data set or was written by another version.
+        If the folder is not a data set, was written by another version, or has holes.
     """
+    from tactsim.dataset.holes import refuse_holes
     from tactsim.dataset.store import Store
 
-    Store.open(store)
-    return without_chunks(store)
+    place = Store.open(store)
+    whole = dataset_of(place)
+    refuse_holes(place, [*map(str, whole.data_vars), *place.missing], chosen_samples(whole, failed=True))
+    return whole
 
 
-def without_chunks(store: str | Path) -> xarray.Dataset:
-    """The store by xarray, without Dask."""
+def dataset_of(store: Store) -> xarray.Dataset:
+    """The store by xarray, without Dask.
+
+    Raises
+    ------
+    StorageError
+        If its arrays do not fit together.
+    """
     import xarray
 
-    try:
-        return xarray.open_zarr(str(store), chunks=None)
-    except (OSError, ValueError, KeyError) as error:
-        raise StorageError(f"{store} cannot be opened: {error}") from None
+    from tactsim.dataset.store import reading
+
+    lengths = {name: array.shape[0] for name, array in store.described.items()}
+    if len(set(lengths.values())) > 1:
+        told = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
+        raise StorageError(f"{store.path} cannot be opened: {told}: a run was killed while it made room; go on with --resume")
+    with reading(store.path):
+        return xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
 
 
 def split_names(dataset: xarray.Dataset) -> list[str]:
@@ -81,7 +103,7 @@ def split_names(dataset: xarray.Dataset) -> list[str]:
 def chosen_samples(dataset: xarray.Dataset, split: str | Iterable[str] | None = None, *, failed: bool = False) -> Array:
     """Numbers of the samples of a part that are done, or also of those that failed."""
     status = dataset["status"].values
-    chosen = status >= DONE if failed else status == DONE
+    chosen = (status == DONE) | (status == FAILED) if failed else status == DONE
     if split is not None:
         known, wanted = split_names(dataset), [split] if isinstance(split, str) else list(split)
         if not wanted:

@@ -20,8 +20,8 @@ DONE, REFUSED, BROKEN = b"=", b"?", b"!"
 class LocalWorkers(Executor):
     """Talks to its processes in bytes: the sweep and then numbers of samples as JSON, blocks as they stand in the journal."""
 
-    def __init__(self, text: str, count: int):
-        self._text = text
+    def __init__(self, text: str, count: int, *, folder: str | None = None):
+        self._text, self._folder = text, folder
         self._pool: WorkerPool[tuple[int, ...]] = WorkerPool(MODULE, (), count)
 
     @property
@@ -36,7 +36,7 @@ class LocalWorkers(Executor):
 
     def submit(self, samples: tuple[int, ...]) -> None:
         """Gives a task to an idle process, starting one if need be."""
-        self._pool.submit(samples, json.dumps({"sweep": self._text, "samples": samples}).encode())
+        self._pool.submit(samples, json.dumps({"sweep": self._text, "folder": self._folder, "samples": samples}).encode())
 
     def wait(self, seconds: float) -> list[Outcome]:
         """What the processes finished, and the tasks of those that died."""
@@ -77,7 +77,7 @@ def main(descriptor: str) -> None:
         while True:
             task = json.loads(connection.recv_bytes())
             try:
-                answer = DONE + computed(task["sweep"], task["samples"])
+                answer = DONE + computed(task["sweep"], task["samples"], folder=task["folder"])
             except CaseError as error:
                 answer = REFUSED + str(error).encode()
             except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process

@@ -7,6 +7,8 @@ import time
 from collections import Counter
 from dataclasses import dataclass, field
 
+from tactsim.outside.text import one_line
+
 
 @dataclass
 class Tally:
@@ -18,6 +20,10 @@ class Tally:
     failed: int = 0
     reasons: Counter[str] = field(default_factory=Counter)
     begin: float = field(default_factory=time.monotonic)
+    damaged: dict[str, int] = field(default_factory=dict)
+    """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
+    again: int = 0
+    """How many samples these are in all."""
 
     def add(self, done: int, reasons: list[str]) -> None:
         """Counts new samples: those that are done, and the reasons of those that failed."""
@@ -43,7 +49,10 @@ class Tally:
         told = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             told.append(f"{self.before} samples were there before")
-        return told + [f"  {count} x {reason}" for reason, count in self.reasons.most_common(20)]
+        if self.damaged:
+            told.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
+            told += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
+        return told + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]
 
 
 def kind_of(reason: str) -> str:

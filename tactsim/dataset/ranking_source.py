@@ -15,12 +15,13 @@ from tactsim.dataset.layout import TRIED_SPECIMENS
 from tactsim.dataset.loading import load
 from tactsim.dataset.ranking_reference import PlainGrasp, check_same
 from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import sweep_of_text
+from tactsim.dataset.stored_sweep import UNUSABLE, stored_sweep
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp import Grasp
 from tactsim.experiments.localization_source import Source
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.localization.lump_response import LumpResponse
+from tactsim.outside.text import one_line
 from tactsim.sensors.matrix_readout import MatrixReadout
 
 if TYPE_CHECKING:
@@ -153,13 +154,12 @@ def stored_experiment(store: str | Path) -> Grasp:
     InputError
         If it holds no grasps.
     """
-    attributes = Store.open(store).attributes
+    sweep = stored_sweep(Store.open(store))
     try:
-        sweep = sweep_of_text(attributes["sweep"])
         drawn = (drawn_specimen(sweep, specimen)[0] for specimen in range(TRIED_SPECIMENS))
         case = next((one.case for one in drawn if one.case is not None), None)
-    except (KeyError, InputError, ValueError) as error:
-        raise StorageError(f"{Path(store).name}: the case in it cannot be read by this tactsim: {error}") from None
+    except UNUSABLE as error:
+        raise StorageError(f"{Path(store).name}: the case in it cannot be read by this tactsim: {one_line(error)}") from None
     if case is None or not isinstance(case.experiment, Grasp):
         raise InputError(
             f"{Path(store).name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator
@@ -12,20 +13,27 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.code_identity import code_identity
-from tactsim.dataset.block import Block, decoded
+from tactsim.dataset.array_description import META
+from tactsim.dataset.block import Block, decoded, refuse_unfitting
+from tactsim.dataset.building import owned, refuse_taken, remove_leftover
+from tactsim.dataset.checking_arrays import wrong_arrays
 from tactsim.dataset.computing import computed
 from tactsim.dataset.executor import Executor, Outcome
+from tactsim.dataset.holes import JOURNAL
 from tactsim.dataset.identity import attributes_of, check_same
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.layout import Layout, layout_of
 from tactsim.dataset.progress import Tally
-from tactsim.dataset.store import Store
+from tactsim.dataset.store import Store, consolidated_metadata
+from tactsim.dataset.store_files import refuse_links, remove_torn
+from tactsim.dataset.store_writing import consolidate, create, resize, restore, tell, write
 from tactsim.dataset.sweep import Sweep
 from tactsim.dataset.variable import DONE, FAILED
+from tactsim.dataset.verifying import damaged_samples, mark_pending
 from tactsim.errors import StorageError, TactsimError
-from tactsim.results.locking import only_one
+from tactsim.outside.text import one_line
+from tactsim.results.storage import naming
 
-JOURNAL = ".journal"
 TASK_SECONDS = 0.5
 """What a task should take: short samples are handed out many at a time."""
 MOST_IN_TASK = 256
@@ -91,14 +99,19 @@ class SweepRun:
         """Writes what the journal holds into the arrays, then forgets it."""
         if self.blocks:
             whole = {name: np.concatenate([block[name] for block in self.blocks]) for name in self.blocks[0]}
-            self.store.write(whole, self.layout.variables)
+            write(self.store, whole, self.layout.variables)
             self.journal.clear()
         self.blocks, self.folded = [], time.monotonic()
 
     def recover(self) -> None:
         """Brings what a killed run left in its journal into the arrays."""
         for content in self.journal.blocks():
-            block = decoded(content)
+            try:
+                block = decoded(content)
+                refuse_unfitting(block, self.layout.variables, self.store.samples)
+            except StorageError as error:
+                self.tally.damaged["block of the journal passed over: " + str(error)] = 1
+                continue
             block["code"] = np.full_like(block["code"], len(self.store.attributes["codes"]) - 1)
             self.blocks.append(block)
         self.fold()
@@ -125,7 +138,7 @@ class SweepRun:
                 again.append(number)
                 continue
             reason = f"lost {self.losses[number]} times: {outcome.reason}"
-            content = computed(self.sweep.text, [number], lost=reason)
+            content = computed(self.sweep.text, [number], lost=reason, folder=self.sweep.folder)
             self.keep(content, decoded(content))
         return again
 
@@ -158,43 +171,102 @@ def opened_run(sweep: Sweep, path: str | Path, *, resume: bool = False, accept_c
     """
     place = Path(path)
     layout = layout_of(sweep)
-    with only_one(place, f"the data set {place} is in use by another sweep; wait for it or choose another with --out"):
-        if (place / "zarr.json").exists():
-            store = _continued(sweep, layout, place, resume, accept_changes)
+    with owned(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another with --out"):
+        with naming(place):
+            remove_leftover(place)
+        if os.path.lexists(place / META):
+            run = _continued(sweep, layout, place, resume, accept_changes)
         elif resume:
-            raise StorageError(f"there is no data set {place} to resume; leave out --resume")
+            raise StorageError(f"there is no data set {one_line(place)} to resume; leave out --resume")
         else:
-            store = _created(sweep, layout, place)
-        codes = store.attributes["codes"]
-        run = SweepRun(sweep, layout, store, Journal(place / JOURNAL), Tally(store.samples), codes.index(code_identity()))
-        run.recover()
-        run.tally.before = store.samples - len(store.pending())
+            run = _run(sweep, layout, _created(sweep, layout, place))
+        run.tally.before = run.store.samples - len(run.store.pending())
         yield run
 
 
+def _run(sweep: Sweep, layout: Layout, store: Store) -> SweepRun:
+    last = len(store.attributes["codes"]) - 1
+    return SweepRun(sweep, layout, store, Journal(store.path / JOURNAL), Tally(store.samples), last)
+
+
 def _created(sweep: Sweep, layout: Layout, place: Path) -> Store:
-    if place.exists() and (not place.is_dir() or any(place.iterdir())):
-        raise StorageError(f"{place} exists and is not a data set of tactsim; choose another with --out")
-    return Store.create(place, layout.variables, sweep.samples, attributes_of(sweep, layout))
+    try:
+        refuse_taken(place)
+    except StorageError:
+        told = f"{one_line(place)} exists and is not a data set of tactsim; choose another with --out"
+        raise StorageError(told) from None
+    return create(place, layout.variables, sweep.samples, attributes_of(sweep, layout))
 
 
-def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_changes: bool) -> Store:
-    store = Store.open(place, writing=True)
+def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_changes: bool) -> SweepRun:
+    """The run in a store that an earlier one left: put right, its journal in the arrays, and every sample verified."""
+    store = Store.open(place, writing=True, damaged=resume)
     if not resume:
-        raise StorageError(f"the data set {place} exists; go on with it by --resume or choose another with --out")
+        raise StorageError(f"the data set {one_line(place)} exists; go on with it by --resume or choose another with --out")
     check_same(sweep, store.attributes, place)
-    codes = list(store.attributes["codes"])
-    if code_identity() not in codes or codes[-1] != code_identity():
-        if not accept_changes:
-            raise StorageError(
-                f"the data set {place} was computed by tactsim {codes[-1]}, this is {code_identity()}; "
-                "mark what follows with --accept-changed-code, or begin anew with another --out"
-            )
-        SweepRun(sweep, layout, store, Journal(place / JOURNAL), Tally(0), len(codes) - 1).recover()
-        store.tell(codes=[*codes, code_identity()])
-    if sweep.samples > store.samples:
-        store.extend(sweep.samples, layout.variables)
-        store.tell(sweep=sweep.text)
-    elif sweep.samples < store.samples:
-        raise StorageError(f"the data set {place} has {store.samples} samples; --samples {sweep.samples} would lose some")
-    return store
+    _check_code(store, accept_changes)
+    refuse_links(place)
+    Journal(place / JOURNAL).refuse_foreign()
+    store = _put_right(sweep, layout, store)
+    run = _run(sweep, layout, store)
+    run.recover()
+    _mark_damaged(run)
+    if code_identity() != store.attributes["codes"][-1]:
+        tell(store, codes=[*store.attributes["codes"], code_identity()])
+        run.code += 1
+    return run
+
+
+def _check_code(store: Store, accept_changes: bool) -> None:
+    last = store.attributes["codes"][-1]
+    if last != code_identity() and not accept_changes:
+        raise StorageError(
+            f"the data set {one_line(store.path)} was computed by tactsim {one_line(last, 80)}, this is {code_identity()}; "
+            "mark what follows with --accept-changed-code, or begin anew with another --out"
+        )
+
+
+def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
+    """The store with all its arrays, of the sweep's length and described as one."""
+    _refuse_other_arrays(store, layout)
+    present = store.described.get("status") or next(iter(store.described.values()), None)
+    if present is None:
+        raise StorageError(f"{one_line(store.path)} has no array left; compute it anew with another --out, or bring back a copy")
+    if sweep.samples < present.shape[0]:
+        told = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
+        raise StorageError(f"the data set {one_line(store.path)} {told}")
+    remove_torn(store.path, store.described)
+    restored = restore(store, layout.variables)
+    lengths = {array.shape[0] for array in store.described.values()}
+    if restored or lengths != {sweep.samples}:
+        store = Store.open(store.path, writing=True)
+        resize(store, sweep.samples, layout.variables)
+    if store.attributes["sweep"] != sweep.text:
+        tell(store, sweep=sweep.text)
+    elif restored or lengths != {sweep.samples} or not _is_gathered(store):
+        consolidate(store.path)
+    return Store.open(store.path, writing=True)
+
+
+def _refuse_other_arrays(store: Store, layout: Layout) -> None:
+    """Refuses to write into arrays that are not those of the sweep."""
+    remedy = "or remove it, and --resume makes it anew"
+    if store.faults:
+        raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
+    for name, words in wrong_arrays(store.described.values(), layout.variables):
+        raise StorageError(f"{one_line(store.path / name / META)}: {words}; bring back a copy of it, {remedy}")
+
+
+def _is_gathered(store: Store) -> bool:
+    gathered = consolidated_metadata(store.path)
+    return all(gathered.get(name) == array.told for name, array in store.described.items())
+
+
+def _mark_damaged(run: SweepRun) -> None:
+    """Marks every sample pending that counts as computed but is not what was written."""
+    found = damaged_samples(run.store, run.layout.variables)
+    if found:
+        numbers = np.unique(np.concatenate(list(found.values())))
+        mark_pending(run.store, numbers)
+        run.tally.again = len(numbers)
+        run.tally.damaged |= {reason: len(samples) for reason, samples in found.items()}

@@ -8,10 +8,10 @@ from pydantic import Field, model_validator
 
 from tactsim.dataset.designs import DesignName
 from tactsim.dataset.force_reading import ForceReading
+from tactsim.dataset.variable import MOST_SAMPLES
 from tactsim.units import FrozenModel, Time
 
 SCHEMA = "tactsim/sweep/1"
-MOST_SAMPLES = 10_000_000
 NO_SPLIT = "none"
 
 

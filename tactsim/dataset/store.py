@@ -1,67 +1,66 @@
-"""The Zarr store of a data set: created, opened, and written block by block so that a kill leaves whole samples."""
+"""The Zarr store of a data set as it is read: opened, checked against limits, and each array whole or refused by name.
+
+A Zarr group (format 3) with one array per variable; the first dimension is the sample. ``store_writing`` creates and fills it.
+"""
 
 from __future__ import annotations
 
-import json
-import warnings
-from collections.abc import Iterable, Mapping, Sequence
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.block import Block
-from tactsim.dataset.variable import PENDING, Variable
+from tactsim.dataset.array_description import META, ArrayDescription, described, index_fault, read_json, refuse_link
+from tactsim.dataset.variable import PENDING
 from tactsim.errors import StorageError
-from tactsim.results.storage import naming, read_text, sync
+from tactsim.outside.files import Unreadable, opened_folder
+from tactsim.outside.text import one_line
 
 Array = np.ndarray
 STORE_SCHEMA = "tactsim/dataset/1"
-META = "zarr.json"
-"""What describes an array or the group, in its folder."""
-NEEDED = ("title", "description", "license", "sweep", "sweep_id", "samples_per_specimen", "seed", "codes", "versions", "limits")
-"""Attributes without which a store is no data set."""
-CHUNK_BYTES = 2 * 2**20
-"""Largest chunk of a variable, about."""
-CHUNK_SAMPLES = 1024
-"""Most samples in a chunk."""
+KINDS = {
+    "title": str,
+    "description": str,
+    "license": str,
+    "sweep": str,
+    "sweep_id": str,
+    "samples_per_specimen": int,
+    "seed": int,
+    "codes": list,
+    "versions": dict,
+    "limits": str,
+}
+"""Attributes without which a store is no data set, and their types."""
+ARRAYS = "arrays"
+"""Attribute: names of all arrays. A store that has it holds a file for every chunk with a sample that was computed, so that a
+missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
+SPARE = 20
+"""Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
+NAME = re.compile(r"\w[\w.-]{0,254}")
+"""Names of variables, which are names of folders."""
+DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
+"""What Zarr and its codecs raise on content that they cannot read."""
 
 
+@dataclass(frozen=True)
 class Store:
-    """A Zarr group (format 3) with one array per variable; the first dimension is the sample.
+    """A store, opened. A reader sees a sample by its ``status``, which is written after everything else of it."""
 
-    A reader sees a sample by its ``status``, which is written after everything else of it.
-    """
-
-    def __init__(self, path: Path, group: Any):
-        self.path, self.group = path, group
-
-    @classmethod
-    def create(cls, path: Path, variables: Sequence[Variable], samples: int, attributes: Mapping[str, Any]) -> Store:
-        """A new store in which every sample is pending."""
-        import zarr
-
-        with naming(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            group = zarr.open_group(path, mode="w-", zarr_format=3, attributes={**attributes, "schema": STORE_SCHEMA})
-            per_chunk = chunk_samples(variables, samples)
-            for variable in variables:
-                group.create_array(
-                    variable.name,
-                    shape=(samples, *variable.sizes),
-                    chunks=(per_chunk, *(max(1, size) for size in variable.sizes)),
-                    dtype=str if variable.dtype == "str" else variable.dtype,
-                    fill_value=variable.fill,
-                    dimension_names=("sample", *variable.dimensions),
-                    attributes=variable.attributes(),
-                )
-        store = cls(path, group)
-        store.consolidate()
-        return store
+    path: Path
+    group: Any
+    described: dict[str, ArrayDescription] = field(default_factory=dict)
+    """Arrays that are there and can be read."""
+    faults: dict[str, str] = field(default_factory=dict)
+    """Arrays that cannot be read, and why."""
 
     @classmethod
-    def open(cls, path: str | Path, *, writing: bool = False) -> Store:
-        """A store that a sweep wrote.
+    def open(cls, path: str | Path, *, writing: bool = False, damaged: bool = False) -> Store:
+        """A store that a sweep wrote; ``damaged`` allows arrays that cannot be read.
 
         Raises
         ------
@@ -70,133 +69,198 @@ class Store:
         """
         import zarr
 
-        folder = Path(path)
-        _check_described(folder)
-        try:
-            group = zarr.open_group(folder, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
-            known = "status" in group
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            raise StorageError(f"{folder} cannot be opened: {error}") from None
-        if not known:
-            raise StorageError(f"{folder} is damaged: it has no variable status; compute it anew, or bring back a copy")
-        return cls(folder, group)
+        from tactsim.dataset.guarded_files import GuardedFiles
+
+        folder = _folder(path)
+        _refuse_few_descriptors(folder)
+        attributes = read_attributes(folder)
+        found, faults = _arrays(folder, attributes)
+        if not damaged and faults:
+            raise StorageError(next(iter(faults.values())))
+        if "status" not in found and not damaged:
+            raise StorageError(_without(folder, "status"))
+        files = GuardedFiles(folder, found, read_only=not writing)
+        with reading(folder), zarr.config.set({"array.write_empty_chunks": True}):
+            group = zarr.open_group(files, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
+        return cls(folder, group, found, faults)
 
     @property
     def attributes(self) -> dict[str, Any]:
         """What the store says of itself."""
         return dict(self.group.attrs)
 
-    def tell(self, **attributes: Any) -> None:
-        """Changes attributes."""
-        with naming(self.path):
-            self.group.attrs.update(attributes)
-        self.consolidate()
+    def array(self, name: str) -> Any:
+        """The array of a variable.
 
-    def consolidate(self) -> None:
-        """Gathers the metadata in one file, which opens fast and without a word about other files beside the arrays."""
+        Raises
+        ------
+        StorageError
+            If it is missing or its description is damaged.
+        """
         import zarr
 
-        with naming(self.path), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Consolidated metadata", category=UserWarning)
-            zarr.consolidate_metadata(self.path, zarr_format=3)
-            sync(self.path / META)
-            sync(self.path)
+        if name not in self.described:
+            raise StorageError(self.faults.get(name) or _without(self.path, name))
+        with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
+            return self.group[name]
 
-    def read(self, name: str) -> Array:
-        """All values of a variable."""
-        with naming(self.path / name, "read"):
-            values = np.asarray(self.group[name][...])
+    def read(self, name: str, rows: Any = ...) -> Array:
+        """Values of a variable, of all samples or a slice or mask of them.
+
+        Raises
+        ------
+        StorageError
+            Naming the array and the chunk that cannot be read.
+        """
+        array = self.array(name)
+        with reading(self.path / name):
+            values = np.asarray(array.oindex[rows] if isinstance(rows, np.ndarray) else array[rows])
         return values if values.dtype.kind in "fiub" else np.array([str(value) for value in values])
 
     @property
-    def arrays(self) -> dict[str, Any]:
-        """Name -> array, in the order of the names; what else stands in the folder is passed over."""
-        with naming(self.path, "read"):
-            names = sorted(place.parent.name for place in self.path.glob(f"*/{META}"))
-            return {name: self.group[name] for name in names}
+    def missing(self) -> list[str]:
+        """Names of arrays that the store had and that are gone."""
+        names = self.attributes.get(ARRAYS, sorted(consolidated_metadata(self.path)))
+        return [name for name in names if name not in self.described]
 
     @property
     def samples(self) -> int:
         """Number of samples, computed or not."""
-        return int(self.group["status"].shape[0])
+        return self.described["status"].shape[0]
 
-    def extend(self, samples: int, variables: Iterable[Variable]) -> None:
-        """Makes room for more samples."""
-        with naming(self.path):
-            for variable in variables:
-                array = self.group[variable.name]
-                array.resize((samples, *array.shape[1:]))
-                sync(self.path / variable.name / META)
-        self.consolidate()
-
-    def write(self, block: Block, variables: Sequence[Variable]) -> None:
-        """Puts samples into the arrays and down to the disk: all variables, and only then their status.
-
-        Each chunk is replaced as a whole, so that a kill leaves the earlier or the later one.
-        """
-        others = [variable for variable in variables if variable.name != "status"]
-        status = [variable for variable in variables if variable.name == "status"]
-        with naming(self.path):
-            for part in (others, status):
-                places = [place for variable in part for place in self._put(block, variable)]
-                for place in dict.fromkeys(places):
-                    if place.exists():  # a chunk of nothing but the fill value is no file
-                        sync(place)
-
-    def _put(self, block: Block, variable: Variable) -> list[Path]:
-        """Puts a variable of some samples into its array; the files and folders that this changed."""
-        array, folder, changed = self.group[variable.name], self.path / variable.name, []
-        numbers, per_chunk = block["sample"], int(array.chunks[0])
-        for chunk in np.unique(numbers // per_chunk).tolist():
-            own = numbers // per_chunk == chunk
-            begin, end = chunk * per_chunk, min((chunk + 1) * per_chunk, array.shape[0])
-            content = folder / array.metadata.encode_chunk_key((chunk, *(0 for _ in variable.sizes)))
-            new = [place for place in content.parents[: len(variable.dimensions) + 1] if not place.exists()]
-            values = array[begin:end]
-            values[numbers[own] - begin] = block[variable.name][own]
-            array[begin:end] = values
-            changed += [
-                content,
-                *new,
-                content.parents[len(new)],
-                *([folder / META] if content.parents[len(new)] == folder else ()),
-            ]
-        return changed
+    @property
+    def keeps_all_chunks(self) -> bool:
+        """Whether a chunk that is no file can only be one whose samples are pending."""
+        return ARRAYS in self.attributes
 
     def pending(self) -> Array:
         """Numbers of the samples that are not computed."""
         return np.flatnonzero(self.read("status") == PENDING)
 
 
-def _check_described(folder: Path) -> None:
-    """Refuse a folder that does not say of itself that it is a data set which this version reads."""
-    if not folder.exists():
-        raise StorageError(f"{folder} is not a data set of tactsim: there is nothing; name a folder that tactsim sweep wrote")
-    if not (folder / META).is_file():
-        older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
-        raise StorageError(f"{folder} is not a data set of tactsim: it holds no {META}{older}")
+@contextmanager
+def reading(place: Path) -> Iterator[None]:
+    """Turns whatever Zarr raises on damaged content into an error that names the place."""
     try:
-        told = json.loads(read_text(folder / META, "description"))
-        attributes = dict(told.get("attributes", {}))
-    except (ValueError, AttributeError, TypeError, RecursionError) as error:
-        raise StorageError(f"{folder} cannot be opened: {META} is damaged: {error}") from None
-    schema = attributes.get("schema")
+        yield
+    except StorageError:
+        raise
+    except DAMAGE as error:
+        raise StorageError(
+            f"{one_line(place)} is damaged or cannot be read: {type(error).__name__}: {one_line(error, 200)}; bring back a copy"
+        ) from error
+
+
+def read_attributes(folder: Path) -> dict[str, Any]:
+    """What a folder says of itself, if it is a data set that this version reads.
+
+    Raises
+    ------
+    StorageError
+        If it is none, is damaged, or is of another version.
+    """
+    told = _group(folder)
+    attributes = told.get("attributes", {})
+    schema = attributes.get("schema") if isinstance(attributes, dict) else None
     if schema is None or told.get("node_type") != "group":
         raise StorageError(
-            f"{folder} is not a data set of tactsim: it is Zarr of another origin, without the schema {STORE_SCHEMA!r}"
+            f"{one_line(folder)} is not a data set of tactsim: it is Zarr of another origin, without the schema {STORE_SCHEMA!r}"
         )
+    codes = attributes.get("codes")
     if schema != STORE_SCHEMA:
+        wrote = one_line(codes[-1] if isinstance(codes, list) and codes else "unknown", 80)
         raise StorageError(
-            f"{folder} has the schema {schema!r}; this tactsim reads {STORE_SCHEMA!r}; use the version that wrote it: "
-            f"{attributes.get('codes', ['unknown'])[-1]}"
+            f"{one_line(folder)} has the schema {one_line(repr(schema), 80)}; this tactsim reads {STORE_SCHEMA!r}; use the "
+            f"version that wrote it: {wrote}"
         )
-    missing = [name for name in NEEDED if name not in attributes]
+    missing = [name for name in KINDS if name not in attributes]
     if missing:
-        raise StorageError(f"{folder} is damaged: {META} does not tell {', '.join(missing)}; bring back a copy")
+        raise StorageError(f"{one_line(folder)} is damaged: {META} does not tell {', '.join(missing)}; bring back a copy")
+    for name, kind in KINDS.items():
+        if not isinstance(attributes[name], kind):
+            raise StorageError(f"{one_line(folder)} is damaged: {name} in {META} is no {kind.__name__}; bring back a copy")
+    names = attributes.get(ARRAYS, [])
+    if not codes or not all(isinstance(code, str) for code in codes):
+        raise StorageError(f"{one_line(folder)} is damaged: codes in {META} are no texts; bring back a copy")
+    if not isinstance(names, list) or not all(isinstance(name, str) and NAME.fullmatch(name) for name in names):
+        raise StorageError(f"{one_line(folder)} is damaged: {ARRAYS} in {META} are no names of arrays; bring back a copy")
+    return attributes
 
 
-def chunk_samples(variables: Iterable[Variable], samples: int) -> int:
-    """Samples in a chunk, the same for every variable: a power of two."""
-    largest = max(int(np.prod(v.sizes)) * (64 if v.dtype == "str" else np.dtype(v.dtype).itemsize) for v in variables)
-    fitting = max(1, min(CHUNK_SAMPLES, CHUNK_BYTES // max(largest, 1), samples))
-    return 1 << (fitting.bit_length() - 1)
+def _refuse_few_descriptors(folder: Path) -> None:
+    """Refuses to begin where Zarr, which reads several chunks at once, would break off within."""
+    if os.name == "nt":  # which has no such limit and opens no folders
+        return
+    spare: list[int] = []
+    try:
+        spare.append(os.open(folder, os.O_RDONLY))
+        spare.extend(os.dup(spare[0]) for _ in range(SPARE - 1))
+    except OSError as error:
+        reason = f"{error.strerror}; {SPARE} files must be free to be opened, raise the limit with: ulimit -n 256"
+        raise StorageError(f"cannot read {one_line(folder)}: {reason}") from None
+    finally:
+        for descriptor in spare:
+            os.close(descriptor)
+
+
+def _without(folder: Path, name: str) -> str:
+    remedy = "bring back a copy, or make it anew with: tactsim sweep CASE --out STORE --resume"
+    return f"{one_line(folder)} is damaged: it has no variable {one_line(name)}; {remedy}"
+
+
+def _folder(path: str | Path) -> Path:
+    try:
+        return opened_folder(path, "data set")[0]
+    except Unreadable as error:
+        reason = error.reason if os.path.lexists(path) else "there is nothing; name a folder that tactsim sweep wrote"
+        raise StorageError(f"{one_line(path)} is not a data set of tactsim: {reason}") from error
+
+
+def _group(folder: Path) -> dict[str, Any]:
+    if not os.path.lexists(folder / META):
+        older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
+        raise StorageError(f"{one_line(folder)} is not a data set of tactsim: it holds no {META}{older}")
+    try:
+        told = read_json(folder / META)
+    except StorageError as error:
+        raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: {error}") from None
+    if not isinstance(told, dict):
+        raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: it is no mapping; bring back a copy")
+    return told
+
+
+def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDescription], dict[str, str]]:
+    """Arrays that can be read, in the order of their names, and why others cannot; what else stands in the folder is passed
+    over."""
+    declared = attributes.get(ARRAYS, consolidated_metadata(folder))
+    found: dict[str, ArrayDescription] = {}
+    faults: dict[str, str] = {}
+    for name in sorted(set(declared) or _with_description(folder)):
+        if not os.path.lexists(folder / name / META):
+            continue
+        try:
+            found[name] = described(folder, name)
+        except StorageError as error:
+            faults[name] = str(error)
+    if "status" in found:
+        for name in sorted(found):
+            fault = index_fault(found[name], found["status"].shape[0], found["status"].chunks[0])
+            if fault:
+                faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"
+                del found[name]
+    return found, faults
+
+
+def consolidated_metadata(folder: Path) -> dict[str, Any]:
+    """Name -> description of the arrays as the store's own ``zarr.json`` gathers them."""
+    told = _group(folder).get("consolidated_metadata")
+    metadata = told.get("metadata") if isinstance(told, dict) else None
+    return {name: one for name, one in metadata.items() if NAME.fullmatch(name)} if isinstance(metadata, dict) else {}
+
+
+def _with_description(folder: Path) -> set[str]:
+    """Names of the folders that describe an array, for a store without any word on them."""
+    refuse_link(folder / META)
+    with os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if NAME.fullmatch(entry.name) and entry.is_dir()]
+    return {name for name in names if os.path.lexists(folder / name / META)}

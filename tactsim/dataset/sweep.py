@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path as FilePath
@@ -18,7 +19,8 @@ from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
 from tactsim.dataset.designs import grid_size
 from tactsim.dataset.places import Place, places_of
-from tactsim.dataset.settings import MOST_SAMPLES, SCHEMA, SweepSettings
+from tactsim.dataset.settings import SCHEMA, SweepSettings
+from tactsim.dataset.variable import MOST_SAMPLES
 from tactsim.errors import CaseError, suggestion
 
 SECTION = "sweep"
@@ -56,6 +58,11 @@ class Sweep:
         return json.dumps({**self.document.value, "schema": SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
 
     @property
+    def folder(self) -> str | None:
+        """Folder of the file, in which the files that it names are looked for first; no part of the identity."""
+        return None if self.document.folder is None else os.path.abspath(self.document.folder)
+
+    @property
     def identity(self) -> str:
         """Sixteen hexadecimal digits that say which data the sweep makes; of designs that go on, for any number of samples."""
         content = json.loads(self.text)
@@ -88,9 +95,10 @@ def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: i
 
 
 @lru_cache(maxsize=4)
-def sweep_of_text(text: str) -> Sweep:
-    """The sweep that `Sweep.text` describes."""
-    return _sweep(Document(json.loads(text)), lambda problem: "the sweep", None, checked=True)
+def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
+    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first."""
+    document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
+    return _sweep(document, lambda problem: "the sweep", None, checked=True)
 
 
 def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.loading import chosen_samples, opened
-from tactsim.errors import InputError, UnknownName
+from tactsim.dataset.loading import load
+from tactsim.errors import InputError
 
 
 class TorchSamples:
@@ -29,14 +29,12 @@ class TorchSamples:
         split: str | Iterable[str] | None = None,
         transform: Callable[[dict[str, Any], dict[str, Any]], Any] | None = None,
     ):
-        whole = opened(store)
+        whole = load(store, split=split, variables=dict.fromkeys((*inputs, *targets, "status")))
         for name in (*inputs, *targets):
-            if name not in whole:
-                raise UnknownName("variable", name, map(str, whole.data_vars))
             if whole[name].dtype.kind not in "fiub":
                 raise InputError(f"{name} holds text, which a tensor cannot; take numbers")
         self.store, self.inputs, self.targets, self.transform = str(store), tuple(inputs), tuple(targets), transform
-        self.numbers = chosen_samples(whole, split)
+        self.numbers = whole["sample"].values
         self._opened: tuple[int, dict[str, Any]] | None = None
 
     def __len__(self) -> int:
@@ -66,8 +64,8 @@ class TorchSamples:
     def _arrays(self) -> dict[str, Any]:
         """The arrays of this process."""
         if self._opened is None or self._opened[0] != os.getpid():
-            import zarr
+            from tactsim.dataset.store import Store
 
-            group = zarr.open_group(self.store, mode="r", zarr_format=3)
-            self._opened = os.getpid(), {name: group[name] for name in (*self.inputs, *self.targets)}
+            store = Store.open(self.store)
+            self._opened = os.getpid(), {name: store.array(name) for name in (*self.inputs, *self.targets)}
         return self._opened[1]

@@ -61,6 +61,8 @@ def label(name: str, unit: str, description: str, **sizes: int) -> Variable:
     return Variable(name, unit, description, "label", tuple(sizes), tuple(sizes.values()))
 
 
+MOST_SAMPLES = 10_000_000
+"""Samples of a data set: a month of a thousand processes at a sample in four minutes, or a day of the closed form."""
 STATUS = ("pending", "done", "failed")
 PENDING, DONE, FAILED = range(3)
 CHECKSUM_BYTES = 32

@@ -15,6 +15,8 @@ Array = np.ndarray
 Drawing = Callable[[], bytes]
 MOST_PANELS = 12
 COLUMNS = 4
+SPREAD, TAXELS = "spread.png", "taxels.png"
+FIGURE_FILES = (SPREAD, TAXELS)
 JAWS = ("upper jaw", "lower jaw")
 
 
@@ -23,9 +25,9 @@ def card_figures(store: str | Path) -> dict[str, Drawing]:
     data = load(store)
     if not data.sizes["sample"]:
         return {}
-    found: dict[str, Drawing] = {"spread.png": lambda: spread(_numbers(data))}
+    found: dict[str, Drawing] = {SPREAD: lambda: spread(_numbers(data))}
     if "taxel_force" in data:
-        found["taxels.png"] = lambda: taxels(data["taxel_force"].values[:, -1].mean(axis=0))
+        found[TAXELS] = lambda: taxels(data["taxel_force"].values[:, -1].mean(axis=0))
     return found
 
 

@@ -11,7 +11,9 @@ import numpy as np
 
 from tactsim.dataset.drawing import drawn_specimen
 from tactsim.dataset.loading import opened, split_names
-from tactsim.dataset.sweep import Sweep, sweep_of_text
+from tactsim.dataset.store import Store
+from tactsim.dataset.stored_sweep import stored_sweep
+from tactsim.dataset.sweep import Sweep
 from tactsim.dataset.variable import DONE, PENDING, STATUS
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp import Grasp
@@ -68,7 +70,7 @@ class Samples:
     @cached_property
     def sweep(self) -> Sweep:
         """The sweep that made the data set."""
-        return sweep_of_text(str(self.data.attrs["sweep"]))
+        return stored_sweep(Store.open(self.place))
 
     def chosen(self, split: str = ANY, status: str = ANY) -> Array:
         """Numbers of the samples of a part and a status, all if these are empty.

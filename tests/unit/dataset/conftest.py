@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.dataset import journal, store
+from tactsim.dataset import building, journal, store_writing
 
 
 @pytest.fixture(autouse=True)
 def no_waiting_for_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (journal, store):
+    for module in (building, journal, store_writing):
         monkeypatch.setattr(module, "sync", lambda path: None)

@@ -47,8 +47,8 @@ def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.
 def test_the_card_tells_what_the_store_holds(store: tuple[Path, str]) -> None:
     place, card = store
     held = Store.open(place)
-    for name, array in held.arrays.items():
+    for name, array in held.described.items():
         assert f"| {name} | " in card
-        assert str(array.attrs["long_name"]).replace("|", "/") in card
+        assert str(array.attributes["long_name"]).replace("|", "/") in card
     assert "| done | 24 |" in card
     assert "| force_at_the_moon | " not in card

@@ -146,6 +146,6 @@ def test_the_command_writes_report_and_figures(
     assert content["noise"]["value"] == pytest.approx(0.3e-3)
     assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference", "model_based"}
     names = {file.name for file in (tmp_path / "out").iterdir()}
-    assert names == {"report.json", "report.md", "errors.png", "noise.png", "places.png"}
+    assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
-    assert "no such file" in capsys.readouterr().err
+    assert "No such file" in capsys.readouterr().err

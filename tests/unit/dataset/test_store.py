@@ -28,7 +28,8 @@ from tactsim.dataset.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.journal import Journal
 from tactsim.dataset.local_workers import LocalWorkers
 from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store, chunk_samples
+from tactsim.dataset.store import Store
+from tactsim.dataset.store_writing import chunk_samples, tell
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import Variable
 from tactsim.errors import CaseError, StorageError, TactsimError
@@ -181,7 +182,7 @@ def test_what_is_not_a_data_set_is_left_alone(tmp_path: Path, thing: str) -> Non
 
 def test_a_store_of_another_schema_is_refused(whole: Path, tmp_path: Path) -> None:
     place = Path(shutil.copytree(whole, tmp_path / "s.zarr"))
-    Store.open(place, writing=True).tell(schema="tactsim/dataset/2")
+    tell(Store.open(place, writing=True), schema="tactsim/dataset/2")
     with pytest.raises(StorageError, match=r"schema 'tactsim/dataset/2'; this tactsim reads 'tactsim/dataset/1'"):
         Store.open(place)
 
@@ -214,7 +215,7 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
 
     sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with monkeypatch.context() as patch, opened_run(sweep, place) as going:
-        patch.setattr(Store, "write", full)
+        patch.setattr(running, "write", full)
         with pytest.raises(StorageError, match="no room"):
             going.compute(Inline(sweep), lambda tally: None)
     assert [finding.kind for finding in check(place).findings] == ["missing", "unfinished"]

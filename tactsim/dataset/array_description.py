@@ -1,0 +1,210 @@
+"""What the ``zarr.json`` files of a store say, read within bounds and held against what a sweep can have written.
+
+Nothing is allocated by a number in a file alone: an array with other types, chunks or codecs than a sweep writes, or with more
+samples than a sweep may have, is refused before Zarr sees it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactsim.dataset.variable import MOST_SAMPLES, Variable, index_variables
+from tactsim.errors import StorageError
+from tactsim.outside.files import opened
+from tactsim.outside.text import one_line
+
+META = "zarr.json"
+"""What describes an array or the group, in its folder."""
+CHUNK_SAMPLES = 1024
+"""Most samples in a chunk."""
+LARGEST_CHUNK = 256 * 2**20
+"""Bytes of a chunk beyond which a single sample is no longer sensible: a history of 100 000 times of 2 x 16 x 10 taxels."""
+LONGEST_TEXT = 2**14
+"""Bytes of one stored text; reasons are cut at 500 characters."""
+MOST_NESTED = 64
+"""Levels of lists and mappings in a description; a sweep file has some ten."""
+TYPES = ("float64", "float32", "int64", "int32", "int16", "int8", "uint64", "uint32", "uint16", "uint8", "bool", "string")
+TOLD = ("units", "long_name", "role")
+"""Attributes in words that every variable has."""
+BYTES, TEXT, PACKED = "bytes", "vlen-utf8", "zstd"
+"""Codecs of numbers and of text, and the compression of both."""
+
+
+@dataclass(frozen=True)
+class ArrayDescription:
+    """One array: the values of its ``zarr.json`` that are relied on, and all of it as ``told``."""
+
+    name: str
+    shape: tuple[int, ...]
+    chunks: tuple[int, ...]
+    dtype: str
+    """As ``Variable.dtype`` calls it."""
+    dimensions: tuple[str, ...]
+    told: dict[str, Any]
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Units, meaning and role, and the meanings of whole numbers."""
+        return dict(self.told["attributes"])
+
+    @property
+    def chunk_bytes(self) -> int:
+        """Bytes of an unpacked chunk; of text the most that it can take."""
+        return math.prod(self.chunks) * (4 + LONGEST_TEXT) + 4 if self.dtype == "str" else _bytes(self.chunks, self.dtype)
+
+    def chunk_key(self, number: int) -> str:
+        """Path in the store of the chunk with this number."""
+        return "/".join((self.name, "c", str(number), *("0" for _ in self.shape[1:])))
+
+
+def parsed_json(text: str, name: str) -> Any:
+    """The value of a JSON text.
+
+    Raises
+    ------
+    StorageError
+        If it is none, or nested more deeply than anything that a sweep writes.
+    """
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise StorageError(f"{name} is damaged: {one_line(error)}; bring back a copy") from None
+    level, depth = [value], 0
+    while level:
+        depth += 1
+        if depth > MOST_NESTED:
+            raise StorageError(f"{name} is damaged: it is nested in more than {MOST_NESTED} levels; bring back a copy")
+        level = [inner for outer in level for inner in _inside(outer)]
+    return value
+
+
+def read_json(path: Path) -> Any:
+    """The value of a JSON file in a store.
+
+    Raises
+    ------
+    StorageError
+        If it is missing, a link, no regular file, too large, or not JSON.
+    """
+    refuse_link(path)
+    return parsed_json(opened(path, "description").text(), one_line(path))
+
+
+def refuse_link(path: Path) -> None:
+    """Refuses a link in a store, which could lead anywhere.
+
+    Raises
+    ------
+    StorageError
+        If the path is one.
+    """
+    if path.is_symlink():
+        raise StorageError(f"{one_line(path)} is a link; a data set holds none; put a copy of the file in its place")
+
+
+def described(folder: Path, name: str) -> ArrayDescription:
+    """The array of a name in a store.
+
+    Raises
+    ------
+    StorageError
+        If its description is missing, cannot be read, or is none that a sweep writes.
+    """
+    refuse_link(folder / name)
+    told = read_json(folder / name / META)
+    fault = next(_faults(told), "")
+    if fault:
+        raise StorageError(f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it")
+    kind = str(told["data_type"])
+    chunks = tuple(told["chunk_grid"]["configuration"]["chunk_shape"])
+    dtype = "str" if kind == "string" else kind
+    return ArrayDescription(name, tuple(told["shape"]), chunks, dtype, tuple(told["dimension_names"]), told)
+
+
+def index_fault(array: ArrayDescription, samples: int, per_chunk: int) -> str:
+    """What is wrong with an array beside the others of its store, empty if nothing is."""
+    known: dict[str, Variable] = {variable.name: variable for variable in index_variables(())}
+    if array.name in known and (array.dtype, array.shape[1:]) != (known[array.name].dtype, known[array.name].sizes):
+        expected = known[array.name]
+        return f"{array.dtype} of shape {array.shape}; expected: {expected.dtype} of shape {(samples, *expected.sizes)}"
+    if array.chunks[0] != per_chunk:
+        return f"chunks of {array.chunks[0]} samples; expected: {per_chunk}, as status has"
+    meanings = array.attributes.get("flag_meanings", "")
+    if not isinstance(meanings, str) or (array.name == "split" and not meanings):
+        return f"flag_meanings is {one_line(meanings, 80)!r}; expected: names of numbers"
+    return ""
+
+
+def _inside(value: Any) -> Any:
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+
+
+def _faults(told: Any) -> Iterator[str]:
+    """What no sweep writes."""
+    if not isinstance(told, dict) or told.get("node_type") != "array" or told.get("zarr_format") != 3:
+        yield "it is no array of Zarr format 3"
+        return
+    kind, shape = told.get("data_type"), told.get("shape")
+    if kind not in TYPES:
+        yield f"data_type is {one_line(kind, 80)!r}; allowed: {', '.join(TYPES)}"
+    if not _lengths(shape, 0) or not shape or shape[0] > MOST_SAMPLES:
+        yield f"shape is {one_line(shape, 80)}; allowed: up to {MOST_SAMPLES} samples"
+        return
+    yield from _chunk_faults(told, kind, shape)
+    listed = told.get("codecs")
+    codecs = [codec for codec in listed if isinstance(codec, dict)] if isinstance(listed, list) else []
+    names: Any = [codec.get("name") for codec in codecs]
+    if names != [TEXT if kind == "string" else BYTES, PACKED] or told.get("storage_transformers"):
+        yield f"codecs are {one_line(names, 80)}; allowed: {TEXT if kind == 'string' else BYTES}, {PACKED}"
+    elif kind in TYPES and kind != "string" and codecs[0] not in _plain_codecs(str(kind)):
+        yield f"the codec {BYTES} is {one_line(codecs[0], 80)}; allowed: little endian"
+    names = told.get("dimension_names")
+    if not isinstance(names, list) or len(names) != len(shape) or not all(isinstance(name, str) for name in names):
+        yield f"dimension_names is {one_line(names, 80)}; expected: {len(shape)} names"
+    attributes = told.get("attributes")
+    for key in TOLD:
+        if not isinstance(attributes, dict) or not isinstance(attributes.get(key), str):
+            yield f"the attribute {key} is missing or no text"
+            return
+
+
+def _chunk_faults(told: dict[str, Any], kind: Any, shape: list[int]) -> Iterator[str]:
+    grid: Any = told.get("chunk_grid")
+    keys: Any = told.get("chunk_key_encoding")
+    chunks: Any = grid.get("configuration", {}).get("chunk_shape") if _plain(grid, "regular") else None
+    if not _lengths(chunks, 1) or len(chunks) != len(shape) or chunks[0] > CHUNK_SAMPLES:
+        yield f"chunk_shape is {one_line(chunks, 80)}; expected: 1 to {CHUNK_SAMPLES} samples and {len(shape)} lengths"
+    elif chunks[1:] != [max(1, size) for size in shape[1:]] or (kind in TYPES and _bytes(chunks, kind) > LARGEST_CHUNK):
+        yield f"chunk_shape is {chunks} of {shape}; expected: whole samples of at most {LARGEST_CHUNK} bytes"
+    if not _plain(keys, "default") or keys.get("configuration", {"separator": "/"}) != {"separator": "/"}:
+        yield f"chunk_key_encoding is {one_line(keys, 80)}; expected: default"
+    fill = told.get("fill_value")
+    if not isinstance(fill, str if kind == "string" else int | float | str) or isinstance(fill, bool) is not (kind == "bool"):
+        yield f"fill_value is {one_line(fill, 80)}"
+    elif fill not in ("NaN", "", 0, False):
+        yield f"fill_value is {one_line(fill, 80)}; allowed: NaN, 0 or empty text"
+
+
+def _plain(value: Any, name: str) -> bool:
+    return isinstance(value, dict) and value.get("name") == name and isinstance(value.get("configuration", {}), dict)
+
+
+def _plain_codecs(kind: str) -> list[dict[str, Any]]:
+    """How numbers may lie in a chunk; those of one byte have no order."""
+    little = [{"name": BYTES, "configuration": {"endian": "little"}}]
+    return [*little, {"name": BYTES}, {"name": BYTES, "configuration": {}}] if np.dtype(kind).itemsize == 1 else little
+
+
+def _lengths(value: Any, least: int) -> bool:
+    return isinstance(value, list) and all(type(length) is int and length >= least for length in value)
+
+
+def _bytes(shape: Any, kind: str) -> int:
+    return math.prod(shape) * (8 if kind in ("string", "str") else np.dtype(kind).itemsize)

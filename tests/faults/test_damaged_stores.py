@@ -1,0 +1,395 @@
+"""Damage to a data set that is finished: found by name, never read as data, mended by a resumed sweep."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from sweeps import TEXT, Inline, assert_same, run_sweep, small_store, sweep_file
+
+from tactsim.cli import command_sweep, main
+from tactsim.dataset import TorchSamples, load
+from tactsim.dataset.checking import check
+from tactsim.dataset.store import Store
+from tactsim.dataset.sweep import load_sweep
+from tactsim.display import dataset_card
+from tactsim.errors import StorageError
+
+OLD_SWEEP = "arrays"
+"""Attribute that stores of earlier versions lack."""
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small store of two chunks that stays as it is; samples 0 to 15 are in the first."""
+    return small_store(tmp_path_factory.mktemp("kept"))
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps start no processes, draw nothing and do not wait for the disk."""
+    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
+
+
+@pytest.fixture
+def store(kept: Path, tmp_path: Path) -> Path:
+    """The same to be spoilt."""
+    return Path(shutil.copytree(kept, tmp_path / "small.zarr"))
+
+
+def edited(store: Path, name: str, change: Callable[[dict[str, Any]], object]) -> None:
+    """Changes a description."""
+    path = store / name / "zarr.json"
+    told = json.loads(path.read_text())
+    change(told)
+    path.write_text(json.dumps(told))
+
+
+def resumed(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    """Exit code and words of ``tactsim sweep --resume``."""
+    code = main(["sweep", str(sweep_file(tmp_path)), "--out", str(store), "--resume", "--workers", "1"])
+    told = capsys.readouterr()
+    return code, told.out + told.err
+
+
+def lose_chunk(store: Path) -> None:
+    (store / "force/c/1/0").unlink()
+
+
+def lose_array(store: Path) -> None:
+    shutil.rmtree(store / "force")
+
+
+def lose_content(store: Path) -> None:
+    shutil.rmtree(store / "force/c")
+
+
+def truncate(store: Path) -> None:
+    path = store / "force/c/1/0"
+    path.write_bytes(path.read_bytes()[:40])
+
+
+def zero(store: Path) -> None:
+    path = store / "force/c/1/0"
+    path.write_bytes(bytes(path.stat().st_size))
+
+
+def empty(store: Path) -> None:
+    (store / "force/c/1/0").write_bytes(b"")
+
+
+def swap(store: Path) -> None:
+    shutil.copyfile(store / "read_force/c/1/0", store / "force/c/1/0")
+
+
+def spoil_text(store: Path) -> None:
+    shutil.copyfile(store / "case_id/c/1", store / "reason/c/1")
+
+
+def lose_status(store: Path) -> None:
+    (store / "status/c/1").unlink()
+
+
+def spoil_status(store: Path) -> None:
+    (store / "status/c/1").write_bytes(b"nonsense")
+
+
+DAMAGE: dict[str, tuple[Callable[[Path], object], int]] = {
+    "chunk gone": (lose_chunk, 8),
+    "array gone": (lose_array, 24),
+    "chunks gone": (lose_content, 24),
+    "truncated": (truncate, 8),
+    "zeroed": (zero, 8),
+    "emptied": (empty, 8),
+    "another's": (swap, 8),
+    "text": (spoil_text, 8),
+    "status gone": (lose_status, 8),
+    "status spoilt": (spoil_status, 8),
+}
+READ_LATE = {"another's", "text", "truncated", "zeroed", "emptied"}
+"""Seen when the content is read, or by the checksum; a data set is opened without reading all of it."""
+
+
+@pytest.mark.parametrize("kind", DAMAGE)
+def test_damage_is_found_refused_and_mended(
+    kind: str, kept: Path, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil, lost = DAMAGE[kind]
+    spoil(store)
+    assert main(["data", "check", str(store)]) in (4, 5)
+    told = capsys.readouterr()
+    assert "--resume" in told.out + told.err
+    assert "internal error" not in told.err
+    if kind not in READ_LATE:
+        with pytest.raises(StorageError, match="bring back a copy"):
+            load(store)
+    code, words = resumed(store, tmp_path, capsys)
+    assert code == 0
+    assert f"{lost} samples were there and damaged" in words
+    assert f"{lost} samples done, 0 failed" in words
+    assert_same(kept, store)
+    assert check(store).findings == ()
+
+
+@pytest.mark.parametrize("kind", ["truncated", "zeroed", "emptied"])
+def test_a_damaged_chunk_is_refused_when_it_is_read(kind: str, store: Path, tmp_path: Path) -> None:
+    DAMAGE[kind][0](store)
+    lazy = load(store)
+    assert np.isfinite(lazy["largest_force"].values).all()
+    with pytest.raises(StorageError, match=r"the chunk force/c/1/0 of .* is damaged"):
+        lazy["force"].load()
+    assert main(["data", "export", str(store), "--to", str(tmp_path / "shards")]) == 5
+    assert not (tmp_path / "shards").exists()
+    with pytest.raises(StorageError, match="force/c/1/0"):
+        _ = np.asarray(TorchSamples(store, inputs=["force"])._arrays()["force"][20])
+
+
+def test_holes_are_refused_by_variable_and_sample(store: Path) -> None:
+    lose_chunk(store)
+    with pytest.raises(StorageError, match=r"holes: force of 8 samples \(16, 17, 18, 19, 20, 21, 22, 23\) are gone"):
+        load(store)
+    with pytest.raises(StorageError, match="holes: force"):
+        TorchSamples(store, inputs=["force"])
+    assert load(store, variables=["read_force"]).sizes["sample"] == 24
+    shutil.rmtree(store / "voltage")
+    with pytest.raises(StorageError, match=r"holes: force, voltage of 24 samples \(0, 1, .* 9 and 14 more\)"):
+        load(store)
+
+
+def as_earlier(store: Path) -> None:
+    """The store as tactsim wrote it when chunks of nothing but fill values were no files."""
+    (told := json.loads((store / "zarr.json").read_text()))["attributes"].pop(OLD_SWEEP)
+    (store / "zarr.json").write_text(json.dumps(told))
+    for name in ("redraws", "code"):
+        shutil.rmtree(store / name / "c")
+
+
+def test_a_store_of_an_earlier_version_is_read_and_verified_by_its_checksums(
+    kept: Path, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    as_earlier(store)
+    assert load(store).sizes["sample"] == 24
+    assert check(store).findings == ()
+    assert "earlier tactsim" in check(store).notes[0]
+    lose_chunk(store)
+    with pytest.raises(StorageError, match=r"holes: force, redraws of 8 samples"):  # zeros cannot be told from a loss beside one
+        load(store)
+    code, words = resumed(store, tmp_path, capsys)
+    assert code == 0
+    assert "8 x force is gone" in words
+    assert_same(kept, store)
+
+
+def test_a_chunk_of_nothing_but_fill_values_is_a_file(kept: Path) -> None:
+    assert not Store.open(kept).read("redraws").any()
+    assert {path.name for path in (kept / "redraws/c").iterdir()} == {"0", "1"}
+    assert (xarray.open_zarr(kept)["redraws"].values == 0).all()
+
+
+def test_an_array_that_is_gone_does_not_stop_an_extension(store: Path, tmp_path: Path) -> None:
+    lose_array(store)
+    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), store, resume=True)
+    (tmp_path / "whole").mkdir()
+    whole = tmp_path / "whole/s.zarr"
+    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), whole)
+    assert_same(whole, store)
+    assert check(store).findings == ()
+
+
+DESCRIPTIONS: dict[str, tuple[str, Callable[[dict[str, Any]], object]]] = {
+    "unit": ("force", lambda told: told["attributes"].update(units="mN")),
+    "no unit": ("force", lambda told: told["attributes"].pop("units")),
+    "meaning": ("force", lambda told: told["attributes"].update(long_name="something else")),
+    "no meaning": ("force", lambda told: told["attributes"].pop("long_name")),
+    "role": ("force", lambda told: told["attributes"].update(role="label")),
+    "more": ("force", lambda told: told["attributes"].update(scale_factor=1000.0)),
+    "type": ("force", lambda told: told.update(data_type="int64", fill_value=0)),
+    "object": ("force", lambda told: told.update(data_type="object")),
+    "half": ("force", lambda told: told.update(data_type="float32")),
+    "dimension": ("force", lambda told: told.update(dimension_names=["sample", "row"])),
+    "fill": ("redraws", lambda told: told.update(fill_value=7)),
+    "flags": ("split", lambda told: told["attributes"].update(flag_meanings="test validation train softer")),
+    "shape": ("force", lambda told: told.update(shape=[10**12, 4])),
+    "short": ("force", lambda told: told.update(shape=[16, 4])),
+    "wide": ("force", lambda told: told.update(shape=[24, 10**12])),
+    "chunk": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[10**9, 4])),
+    "no chunk": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[0, 4])),
+    "smaller": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[8, 4])),
+    "codec": ("force", lambda told: told["codecs"].append({"name": "nonsense"})),
+    "order": ("force", lambda told: told["codecs"][0]["configuration"].update(endian="big")),
+    "status": ("status", lambda told: told.update(shape=[10**12])),
+    "status type": ("status", lambda told: told.update(data_type="float64", fill_value="NaN")),
+}
+
+
+@pytest.mark.parametrize("kind", DESCRIPTIONS)
+def test_a_changed_description_is_found_and_not_written_to(
+    kind: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name, change = DESCRIPTIONS[kind]
+    edited(store, name, change)
+    code = main(["data", "check", str(store)])
+    told = capsys.readouterr()
+    assert code in (4, 5)
+    assert f"{name}" in told.out + told.err
+    assert "bring back" in told.out + told.err or "--resume" in told.out + told.err
+    for command in (["data", "info"], ["show"]):
+        assert main([*command, str(store)]) in (0, 5)
+        assert "internal error" not in capsys.readouterr().err
+    code, words = resumed(store, tmp_path, capsys)
+    if kind not in ("meaning", "flags", "short", "unit", "no unit"):
+        assert code == 5, words
+        (store / name / "zarr.json").unlink()
+        assert resumed(store, tmp_path, capsys)[0] == 0
+        assert check(store).findings == ()
+
+
+GROUP: dict[str, Callable[[dict[str, Any]], object]] = {
+    "sweep_id": lambda told: told["attributes"].update(sweep_id="0" * 16),
+    "seed": lambda told: told["attributes"].update(seed=8),
+    "title": lambda told: told["attributes"].update(title="Another"),
+    "license": lambda told: told["attributes"].update(license="all rights reserved"),
+    "arrays": lambda told: told["attributes"]["arrays"].remove("force"),
+    "samples": lambda told: told["attributes"].update(
+        sweep=told["attributes"]["sweep"].replace('"samples": 24', '"samples": 25')
+    ),
+    "gathered": lambda told: told["consolidated_metadata"]["metadata"]["force"]["attributes"].update(units="mN"),
+}
+
+
+@pytest.mark.parametrize("kind", GROUP)
+def test_changed_words_of_the_store_are_found(kind: str, store: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = store / "zarr.json"
+    told = json.loads(path.read_text())
+    GROUP[kind](told)
+    path.write_text(json.dumps(told))
+    assert main(["data", "check", str(store)]) == 4
+    assert kind in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"a":' * 50_000, "{}", "[1]", "7", "not json", '{"sweep": {"samples": -1}}'])
+def test_garbage_for_a_sweep_is_told(text: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = store / "zarr.json"
+    told = json.loads(path.read_text())
+    told["attributes"]["sweep"] = text
+    path.write_text(json.dumps(told))
+    assert main(["data", "check", str(store)]) == 5
+    error = capsys.readouterr().err
+    assert "internal error" not in error
+    assert error.count("\n") == 1
+    told["attributes"]["sweep_id"] = "0" * 16
+    path.write_text(json.dumps(told))
+    assert resumed(store, tmp_path, capsys)[0] == 5
+
+
+def foreign(store: Path) -> None:
+    (store / "mine.txt").write_text("mine")
+    (store / "force/notes").write_text("mine")
+
+
+def test_files_of_others_are_found(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    foreign(store)
+    assert main(["data", "check", str(store)]) == 4
+    assert "force/notes, mine.txt: not written by tactsim" in capsys.readouterr().out
+
+
+LINKED = ("force/c/1/0", "force/c", "force", "zarr.json", "force/zarr.json", "README.md")
+
+
+@pytest.mark.parametrize("name", LINKED)
+def test_links_in_a_store_are_not_followed(name: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (store / "README.md").write_text("mine")
+    aside = tmp_path / "aside"
+    shutil.move(store / name, aside)
+    (store / name).symlink_to(aside)
+    before = sorted((path, path.stat().st_mtime_ns) for path in aside.rglob("*"))
+    assert main(["data", "check", str(store)]) == 5
+    error = capsys.readouterr().err
+    assert "link" in error
+    assert error.count("\n") == 1
+    assert main(["data", "export", str(store), "--to", str(tmp_path / "shards")]) == 5
+    assert resumed(store, tmp_path, capsys)[0] == 5
+    assert sorted((path, path.stat().st_mtime_ns) for path in aside.rglob("*")) == before
+
+
+@pytest.mark.parametrize("name", ["zarr.json", "force/zarr.json", "force/c/1/0", ".journal", ".tactsim.json", "README.md"])
+def test_pipes_in_a_store_do_not_block(name: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (store / name).unlink(missing_ok=True)
+    os.mkfifo(store / name)
+    for command in (["data", "check"], ["data", "info"], ["show"]):
+        assert main([*command, str(store)]) in (0, 4, 5)
+    main(["data", "export", str(store), "--to", str(tmp_path / "shards")])
+    assert resumed(store, tmp_path, capsys)[0] == 5
+    assert "internal error" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("action", ["check", "info", "export", "rank", "train", "confusion"])
+def test_pipes_and_devices_for_a_store_are_refused(action: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    more = {"export": ["--to", str(tmp_path / "x.h5")], "train": ["--out", str(tmp_path / "x.npz")]}.get(action, [])
+    for place in (tmp_path / "pipe", Path("/dev/zero"), tmp_path / "nothing", sweep_file(tmp_path)):
+        assert main(["data", action, str(place), "--reference", str(tmp_path), *more]) in (2, 5)
+        assert "internal error" not in capsys.readouterr().err
+
+
+def test_a_bomb_is_refused_before_it_is_unpacked(store: Path) -> None:
+    from numcodecs import zstd
+
+    (store / "force/c/1/0").write_bytes(zstd.compress(bytes(4 * 2**20), 1))
+    with pytest.raises(StorageError, match=f"unpacks to {4 * 2**20} bytes; expected: {16 * 4 * 8}"):
+        load(store)["force"].load()
+    size = (2**40).to_bytes(8, "little")
+    (store / "reason/c/1").write_bytes(b"\x28\xb5\x2f\xfd\xe0" + size + b"\x01\x00\x00")
+    with pytest.raises(StorageError, match=f"unpacks to {2**40} bytes"):
+        load(store)["reason"].load()
+
+
+def test_few_files_may_be_open_at_once(kept: Path) -> None:
+    program = (
+        "import resource, sys; from tactsim.cli import main; import zarr, xarray, tactsim.dataset.checking; "
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (int(sys.argv[2]),) * 2); sys.exit(main(['data', 'check', sys.argv[1]]))"
+    )
+    for most in (5, 8, 12):
+        done = subprocess.run([sys.executable, "-c", program, str(kept), str(most)], capture_output=True, text=True, timeout=60)
+        assert done.returncode in (0, 5), done.stderr
+        assert "internal error" not in done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_words_of_a_store_cannot_forge_lines(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    forged = "x\n\x1b[31m# done\n---\n24 x converged"
+    edited(store, "", lambda told: told["attributes"].update(title=forged, description=forged, license=forged))
+    edited(store, "force", lambda told: told["attributes"].update(units=forged, long_name=forged))
+    opened = Store.open(store, writing=True)
+    opened.array("reason")[3], opened.array("status")[3] = forged, 2
+    for command in (["data", "check"], ["data", "info"], ["show"]):
+        main([*command, str(store)])
+        told = capsys.readouterr()
+        assert "\x1b" not in told.out + told.err
+        assert not any(line.startswith(("24 x", "---", "# done")) for line in (told.out + told.err).splitlines())
+
+
+@pytest.mark.parametrize("title", ["x\n---\nlicense: mine\n---\n# Other", "# Other", "---", "[a](http://b) `c` <script>"])
+def test_a_title_cannot_break_the_card(title: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = TEXT.replace("title: A small sweep", f"title: {json.dumps(title)}").replace(
+        "  times: 4", f"  times: 4\n  limits: {json.dumps(title)}"
+    )
+    case, place = sweep_file(tmp_path, text), tmp_path / "s.zarr"
+    assert main(["sweep", str(case), "--out", str(place), "--samples", "3", "--workers", "1", "--quiet"]) == 0
+    card = (place / "README.md").read_text(encoding="utf-8").splitlines()
+    assert [line for line in card if line == "---"] == ["---"] * 2
+    assert len([line for line in card if line.startswith("# ")]) == 1
+    assert sum(line.startswith("license:") for line in card) == 1
+    assert "<script>" not in card[4].replace("\\<", "")
+    assert check(place).findings == ()

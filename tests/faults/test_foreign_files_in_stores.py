@@ -1,0 +1,101 @@
+"""What a user keeps in a data set is neither replaced nor removed; what tactsim wrote there is written anew."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from pretence import PNG
+from sweeps import Inline, sweep_file
+
+from tactsim.cli import command_sweep, main
+from tactsim.dataset.checking import check
+from tactsim.dataset.own_files import MANIFEST
+from tactsim.display import dataset_card
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps start no processes, the figure is a dot, and nothing waits for the disk."""
+    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    monkeypatch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
+
+
+def swept(tmp_path: Path, samples: int, *options: str) -> int:
+    case = str(sweep_file(tmp_path))
+    return main(["sweep", case, "--out", str(tmp_path / "s.zarr"), "--samples", str(samples), "--quiet", *options])
+
+
+def test_card_and_figures_are_written_anew(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    store = tmp_path / "s.zarr"
+    assert swept(tmp_path, 3) == 0
+    assert check(store).findings == ()
+    (store / "figures/spread.png").unlink()
+    assert [finding.kind for finding in check(store).findings] == ["file"]
+    assert swept(tmp_path, 6, "--resume") == 0
+    assert "| done | 6 |" in (store / "README.md").read_text(encoding="utf-8")
+    assert (store / "figures/spread.png").read_bytes() == PNG
+    assert "warning: the card" not in capsys.readouterr().err
+    assert check(store).findings == ()
+
+
+@pytest.mark.parametrize("name", ["README.md", "figures/spread.png"])
+@pytest.mark.parametrize("before", [False, True])
+def test_a_file_of_the_user_is_kept(name: str, before: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    store = tmp_path / "s.zarr"
+    assert swept(tmp_path, 3) == 0
+    if before:  # as if it had been there from the beginning
+        (store / MANIFEST).unlink()
+        (store / "README.md").unlink()
+    (store / name).write_text("mine", encoding="utf-8")
+    assert swept(tmp_path, 6, "--resume") == 0
+    assert (store / name).read_text(encoding="utf-8") == "mine"
+    assert "is not what tactsim wrote there, and is kept" in capsys.readouterr().err
+    assert {finding.kind for finding in check(store).findings} <= {"file", "foreign"}
+    assert check(store).counts["done"] == 6
+
+
+def test_files_of_an_earlier_version_are_known_by_the_card(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    store = tmp_path / "s.zarr"
+    assert swept(tmp_path, 3) == 0
+    (store / MANIFEST).unlink()
+    assert check(store).findings == ()
+    assert "cannot be verified" in check(store).notes[-1]
+    assert swept(tmp_path, 6, "--resume") == 0
+    assert "| done | 6 |" in (store / "README.md").read_text(encoding="utf-8")
+    assert "kept" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["mine", "[1]", json.dumps({"schema": "other"}), "[" * 10_000])
+def test_a_list_of_another_program_is_kept(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    store = tmp_path / "s.zarr"
+    assert swept(tmp_path, 3) == 0
+    (store / MANIFEST).write_text(text)
+    assert swept(tmp_path, 6, "--resume") == 0
+    assert (store / MANIFEST).read_text() == text
+    assert "move" in capsys.readouterr().err
+    assert main(["data", "check", str(store)]) in (4, 5)
+
+
+def test_a_journal_of_another_program_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    store = tmp_path / "s.zarr"
+    assert swept(tmp_path, 3) == 0
+    (store / ".journal").write_text("dear diary")
+    assert swept(tmp_path, 6, "--resume") == 5
+    assert "is no journal of tactsim; move it away" in capsys.readouterr().err
+    assert (store / ".journal").read_text() == "dear diary"
+
+
+def test_splits_without_a_sample_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert swept(tmp_path, 3) == 0
+    case, place = str(sweep_file(tmp_path)), tmp_path / "few.zarr"
+    capsys.readouterr()
+    assert main(["sweep", case, "--out", str(place), "--samples", "3"]) == 0
+    told = "warning: the splits train, validation, softer have no sample that is done; take more samples"
+    assert told in capsys.readouterr().err
+    assert "warning: the splits" in (place / "README.md").read_text(encoding="utf-8")
+    assert main(["sweep", case, "--out", str(tmp_path / "many.zarr"), "--samples", "60"]) == 0
+    assert "warning: the split" not in capsys.readouterr().err
