@@ -16,6 +16,7 @@ from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.dataset.variable import DONE, FAILED
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.experiments.collecting import run_within
+from tactsim.outside.library_warnings import collected_warnings
 from tactsim.results.result import Status
 
 Array = np.ndarray
@@ -66,7 +67,9 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
     if drawn.case is not None:
         found |= layout.recorder.labels(drawn.case.experiment)
         if not lost:
-            status, reason, read = _run(sweep, layout, drawn)
+            with collected_warnings() as said:
+                status, reason, read = _run(sweep, layout, drawn)
+            reason = "; ".join([reason, *said.lines()])
             found |= read
     found |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
     found |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
