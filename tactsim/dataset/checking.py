@@ -27,6 +27,8 @@ from tactsim.outside.text import one_line
 Array = np.ndarray
 COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
 RESUME = "go on with --resume, which computes them again"
+FORM = ("dtype", "shape")
+"""What must be right before samples can be read."""
 MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 """Attributes that do not follow from the sweep."""
 
@@ -55,7 +57,7 @@ def check(path: str | Path) -> Checked:
     findings = [*_arrays(store, layout.variables, sweep.samples), *_wording(store, layout.variables, sweep, same_code)]
     findings += [*_attributes(store, sweep, layout), *_consolidated(store), *_files(store, layout.variables)]
     notes = tuple(_notes(store, same_code, layout.variables, sweep))
-    if any(finding.kind in ("missing", "description") for finding in findings):
+    if any(finding.kind in ("missing", "form") for finding in findings):
         return Checked({}, tuple(findings), notes)
     try:
         status = store.read("status")
@@ -70,7 +72,7 @@ def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterat
     """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
     own = {variable.name for variable in variables}
     for name in sorted(store.faults.keys() & own):
-        yield Finding("description", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
+        yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
     for variable in variables:
         if variable.name in store.faults:
             continue
@@ -83,7 +85,8 @@ def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterat
             yield Finding("missing", (), words)
         for key, words in differences(array, variable):
             if key not in WORDS:
-                yield Finding("description", (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
+                kind = "form" if key in FORM else "description"
+                yield Finding(kind, (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
 
 
 def _wording(store: Store, variables: Iterable[Variable], sweep: Sweep, same_code: bool) -> Iterator[Finding]:
