@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from disks import At, Killed, disk
+from failing_disk import At, Killed, disk
 
 from tactsim.cli import main
 from tactsim.errors import StorageError
@@ -36,7 +36,7 @@ def mark_of(out: Path) -> object:
     assert foreign(out, manifest) == []
     assert all((out / name).exists() for name in manifest.files), "a file of the new set is missing"
     return (
-        "x" in read_result(out).provenance["overrides"][-1]
+        "x" in read_result(out, fields=False).provenance["overrides"][-1]
         if (out / "result.json").exists()
         else (out / "validation.md").read_text()
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +22,7 @@ from tactsim.errors import TactsimError
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.structured_block import morphed_block
+from tactsim.outside.processes import Ended
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.sensors.taxel_layout import TaxelLayout
 
@@ -276,8 +276,7 @@ def test_view_shows_the_scene_where_the_camera_puts_it():
 
 
 def test_machine_that_cannot_render_says_why(monkeypatch, frame):
-    crash = "import os, sys; sys.stderr.write('WARN| libOSMesa not found.'); sys.stderr.flush(); os.abort()"
-    monkeypatch.setattr(off_screen, "_command", lambda scene, drawn: [sys.executable, "-c", crash])
+    monkeypatch.setattr(off_screen, "run_child", lambda *arguments, **options: Ended(-6, "WARN| libOSMesa not found."))
     drawing = figures_for(made_up(frame=frame))[grasp_view.VIEW]
     with pytest.raises(TactsimError, match=r"grasp_view\.png is left out.*libOSMesa not found"):
         drawing()

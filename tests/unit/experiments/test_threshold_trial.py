@@ -283,4 +283,4 @@ def test_noise_free_trials_still_have_a_level():
 def test_the_case_is_valid():
     experiment = load_case(ROOT / "cases/threshold_trial.yaml").experiment
     assert isinstance(experiment, ThresholdTrial)
-    assert experiment.source.path == "cases/data/annulus_icf_signals.csv"
+    assert experiment.source.path == "data/annulus_icf_signals.csv"
