@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, interface_nodes, irregular, sides, write_cells
@@ -22,6 +19,7 @@ from tactsim.mesh.quality import mean_ratio
 from tactsim.mesh.solid import FACES
 from tactsim.mesh.structured_block import morphed_block, structured_block
 from tactsim.mesh.tetrahedra import block_mesh
+from tactsim.outside import processes
 
 BLOCK = np.array(SIZE)
 COARSE = BlockMeshSettings(size=7e-3, inclusion_size=2.4e-3, growth=0.8)
@@ -160,17 +158,29 @@ def test_a_mesher_that_hangs_is_stopped(monkeypatch):
         block_mesh(SIZE, [LUMP], BlockMeshSettings(time_limit=0.05))
 
 
+@pytest.fixture
+def mesher(tmp_path, monkeypatch):
+    """Puts another program in the place of the mesher's, which children run from a root of packages of their own."""
+
+    def put(program):
+        (tmp_path / "mesher.py").write_text(program, encoding="utf-8")
+        monkeypatch.setattr(processes, "ROOT", tmp_path)
+        monkeypatch.setattr(tetrahedra, "MODULE", "mesher")
+
+    return put
+
+
 @pytest.mark.parametrize(
     ("program", "reason"),
     [
-        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "signal 11"),
-        ("raise MemoryError('too much')", "too much"),
-        ("pass", "failed with code 0"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV"),
+        ("raise MemoryError('too much')", "more memory than this machine has"),
+        ("raise ValueError('too much')", "exit code 1.*too much"),
+        ("pass", "exit code 0"),
     ],
 )
-def test_a_mesher_that_dies_is_reported(program, reason, monkeypatch):
-    run = subprocess.run
-    monkeypatch.setattr(tetrahedra.subprocess, "run", lambda command, **how: run([sys.executable, "-c", program], **how))
+def test_a_mesher_that_dies_is_reported(program, reason, mesher):
+    mesher(program)
     with pytest.raises(ConvergenceError, match=reason):
         block_mesh(SIZE, [LUMP], COARSE)
 
@@ -197,9 +207,8 @@ def test_a_mesh_that_misses_a_bound_is_made_again_on_finer_elements(misses, monk
     assert_close(finest, [part * COARSE.inclusion_size for part in tetrahedra.ATTEMPTS[: len(fitted)]], 1e-12)
 
 
-def test_an_absent_mesher_is_named(monkeypatch):
-    run, program = subprocess.run, "import sys; sys.exit(\"ModuleNotFoundError: No module named 'pytetwild'\")"
-    monkeypatch.setattr(tetrahedra.subprocess, "run", lambda command, **how: run([sys.executable, "-c", program], **how))
+def test_an_absent_mesher_is_named(mesher):
+    mesher("raise ModuleNotFoundError(\"No module named 'pytetwild'\")")
     with pytest.raises(InputError, match="pip install pytetwild"):
         block_mesh(SIZE, [LUMP], COARSE)
 
