@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -34,13 +35,19 @@ def case_file(tmp_path: Path, pretended: None) -> Path:
     return path
 
 
+def _heeding() -> None:
+    """In a child: heeds the signals that a background shell or ``nohup`` lets its processes ignore."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 @pytest.fixture
 def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
     """Starts the command line with the pretended experiment in a process of its own, in ``tmp_path``."""
 
     def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
         command = [sys.executable, str(TESTS / "pretended_cli.py"), *arguments]
-        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "preexec_fn": _heeding}
         environment = {**os.environ, "PYTHONPATH": str(TESTS), "PYTHONWARNINGS": "error"}
         return subprocess.Popen(command, text=True, cwd=tmp_path, env=environment, **{**streams, **options})  # type: ignore[call-overload]
 
