@@ -21,7 +21,7 @@ import xarray
 from tactsim.dataset.drawing import drawn_specimen
 from tactsim.dataset.sweep import load_sweep
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.results.result import Status
 
 CASES = Path(__file__).parents[1] / "cases"

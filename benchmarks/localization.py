@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import Readings
 from tactsim.localization.views import SHAPE, views, volume
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 SIDES = (3, 8, 16, 32)
 CALLS = 100

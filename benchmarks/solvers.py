@@ -19,11 +19,11 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.grasp_model import GraspModel
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.linear import SinglePardiso, resolved
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mesh.quadratic import QuadraticMesh, from_skfem
 
 SIZE = np.array([0.04, 0.04, 0.02])

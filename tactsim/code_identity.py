@@ -11,11 +11,14 @@ import tactsim
 
 @cache
 def code_identity() -> str:
-    """Version and twelve hexadecimal digits over every source file of the package but display, command line and validation."""
+    """Version and twelve hexadecimal digits over every source file of the package but figures, command line and validation."""
     root = Path(tactsim.__file__).parent
     summed = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         place = path.relative_to(root).as_posix()
-        if not place.startswith(("display/", "cli/", "validation/")):
+        if (
+            not place.startswith(("plotting/", "cli/", "validation/"))
+            and "figures" not in path.relative_to(root).with_suffix("").parts
+        ):
             summed.update(place.encode() + b"\0" + path.read_bytes())
     return f"{tactsim.__version__}+{summed.hexdigest()[:12]}"

@@ -6,7 +6,8 @@
     |-- InputError            2   what the user wrote cannot be used
     |   |-- CaseError             a case file, with file, line and key
     |   |-- InvalidQuantity       a number out of its range, or without its unit
-    |   `-- UnknownName           a name that is not registered
+    |   |-- UnknownName           a name that is not registered
+    |   `-- AmbiguousKind         a name that is registered twice
     |-- Unfinished            3   a computation ended before its end
     |   |-- ConvergenceError      the solver gave up; carries its history
     |   |-- Collapsed             an element is nearly inside out
@@ -51,6 +52,10 @@ class UnknownName(InputError, LookupError):
     def __init__(self, what: str, name: str, allowed: Iterable[str]):
         choices = sorted(allowed)
         super().__init__(f"unknown {what} {name!r}{suggestion(name, choices)}; known: {', '.join(choices)}")
+
+
+class AmbiguousKind(InputError):
+    """Two classes are registered by one name."""
 
 
 class Unfinished(TactsimError):

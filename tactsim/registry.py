@@ -1,51 +1,167 @@
-"""Finds every kind in a package: each module there may define one, nothing needs to be listed."""
+"""Every class of an extension point by its ``kind``, found in its package or defined elsewhere; nothing is listed."""
 
 from __future__ import annotations
 
 import importlib
-import inspect
+import json
 import pkgutil
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Annotated, Any, Union
+from typing import Any
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
-from tactsim.errors import UnknownName
+from tactsim.errors import AmbiguousKind, UnknownName
 
-
-@cache
-def kinds(package: str, base: type) -> dict[str, type]:
-    """``kind`` -> concrete subclass of ``base`` defined in the modules of ``package``."""
-    found: dict[str, type] = {}
-    root = importlib.import_module(package)
-    for info in sorted(pkgutil.iter_modules(root.__path__), key=lambda module: module.name):
-        module = importlib.import_module(f"{package}.{info.name}")
-        for cls in vars(module).values():
-            own = inspect.isclass(cls) and issubclass(cls, base) and cls.__module__ == module.__name__
-            if own and not inspect.isabstract(cls):
-                found[cls.model_fields["kind"].default] = cls
-    return found
+_registered: dict[type, dict[str, Any]] = {}
+"""Extension point -> ``kind`` -> class; filled by `register`, which every concrete subclass calls as it is defined."""
 
 
-def kind_class(package: str, base: type, kind: str) -> Any:
-    """The class registered as ``kind``.
+def register(cls: Any) -> None:
+    """Make a concrete class known by its ``kind``; one defined again in the same module takes the place of the earlier one.
+
+    Raises
+    ------
+    AmbiguousKind
+        If another class has that kind, naming both modules.
+    """
+    known = _registered.setdefault(family(cls), {})
+    kind = cls.model_fields["kind"].default
+    other = known.get(kind, cls)
+    if (other.__module__, other.__qualname__) != (cls.__module__, cls.__qualname__):
+        raise AmbiguousKind(
+            f"two {family(cls).__name__.lower()} kinds are called {kind!r}: "
+            f"{other.__module__}.{other.__qualname__} and {cls.__module__}.{cls.__qualname__}; give one of them another kind"
+        )
+    known[kind] = cls
+
+
+def forget(cls: Any) -> None:
+    """Remove a registered class, such as one that a test or a notebook defined."""
+    known, kind = _registered.get(family(cls), {}), cls.model_fields["kind"].default
+    if kind in known and known[kind] is cls:
+        del known[kind]
+
+
+def registered_outside(package: str) -> list[Any]:
+    """The registered classes that are defined outside a package, such as those of a notebook."""
+    return [cls for known in _registered.values() for cls in known.values() if cls.__module__.partition(".")[0] != package]
+
+
+def family(cls: Any) -> Any:
+    """The extension point that a class extends: the nearest base that names the package where its kinds stand."""
+    return next(base for base in cls.__mro__ if "package" in vars(base))
+
+
+def kinds(base: Any) -> dict[str, Any]:
+    """``kind`` -> class of everything registered for an extension point, sorted by kind."""
+    _load_all(base.package, base.modules)
+    return dict(sorted(_registered.get(base, {}).items()))
+
+
+def kind_class(base: Any, kind: str) -> Any:
+    """The class registered as ``kind``; the other modules are only loaded if no module bears its name.
 
     Raises
     ------
     UnknownName
         With the nearest registered kind.
     """
-    known = kinds(package, base)
+    if kind not in _registered.get(base, {}):
+        for name in _module_names(base.package, base.modules):
+            if name.rpartition(".")[2] == kind:
+                importlib.import_module(name)
+    if kind in _registered.get(base, {}):
+        return _registered[base][kind]
+    known = kinds(base)
     if kind not in known:
         raise UnknownName(f"{base.__name__.lower()} kind", kind, known)
     return known[kind]
 
 
-def tagged_union(package: str, base: type) -> Any:
-    """Pydantic type of all kinds in a package, told apart by ``kind``."""
-    return union_of(kinds(package, base))
+@cache
+def _module_names(package: str, pattern: str) -> tuple[str, ...]:
+    """Full names of the modules of a package and its folders whose name within the package fits the pattern."""
+    root = importlib.import_module(package)
+    names = (module.name for module in pkgutil.walk_packages(root.__path__, f"{package}."))
+    return tuple(sorted(name for name in names if re.fullmatch(pattern, name.removeprefix(f"{package}."))))
+
+
+@cache
+def _load_all(package: str, pattern: str) -> None:
+    for name in _module_names(package, pattern):
+        importlib.import_module(name)
+
+
+def read_kind(base: Any, described: Mapping[str, Any]) -> Any:
+    """The instance of an extension point that a mapping with a ``kind`` describes.
+
+    Raises
+    ------
+    UnknownName
+        If no such kind is registered.
+    pydantic.ValidationError
+        If the mapping does not describe one.
+    """
+    return kind_class(base, str(described.get("kind"))).model_validate(described)
+
+
+class Registered:
+    """Annotation of a field that takes every registered kind of an extension point, also those defined after the field's class.
+
+    Parameters
+    ----------
+    base : the extension point
+    fits : which of its classes the field takes; all by default
+    """
+
+    def __init__(self, base: Any, fits: Callable[[Any], bool] = lambda cls: True):
+        self.base, self.fits = base, fits
+
+    def kinds(self) -> dict[str, Any]:
+        """``kind`` -> class of what the field takes."""
+        return {kind: cls for kind, cls in kinds(self.base).items() if self.fits(cls)}
+
+    def read(self, value: Any, info: ValidationInfo) -> Any:
+        """The instance that a mapping describes; an instance passes as it is."""
+        if isinstance(value, self.base) and self.fits(type(value)):
+            return value
+        if not isinstance(value, Mapping):
+            raise PydanticKnownError("model_attributes_type")
+        if "kind" not in value:
+            raise PydanticKnownError("union_tag_not_found", {"discriminator": "'kind'"})
+        cls = self._class(value["kind"])
+        if info.mode == "json":
+            return cls.model_validate_json(json.dumps(value), strict=True, context=info.context)
+        return cls.model_validate(value, context=info.context)
+
+    def _class(self, kind: Any) -> Any:
+        try:
+            cls = kind_class(self.base, kind) if isinstance(kind, str) else None
+        except UnknownName:
+            cls = None
+        if cls is None or not self.fits(cls):
+            known = ", ".join(f"'{name}'" for name in self.kinds())
+            raise PydanticKnownError("union_tag_invalid", {"discriminator": "'kind'", "tag": str(kind), "expected_tags": known})
+        return cls
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        written = core_schema.plain_serializer_function_ser_schema(
+            lambda value, info: value.model_dump(mode=info.mode, by_alias=info.by_alias), info_arg=True
+        )
+        return core_schema.with_info_plain_validator_function(self.read, serialization=written)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        choices = {kind: _named_schema(cls) for kind, cls in self.kinds().items()}
+        return handler(core_schema.tagged_union_schema(choices, discriminator="kind"))
+
+
+def _named_schema(cls: Any) -> Any:
+    """The schema of a class with a name, so that the JSON Schema describes the class once."""
+    schema = cls.__pydantic_core_schema__
+    return schema if "ref" in schema else {**schema, "ref": f"{cls.__module__}.{cls.__qualname__}:{id(cls)}"}
 
 
 def shipped(what: str, name: str, library: Mapping[str, Any]) -> Any:
@@ -88,9 +204,3 @@ class Named:
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         name = {"type": "string", "enum": sorted(self.library()), "description": f"Name of a shipped {self.what}."}
         return {"oneOf": [name, handler(schema)]}
-
-
-def union_of(known: dict[str, Any]) -> Any:
-    """Pydantic type of these kinds, told apart by ``kind``."""
-    choices = tuple(known[kind] for kind in sorted(known))
-    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007

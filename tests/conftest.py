@@ -6,8 +6,9 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,15 +17,41 @@ sys.path.insert(0, str(TESTS))
 
 import pretence  # noqa: E402  it stands beside this file, which the line above makes known
 
+from tactsim.registry import forget, registered_outside  # noqa: E402
+
+
+def _forget_classes_of_tests() -> None:
+    for cls in registered_outside("tactsim"):
+        forget(cls)
+
+
+_forget_classes_of_tests()  # the pretended experiment
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, Any]:
+    """What a module of tests defines is known to nobody until a test registers it."""
+    report = yield
+    _forget_classes_of_tests()
+    return report
+
+
+@pytest.fixture(autouse=True)
+def _unregistered() -> Iterator[None]:
+    """What a test defines or registers is forgotten after it."""
+    yield
+    _forget_classes_of_tests()
+
 
 @pytest.fixture
 def pretended(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pretended experiment is the only one that a case can ask for, and has one figure."""
-    from tactsim import display
-    from tactsim.case import model
+    from tactsim import plotting, registry
+    from tactsim.interfaces import Experiment
 
-    monkeypatch.setattr(model, "kinds", lambda package, base: {"pretence": pretence.Pretence})
-    monkeypatch.setattr(display, "figures_for", lambda result: {"pretence": lambda: pretence.PNG}, raising=False)
+    registry.kinds(Experiment)  # what is loaded later would be forgotten with the patch below
+    monkeypatch.setitem(registry._registered, Experiment, {"pretence": pretence.Pretence})
+    monkeypatch.setattr(plotting, "figures_for", lambda result: {"pretence": lambda: pretence.PNG}, raising=False)
 
 
 @pytest.fixture

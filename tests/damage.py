@@ -16,8 +16,8 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
 from tactsim.errors import TactsimError
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.networks import LearnedWeights, Network
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 INPUTS = int(os.environ.get("TACTSIM_FUZZ", "550"))
 """Of all tests together."""

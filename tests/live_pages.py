@@ -12,15 +12,15 @@ import numpy as np
 from sweeps import run_sweep
 
 from tactsim.contact.jaw import Jaw
-from tactsim.dataset.recorders.grasp import GraspRecorder
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import PENDING
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.recorder import GraspRecorder
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 SIZE = (40e-3, 40e-3, 20e-3)
 CLOSING = 1e-3

@@ -13,11 +13,11 @@ from tactsim.dataset.running import opened_run
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import DONE
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])
 LAYOUT = TaxelLayout(rows=3, columns=3, pitch=10e-3, size=9e-3)

@@ -14,7 +14,7 @@ from sweeps import run_sweep
 
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 
 ROOT = Path(__file__).parents[1]

@@ -5,16 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import cache
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
-from tactsim.registry import kinds, union_of
+from tactsim.registry import Registered, kinds
 from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
-EXPERIMENTS = "tactsim.experiments"
 
 
 class Output(FrozenModel):
@@ -52,7 +51,7 @@ class Case(FrozenModel):
 
 def experiment_kinds() -> dict[str, type[Experiment]]:
     """``kind`` -> class of every experiment that a case can ask for."""
-    return kinds(EXPERIMENTS, Experiment)
+    return kinds(Experiment)
 
 
 @cache
@@ -64,7 +63,7 @@ def case_class(experiment: Any) -> type[Case]:
 
 def any_experiment() -> Any:
     """The type of all registered experiments, told apart by ``kind``."""
-    return union_of(experiment_kinds())
+    return Annotated[Experiment, Registered(Experiment)]
 
 
 def _canonical(value: Any) -> Any:

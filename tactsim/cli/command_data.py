@@ -15,7 +15,7 @@ from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking_source import JudgedSamples
-    from tactsim.experiments.localization_source import Source
+    from tactsim.experiments.localization.source import Source
 
 NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
@@ -107,10 +107,10 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _rank(arguments: argparse.Namespace) -> int:
+    from tactsim.dataset.figures.estimator_ranking import ranking_figures
     from tactsim.dataset.ranking import ranking
     from tactsim.dataset.ranking_report import as_text, record
-    from tactsim.display.estimator_ranking import ranking_figures
-    from tactsim.experiments.response_store import stored_response
+    from tactsim.experiments.localization.response_store import stored_response
     from tactsim.localization.estimators.learned import LearnedEstimator
     from tactsim.localization.estimators.model_based import ModelBasedEstimator
     from tactsim.localization.estimators.thesis import ThesisEstimator
@@ -140,10 +140,10 @@ def _rank(arguments: argparse.Namespace) -> int:
 def _confusion(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.confusion import store_confusion
     from tactsim.dataset.confusion_report import as_text, record, verdict
-    from tactsim.display.canvas import png
-    from tactsim.display.confusion import confusion_figure
+    from tactsim.experiments.localization.figures.confusion import confusion_figure
     from tactsim.localization.estimators.hypotheses import HypothesesEstimator
     from tactsim.localization.interface import ROUNDING_NOISE
+    from tactsim.plotting.canvas import png
 
     if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
@@ -240,7 +240,7 @@ def _noise(arguments: argparse.Namespace) -> float | None:
 
 def _train(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.training import trained
-    from tactsim.experiments.response_store import stored_response
+    from tactsim.experiments.localization.response_store import stored_response
     from tactsim.results.storage import replace_file
 
     if arguments.out is None or arguments.out.suffix != ".npz":

@@ -71,7 +71,7 @@ def _report(arguments: argparse.Namespace) -> int:
     found = _materials(arguments.material)
     console.out("\n\n".join(material_report(name, material) for name, material in found.items()))
     if arguments.save is not None:
-        from tactsim.display.material import material_figure
+        from tactsim.cli.figures import material_figure
 
         for name, material in found.items():
             place = arguments.save if len(found) == 1 else _numbered(arguments.save, name)
@@ -101,7 +101,7 @@ def _fit(arguments: argparse.Namespace) -> int:
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
     if arguments.save is not None:
-        from tactsim.display.material import fit_figure
+        from tactsim.cli.figures import fit_figure
 
         _save(fit_figure(curve, fits, arguments.fit.stem), arguments.save)
     return 0

@@ -88,7 +88,7 @@ def _show_result(arguments: argparse.Namespace) -> int:
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
-        from tactsim.cli.figures import rendered_figures
+        from tactsim.cli.rendering import rendered_figures
         from tactsim.results.storage import replace_file
 
         figures, warnings = rendered_figures(stored.result)
@@ -106,7 +106,7 @@ def _show_data_set(arguments: argparse.Namespace) -> int:
 
     console.out(description(arguments.result))
     if arguments.save is not None:
-        from tactsim.display.dataset_card import card_figures
+        from tactsim.dataset.figures.card import card_figures
         from tactsim.results.storage import replace_file
 
         drawings = card_figures(arguments.result)

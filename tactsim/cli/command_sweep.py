@@ -113,8 +113,8 @@ def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace
 def _card(going: SweepRun) -> None:
     """Writes the card, unless another file stands in its place."""
     from tactsim.dataset.card import adopt_earlier_files, write_card
+    from tactsim.dataset.figures.card import FIGURE_FILES
     from tactsim.dataset.own_files import ForeignFile
-    from tactsim.display.dataset_card import FIGURE_FILES
 
     try:
         adopt_earlier_files(going.store.path, FIGURE_FILES)
@@ -126,9 +126,9 @@ def _card(going: SweepRun) -> None:
 def _draw(store: Path) -> None:
     """Draws the figures of the card; one that cannot be drawn never costs the data."""
     try:
+        from tactsim.dataset.figures.card import card_figures
         from tactsim.dataset.own_files import OwnFiles
         from tactsim.dataset.store_files import FIGURES
-        from tactsim.display.dataset_card import card_figures
 
         for name, draw in card_figures(store).items():
             OwnFiles(store).replace(f"{FIGURES}/{name}", draw())

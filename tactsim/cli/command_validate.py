@@ -92,7 +92,7 @@ def _figures(outcomes: Sequence[TableOutcome]) -> tuple[dict[str, bytes], list[s
     for outcome in outcomes:
         for name, drawing in outcome.table.figures.items():
             try:
-                from tactsim.display.validation import validation_figure
+                from tactsim.validation.figures import validation_figure
 
                 drawn[f"{outcome.name}_{name}.png"] = validation_figure(drawing.data(outcome.inputs))
             except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written

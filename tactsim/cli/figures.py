@@ -1,25 +1,116 @@
-"""Rendering of a result's figures; a figure that cannot be drawn never costs the numbers."""
+"""Figures of material curves: the three homogeneous deformations with their stability, and fits beside data (Fig. 3.8)."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterable
 
-from tactsim.outside.library_warnings import collected_warnings
-from tactsim.outside.text import one_line
-from tactsim.results import Result
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from tactsim.identification.uniaxial import UniaxialFit, relative_errors, uniaxial_nominal_stress
+from tactsim.identification.uniaxial_data import UniaxialCurve
+from tactsim.interfaces import Array, Material
+from tactsim.materials.homogeneous import PATHS, nominal_stress
+from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.stability_range import PathStability, stability_range
+from tactsim.units import format_quantity
+
+SHOWN = (0.5, 2.0)
+"""Stretches on the axis."""
+
+CURVE_POINTS = 301
+RANGE_IN_VIEW = (0.6, 1.75)
+"""Stretches whose stress the vertical axis holds: further out the curves are so steep that nothing else would be seen."""
+STABLE_COLOUR = "#e3f1e3"
+LOST_COLOUR = "#d62728"
 
 
-def rendered_figures(result: Result) -> tuple[dict[str, bytes], list[str]]:
-    """File name -> PNG bytes, the main figure first, and a warning for each that could not be drawn."""
-    drawn: dict[str, bytes] = {}
-    warnings: list[str] = []
-    try:
-        from tactsim.display import figures_for  # type: ignore[attr-defined,unused-ignore]
+def material_figure(material: Material, name: str) -> Figure:
+    """Nominal stress against stretch in uniaxial, equibiaxial and planar loading, stable range shaded, lost range marked."""
+    report = stability_range(material)
+    figure = Figure(figsize=(10.5, 3.9), layout="constrained")
+    FigureCanvasAgg(figure)
+    stretch = np.geomspace(*SHOWN, CURVE_POINTS)
+    stresses = {path: nominal_stress(material, path, stretch) for path in PATHS}
+    unit, factor = pressure_unit(np.concatenate(list(stresses.values())))
+    axes = figure.subplots(1, len(PATHS), squeeze=False)[0]
+    for axis, (path, stress) in zip(axes, stresses.items(), strict=True):
+        _draw_path(axis, stretch, stress * factor, report.paths[path])
+        axis.set_title(path)
+        axis.set_xlabel("stretch")
+    axes[0].set_ylabel(f"nominal stress in {unit}")
+    labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
+    figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
+    volume = ", incompressible" if isinstance(material, Hyperelastic) else ""
+    figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}", parse_math=False)
+    return figure
 
-        with collected_warnings() as said:
-            for name, draw in figures_for(result).items():
-                drawn[name if Path(name).suffix else f"{name}.png"] = draw()
-        warnings += said.lines()
-    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-    return drawn, warnings
+
+def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> Figure:
+    """Uniaxial data with fitted curves as in thesis Fig. 3.8, and the relative error of each fit below."""
+    figure = Figure(figsize=(7, 6.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
+    unit, factor = pressure_unit(curve.nominal_stress)
+    upper.plot(
+        curve.stretch, curve.nominal_stress * factor, "o", color="0.6", markersize=4, markevery=_every(curve), label="data"
+    )
+    stretch = np.linspace(curve.stretch.min(), curve.stretch.max(), CURVE_POINTS)
+    for style, fit in zip(_line_styles(), fits, strict=False):
+        label = f"{fit.form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
+        upper.plot(stretch, uniaxial_nominal_stress(fit.material, stretch) * factor, style, label=label)
+        lower.plot(curve.stretch, 100 * relative_errors(fit.material, curve), style)
+    upper.set_ylabel(f"nominal stress in {unit}")
+    upper.set_title(f"{name}: uniaxial curve and fits")
+    upper.legend(frameon=False)
+    lower.axhline(0, color="0.6", linewidth=0.8)
+    lower.set_ylabel("relative error in %")
+    lower.set_xlabel("stretch")
+    figure.draw_without_rendering()  # settles the ticks, whose width the layout of the saved figure needs
+    return figure
+
+
+def pressure_unit(pressures: Array) -> tuple[str, float]:
+    """The unit that suits the median size of pressures in Pa, and the factor to it."""
+    size = float(np.median(np.abs(pressures)))
+    for unit, scale in (("MPa", 1e6), ("kPa", 1e3)):
+        if size >= scale:
+            return unit, 1 / scale
+    return "Pa", 1.0
+
+
+def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStability) -> None:
+    """One curve over its stable and lost ranges."""
+    low, high = np.clip(stability.elliptic, *SHOWN)
+    axis.axvspan(low, high, color=STABLE_COLOUR, zorder=0, label="strongly elliptic around rest")
+    for k, (lost_low, lost_high) in enumerate(stability.elliptic_lost):
+        span = np.clip((lost_low, lost_high), *SHOWN)
+        axis.axvspan(*span, color=LOST_COLOUR, alpha=0.15, zorder=0)
+        lost = (stretch >= lost_low) & (stretch <= lost_high)
+        axis.plot(
+            stretch[lost],
+            stress[lost],
+            color=LOST_COLOUR,
+            linewidth=4,
+            alpha=0.7,
+            label="strong ellipticity lost" if k == 0 else None,
+        )
+    axis.plot(stretch, stress, color="#1f4e79", linewidth=1.6, label="nominal stress")
+    axis.axhline(0, color="0.6", linewidth=0.8)
+    axis.axvline(1, color="0.6", linewidth=0.8)
+    axis.set_xlim(*SHOWN)
+    seen = stress[(stretch >= RANGE_IN_VIEW[0]) & (stretch <= RANGE_IN_VIEW[1])]
+    margin = 0.05 * float(np.ptp(seen))
+    axis.set_ylim(seen.min() - margin, seen.max() + margin)
+
+
+def _every(curve: UniaxialCurve) -> int:
+    """Step between drawn points so that about forty are seen."""
+    return max(1, curve.stretch.size // 40)
+
+
+def _line_styles() -> tuple[str, ...]:
+    """Distinguishable without colour."""
+    return ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.")

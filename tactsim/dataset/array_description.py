@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.variable import MOST_SAMPLES, Variable, index_variables
+from tactsim.dataset.variable import MOST_SAMPLES, index_variables
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
 

@@ -8,8 +8,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tactsim.dataset.variable import CHECKSUM_BYTES, Variable
+from tactsim.dataset.variable import CHECKSUM_BYTES
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.arrays import read_arrays
 
 Array = np.ndarray

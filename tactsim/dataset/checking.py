@@ -20,8 +20,9 @@ from tactsim.dataset.store import ARRAYS, Store, consolidated_metadata
 from tactsim.dataset.store_files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.stored_sweep import stored_layout
 from tactsim.dataset.sweep import Sweep
-from tactsim.dataset.variable import FAILED, PENDING, STATUS, Variable
+from tactsim.dataset.variable import FAILED, PENDING, STATUS
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 
 Array = np.ndarray

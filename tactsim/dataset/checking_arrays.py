@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from tactsim.dataset.array_description import ArrayDescription
-from tactsim.dataset.variable import Variable
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 
 WORDS = ("long_name", "flag_meanings")

@@ -10,9 +10,10 @@ import numpy as np
 from tactsim.dataset.finding import Finding
 from tactsim.dataset.layout import Layout
 from tactsim.dataset.store import Store
-from tactsim.dataset.variable import DONE, PENDING, Variable
+from tactsim.dataset.variable import DONE, PENDING
 from tactsim.dataset.verifying import ChunkRead, computed_chunks
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 
 Array = np.ndarray
 AGAIN = "go on with --resume, which computes them again, or bring back a copy"

@@ -12,9 +12,9 @@ from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Path
 from tactsim.dataset.designs import design_point, grid_point, redrawn_point
 from tactsim.dataset.places import Place, filled
-from tactsim.dataset.recorder import seed_place
 from tactsim.dataset.sweep import Sweep, sizes_of
 from tactsim.errors import InputError
+from tactsim.experiments.recording import seed_place
 
 Array = np.ndarray
 SAME_REFUSALS = 4

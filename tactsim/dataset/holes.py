@@ -9,8 +9,8 @@ import numpy as np
 
 from tactsim.dataset.block import NOT_SUMMED, checksum
 from tactsim.dataset.store import Store
-from tactsim.dataset.variable import Variable
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 
 Array = np.ndarray

@@ -12,11 +12,12 @@ from tactsim.case.model import Case, experiment_kinds
 from tactsim.dataset.distributions import Listed
 from tactsim.dataset.drawing import drawn_specimen, fault_of
 from tactsim.dataset.places import is_distribution
-from tactsim.dataset.recorder import Recorder, Values, recorder_for
 from tactsim.dataset.settings import Condition
 from tactsim.dataset.sweep import SECTION, Sweep
-from tactsim.dataset.variable import Variable, index_variables
+from tactsim.dataset.variable import index_variables
 from tactsim.errors import CaseError, suggestion
+from tactsim.experiments.recording import Recorder, Values, recorder_for
+from tactsim.interfaces.variable import Variable
 
 Array = np.ndarray
 SPLITTING = 3

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import SIDES, readings_of, stored_grasp
+from tactsim.experiments.localization.source import SIDES, readings_of, stored_grasp
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import Readings
 from tactsim.results.result import Result
-from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
 
 Array = np.ndarray

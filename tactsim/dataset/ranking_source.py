@@ -17,8 +17,8 @@ from tactsim.dataset.ranking_reference import PlainGrasp, check_same
 from tactsim.dataset.store import Store
 from tactsim.dataset.stored_sweep import UNUSABLE, stored_sweep
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.localization_source import Source
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.localization.source import Source
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import one_line

@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tactsim.dataset.designs import DesignName
-from tactsim.dataset.force_reading import ForceReading
 from tactsim.dataset.variable import MOST_SAMPLES
+from tactsim.experiments.recording import RecordingSettings
 from tactsim.units import FrozenModel, Time
 
 SCHEMA = "tactsim/sweep/1"
@@ -64,7 +64,7 @@ class Splits(FrozenModel):
         return ("train", "validation", "test", *self.out_of_distribution)
 
 
-class SweepSettings(FrozenModel):
+class SweepSettings(RecordingSettings):
     """How samples are drawn and what of them is stored."""
 
     design: DesignName = "sobol"
@@ -81,12 +81,6 @@ class SweepSettings(FrozenModel):
     """How often a specimen is drawn again because its case was refused, before its samples are marked failed."""
     time_limit: Annotated[Time, Field(gt=0)] | None = None
     """Longest time that solving a sample may take, before it is marked failed; null allows any. It depends on the machine."""
-    times: Annotated[int, Field(ge=1, le=100_000)] = 1
-    """Stored times of a history, evenly spaced up to its end; 1 stores the end."""
-    quantities: dict[str, str] | None = None
-    """Name -> unit of the numbers of a result that are stored; by default those that the kind of experiment declares."""
-    reading: ForceReading | None = None
-    """Film, electronics and calibration through which a stored force is read as well, with noise; null reads none."""
     splits: Splits = Splits()
     """Parts of the data set."""
     title: Annotated[str, Field(max_length=200)] = ""

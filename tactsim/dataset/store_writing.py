@@ -13,8 +13,8 @@ from tactsim.dataset.array_description import CHUNK_SAMPLES, LARGEST_CHUNK, META
 from tactsim.dataset.block import Block
 from tactsim.dataset.building import built_beside
 from tactsim.dataset.store import ARRAYS, STORE_SCHEMA, Store, reading
-from tactsim.dataset.variable import Variable
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.results.storage import naming, sync
 
 CHUNK_BYTES = 2 * 2**20

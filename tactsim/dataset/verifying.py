@@ -11,8 +11,9 @@ import numpy as np
 from tactsim.dataset.block import checksum
 from tactsim.dataset.holes import lost_samples, lost_status
 from tactsim.dataset.store import Store
-from tactsim.dataset.variable import FAILED, PENDING, Variable
+from tactsim.dataset.variable import FAILED, PENDING
 from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 from tactsim.results.storage import naming
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import away_from_truth, true_places, with_reference
+from tactsim.experiments.localization.source import away_from_truth, true_places, with_reference
 from tactsim.live.choices import Choice
 from tactsim.live.reference import Reference
 from tactsim.live.scene import Frame, Scene

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from tactsim.display.localization_views import COLOURS, ESTIMATE
 from tactsim.errors import TactsimError
+from tactsim.experiments.localization.figures.views import COLOURS, ESTIMATE
 from tactsim.live.estimating import shown_signal
 from tactsim.live.scene import Frame, Scene
 from tactsim.live.shapes import drawn_inclusions

@@ -11,8 +11,8 @@ import numpy as np
 
 from tactsim.dataset.ranking_reference import PlainGrasp
 from tactsim.errors import InputError
-from tactsim.experiments.localization_source import SAME_CLOSING, reference_notes, stored_grasp
-from tactsim.experiments.response_store import stored_response
+from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
 from tactsim.live.recorded import SOURCES, result_recordings
 from tactsim.live.scene import Frame, Recording, Scene
 from tactsim.localization.lump_response import LumpResponse

@@ -16,7 +16,7 @@ from tactsim.dataset.stored_sweep import stored_sweep
 from tactsim.dataset.sweep import Sweep
 from tactsim.dataset.variable import DONE, PENDING, STATUS
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.live.recorded import SOURCES, checked_validity
 from tactsim.live.scene import Recording, Scene
 from tactsim.localization.readings import JAWS

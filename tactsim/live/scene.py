@@ -10,11 +10,11 @@ import numpy as np
 
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, shown
-from tactsim.experiments.grasp_setup import JawSettings
+from tactsim.experiments.grasp.setup import JawSettings
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.localization.readings import JAWS, named_taxels, silent_taxels, silent_words
 from tactsim.mesh.solid import Inclusion
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 Array = np.ndarray
 LARGEST_FORCE = 1e6

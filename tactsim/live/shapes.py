@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from contourpy import contour_generator
 
-from tactsim.display.localization_parts import outline
 from tactsim.errors import InputError, TactsimError
+from tactsim.experiments.localization.figures.parts import outline
 from tactsim.live.scene import Scene
 from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import inclusion_name

@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Kind
+from tactsim.interfaces import CaseKind
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.readings import JAWS, checked_readings
 from tactsim.localization.region import Region
-from tactsim.sensors.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -152,8 +152,10 @@ class Estimate:
             raise InvalidQuantity(f"probability {self.probability}; allowed: 0 to 1")
 
 
-class Estimator(Kind):
+class Estimator(CaseKind):
     """Finds inclusions from readings: subclass it in a new file of ``estimators`` and it is registered by its ``kind``."""
+
+    package: ClassVar[str] = "tactsim.localization.estimators"
 
     needs_response: ClassVar[bool] = False
     """Whether it needs the fast forward model of the tissue."""

@@ -16,8 +16,6 @@ from tactsim.registry import kind_class, kinds
 from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
 
-PACKAGE = "tactsim.materials"
-
 
 class SetReference(FrozenModel):
     """A shipped set, if need be with a bulk modulus or a relaxation of its own."""
@@ -46,7 +44,7 @@ def read_material(value: Any, info: ValidationInfo) -> Material:
         if isinstance(value, Mapping) and "set" in value:
             return _changed_set(SetReference.model_validate(value, context=info.context))
         if isinstance(value, Mapping) and "kind" in value:
-            return cast(Material, kind_class(PACKAGE, Material, str(value["kind"])).model_validate(value, context=info.context))
+            return cast(Material, kind_class(Material, str(value["kind"])).model_validate(value, context=info.context))
     except UnknownName as error:
         raise PydanticCustomError("unknown_name", "{message}", {"message": str(error)}) from None
     raise ValueError(f"expected the name of a material set ({', '.join(sorted(LIBRARY))}) or a mapping with the key kind or set")
@@ -78,7 +76,7 @@ class _AnyMaterialSchema:
 
 def _registered() -> list[Any]:
     """Every registered material class, by the order of its kind."""
-    return [cls for _, cls in sorted(kinds(PACKAGE, Material).items())]
+    return [cls for _, cls in sorted(kinds(Material).items())]
 
 
 AnyMaterial = Annotated[Material, _AnyMaterialSchema()]

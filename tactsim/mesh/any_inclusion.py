@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
 from tactsim.mesh.solid import Array, Inclusion, Solid
-from tactsim.registry import tagged_union
+from tactsim.registry import Registered
 from tactsim.units import format_quantity
 
-PACKAGE = "tactsim.mesh.inclusions"
-AnyInclusion = tagged_union(PACKAGE, Inclusion)
+AnyInclusion = Annotated[Inclusion, Registered(Inclusion)]
 """Pydantic type of a sphere, an ellipsoid, a tube or a surface."""
 SMALLEST = 0.01
 """Least diameter of an inclusion over the shortest side of the block: a smaller one is a mistaken unit."""

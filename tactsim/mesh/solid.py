@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Kind
+from tactsim.interfaces import CaseKind
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -56,8 +56,10 @@ class Solid(ABC):
         return self.signed_distance(points) < 0
 
 
-class Inclusion(Kind):
+class Inclusion(CaseKind):
     """A body in the block, or a hollow one."""
+
+    package: ClassVar[str] = "tactsim.mesh.inclusions"
 
     @abstractmethod
     def solids(self, size: Array) -> tuple[Solid, ...]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from tactsim.errors import UnknownName
-from tactsim.interfaces import Kind
+from tactsim.interfaces import CaseKind
 from tactsim.validation.study import RunOutcome
 
 
@@ -50,9 +50,10 @@ class Inputs:
         return outcomes[identifier]
 
 
-class Evaluator(Kind):
+class Evaluator(CaseKind):
     """Computes the number that a row compares; its fields are the arguments in the table."""
 
+    package: ClassVar[str] = "tactsim.validation.evaluators"
     unit: ClassVar[str] = "1"
     """SI unit of the number."""
 
@@ -72,8 +73,10 @@ class Evaluator(Kind):
         """
 
 
-class Drawing(Kind):
+class Drawing(CaseKind):
     """Gathers the plain data of a figure of a table."""
+
+    package: ClassVar[str] = "tactsim.validation.drawings"
 
     @abstractmethod
     def data(self, inputs: Inputs) -> dict[str, Any]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, SerializeAsAny, create_model, model_validator
 
-from tactsim.registry import tagged_union
+from tactsim.registry import Registered
 from tactsim.units import FrozenModel, parse_quantity
 from tactsim.validation.evaluator import Drawing, Evaluator
 from tactsim.validation.study import Study
@@ -204,9 +204,9 @@ def in_si(value: str | float, unit: str) -> float:
 @cache
 def table_class(evaluator: Any = None, drawing: Any = None) -> type[Table]:
     """The table whose evaluators and figures are of these types; by default all that are registered."""
-    evaluators = evaluator or tagged_union("tactsim.validation.evaluators", Evaluator)
-    drawings = drawing or tagged_union("tactsim.validation.drawings", Drawing)
+    evaluators: Any = evaluator or Annotated[Evaluator, Registered(Evaluator)]
+    drawings: Any = drawing or Annotated[Drawing, Registered(Drawing)]
     row = create_model("Row", __base__=Row, evaluate=(evaluators | None, None))
     rows: Any = (tuple[row, ...], Field(min_length=1))
-    figures: Any = (dict[str, drawings], {})  # type: ignore[valid-type]
+    figures: Any = (dict[str, drawings], {})
     return create_model("Table", __base__=Table, rows=rows, figures=figures)

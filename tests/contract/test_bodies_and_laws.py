@@ -9,9 +9,9 @@ from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.interfaces import ContactLaw, RigidBody
 from tactsim.registry import kinds
 
-BODIES = kinds("tactsim.contact", RigidBody)
+BODIES = kinds(RigidBody)
 PLACED = [(kind, dim) for kind, body in sorted(BODIES.items()) for dim in body.dimensions]
-LAWS = kinds("tactsim.contact", ContactLaw)
+LAWS = kinds(ContactLaw)
 
 
 def near(body, dim, count=400):

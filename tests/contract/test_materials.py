@@ -10,15 +10,14 @@ import pytest
 from pydantic import TypeAdapter
 from scipy.spatial.transform import Rotation
 
-import tactsim.materials
+from tactsim.errors import AmbiguousKind
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.registry import kinds
+from tactsim.registry import forget, kinds
 
-PACKAGE = "tactsim.materials"
-KINDS = kinds(PACKAGE, Material)
+KINDS = kinds(Material)
 HYPERELASTIC = sorted(kind for kind, cls in KINDS.items() if issubclass(cls, Hyperelastic))
 ROUND_OFF = 1e-12
 """Of stress and tangent over their size: complex steps have no truncation, a few dozen operations lose a few digits."""
@@ -228,33 +227,32 @@ def test_constants_are_closed_finite_and_immutable(kind):
         material.kind = "another"
 
 
-def test_a_new_kind_needs_no_list(monkeypatch, tmp_path):
-    """A file in the package is a kind of case files and of these tests."""
-    text = (
-        "from typing import Literal\n"
-        "from tactsim.materials.neo_hookean import NeoHookean\n"
-        "class Gum(NeoHookean):\n"
-        "    kind: Literal['gum'] = 'gum'\n"
-    )
-    (tmp_path / "gum_for_the_test.py").write_text(text, encoding="utf-8")
-    monkeypatch.setattr(tactsim.materials, "__path__", [*tactsim.materials.__path__, str(tmp_path)])
-    monkeypatch.delitem(__import__("sys").modules, f"{PACKAGE}.gum_for_the_test", raising=False)
-    assert "gum" not in KINDS
-    kinds.cache_clear()
-    try:
-        gum = TypeAdapter(AnyMaterial).validate_python({"kind": "gum", "c10": "3 kPa"}, context={"units": "required"})
-        assert gum.shear_modulus == pytest.approx(6e3, rel=1e-12)
-        assert set(kinds(PACKAGE, Material)) == {*KINDS, "gum"}
-    finally:
-        kinds.cache_clear()
+def test_a_new_kind_needs_no_list():
+    """A class that is defined anywhere is a kind of case files and of these tests, as long as it is registered."""
+
+    class Gum(NeoHookean):
+        kind: Literal["gum"] = "gum"
+
+    gum = TypeAdapter(AnyMaterial).validate_python({"kind": "gum", "c10": "3 kPa"}, context={"units": "required"})
+    assert gum.shear_modulus == pytest.approx(6e3, rel=1e-12)
+    assert set(kinds(Material)) == {*KINDS, "gum"}
+    forget(Gum)
+    assert set(kinds(Material)) == {*KINDS}
+
+
+def test_two_classes_of_one_kind_are_refused_with_both_modules():
+    with pytest.raises(AmbiguousKind, match=r"tactsim\.materials\.neo_hookean\.NeoHookean and .*test_materials.*Second"):
+
+        class Second(NeoHookean):
+            kind: Literal["neo_hookean"] = "neo_hookean"
+
+    assert kinds(Material)["neo_hookean"] is NeoHookean
 
 
 def test_a_wrong_energy_is_seen():
     """Twin: an energy that its gradient does not belong to."""
 
     class Wrong(NeoHookean):
-        kind: Literal["neo_hookean"] = "neo_hookean"
-
         def energy(self, I1, I2):
             return super().energy(I1, I2) * 1.001
 

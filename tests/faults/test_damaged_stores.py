@@ -19,9 +19,9 @@ from sweeps import TEXT, Inline, assert_same, run_sweep, small_store, sweep_file
 from tactsim.cli import command_sweep, main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
+from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
-from tactsim.display import dataset_card
 from tactsim.errors import StorageError
 
 OLD_SWEEP = "arrays"

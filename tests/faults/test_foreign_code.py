@@ -60,7 +60,7 @@ def test_the_mesher_is_isolated(hostile: Path) -> None:
 
 
 def test_the_renderer_is_isolated(hostile: Path) -> None:
-    from tactsim.display.off_screen import MODULE
+    from tactsim.plotting.off_screen import MODULE
 
     assert run_child(MODULE, ["no scene", "no picture"], time_limit=60).code != 0
     assert executed(hostile) == ""

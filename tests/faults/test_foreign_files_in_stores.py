@@ -12,8 +12,8 @@ from sweeps import Inline, sweep_file
 
 from tactsim.cli import command_sweep, main
 from tactsim.dataset.checking import check
+from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.own_files import MANIFEST
-from tactsim.display import dataset_card
 
 
 @pytest.fixture(autouse=True)

@@ -18,8 +18,8 @@ from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
 from tactsim.cli import command_sweep, main
 from tactsim.dataset import computing, load, running
 from tactsim.dataset.checking import check
+from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.sweep import load_sweep
-from tactsim.display import dataset_card
 from tactsim.errors import TactsimError
 
 SAMPLES, MORE = 4, 6

@@ -8,14 +8,14 @@ from dataclasses import replace
 import pytest
 from pydantic import ValidationError
 
-from tactsim.experiments.closed_form import ClosedForm
-from tactsim.experiments.durometer import Durometer
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.indentation import Indentation
-from tactsim.experiments.space_indentation import SpaceIndentation
-from tactsim.experiments.success import judged, sufficient_tolerance
-from tactsim.experiments.switch_probe import SwitchProbe
-from tactsim.experiments.timed_indentation import TimedIndentation
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.experiments.durometer.durometer import Durometer
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
+from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
+from tactsim.mechanics.success import judged, sufficient_tolerance
 from tactsim.results.result import Status, StepRecord
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.contact_report import contact_oddities
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.grasp_warnings import unlikely
-from tactsim.experiments.indentation import Indentation
-from tactsim.experiments.plausibility import oddities
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.warnings import unlikely
+from tactsim.experiments.indentation.contact_record import contact_oddities
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.plausibility import oddities
 from tactsim.units import parse_quantity
 
 

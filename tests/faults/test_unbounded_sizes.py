@@ -10,14 +10,14 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
-from tactsim.experiments.grasp_model import FACET_POINTS
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.mechanics.block_model import FACET_POINTS
+from tactsim.mechanics.surface_forces import taxel_forces
 from tactsim.mesh.affordable import MOST_UNKNOWNS, estimated_unknowns, unknowns_of_cells
 from tactsim.mesh.axisymmetric import section_mesh
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.sizing import at_jaw_edges
 from tactsim.mesh.structured_block import structured_block
-from tactsim.sensors.taxel_forces import taxel_forces
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tactsim.contact.jaw import Jaw
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.grasp_symmetry import mirror_axes
-from tactsim.experiments.overhang import covered_areas, overhang_warnings
-from tactsim.sensors.taxel_layout import TaxelLayout
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.overhang import covered_areas, overhang_warnings
+from tactsim.experiments.grasp.symmetry import mirror_axes
+from tactsim.interfaces.taxel_layout import TaxelLayout
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = np.array([30e-3, 30e-3])

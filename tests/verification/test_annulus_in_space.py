@@ -11,14 +11,14 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.case import load_case
 from tactsim.contact.annulus import Annulus
-from tactsim.experiments.contact_setup import MeshSettings
-from tactsim.experiments.indentation import Indentation
-from tactsim.experiments.space_indentation import SpaceIndentation, space_indentation_path
-from tactsim.experiments.space_indentation_model import SweepSymmetry
-from tactsim.experiments.space_indentation_report import SpaceIndentationRecord
-from tactsim.experiments.space_indentation_setup import SpaceMeshSettings
-from tactsim.experiments.specimen import Specimen
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, space_indentation_path
+from tactsim.experiments.indentation.record_3d import SpaceIndentationRecord
+from tactsim.experiments.indentation.setup_3d import SpaceMeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.solid_model import SweepSymmetry
+from tactsim.mechanics.specimen import Specimen
 
 CASES = Path(__file__).parents[2] / "cases"
 THIN = {

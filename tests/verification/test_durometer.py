@@ -7,11 +7,11 @@ import pytest
 from tactsim.analytic.durometer import DurometerScale, hertz_force
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.experiments.contact_setup import MeshSettings
-from tactsim.experiments.durometer import Durometer
-from tactsim.experiments.indentation_setup import StepSettings
-from tactsim.experiments.specimen import Specimen
+from tactsim.experiments.durometer.durometer import Durometer
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import StepSettings
 from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.mechanics.specimen import Specimen
 
 RADIUS = 1.19e-3
 DEPTH = 1e-3 * RADIUS

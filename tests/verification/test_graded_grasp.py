@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.mesh import graded_lines
 
 SHARE = 0.03

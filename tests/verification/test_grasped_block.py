@@ -9,14 +9,14 @@ from solids import box, facets_where, on_plane
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.grasp_model import GraspModel
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.fem.loading import PathFollower, StepControl
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded_block import graded_block
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 SIZE = np.array([0.04, 0.03, 0.02])
 RUBBER = MooneyRivlin2(c10=1000.0, c01=250.0)

@@ -7,11 +7,11 @@ Jaws may penetrate by a thousandth of the closing: what the default tolerance le
 import numpy as np
 import pytest
 
-from tactsim.experiments import lump_sensitivity
-from tactsim.experiments.block_source import StructuredSource
-from tactsim.experiments.grasp import Grasp
-from tactsim.experiments.grasp_setup import Embedded
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.setup import Embedded
+from tactsim.experiments.localization import lump_sensitivity
 from tactsim.materials.library import named_material
+from tactsim.mechanics.block_source import StructuredSource
 from tactsim.mesh.inclusions.sphere import Sphere
 
 CELLS = (6, 6, 4)

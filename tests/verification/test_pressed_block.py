@@ -11,12 +11,12 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.contact.plane import Plane
 from tactsim.contact.stick import Stick
 from tactsim.contact.traction import ContactPair
-from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body
 from tactsim.fem.newton import Problem
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mesh.quadratic import from_skfem
 
 NOMINAL = {0.9: 0.855007, 0.8: 2.001562, 0.7: 3.639359}

@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from tactsim.errors import InputError
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
 
 COUNT, SIZE = 50, (40e-3, 40e-3, 20e-3)
 QUICK = 3

@@ -17,7 +17,6 @@ from tactsim.contact.plane import Plane
 from tactsim.contact.stick import Stick
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.posed_contact import PosedContact
 from tactsim.fem.body import Body
 from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
 from tactsim.fem.newton import NewtonOptions, Problem
@@ -28,6 +27,7 @@ from tactsim.fem.time_steps import TimeControl, TimeMarcher
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mesh.quadratic import from_skfem
 from tactsim.relaxation import Relaxation
 

@@ -11,11 +11,11 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.contact_setup import MeshSettings
-from tactsim.experiments.indentation import Indentation
-from tactsim.experiments.indentation_setup import StepSettings
-from tactsim.experiments.specimen import Specimen
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.setup import StepSettings
 from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.mechanics.specimen import Specimen
 
 RADIUS = 3e-3
 SHEAR_MODULUS = 1000.0

@@ -24,7 +24,7 @@ from tactsim.registry import kinds
 pytestmark = pytest.mark.usefixtures("one_thread")
 Array = np.ndarray
 MEASURES = ["axisymmetric", "plane_strain", "solid"]
-KINDS = sorted(name for name in kinds("tactsim.materials", Material))
+KINDS = sorted(name for name in kinds(Material))
 RATIO_TOLERANCE = 0.02
 """Of the ratio 4: the third-order term over the second at the steps taken."""
 
@@ -115,13 +115,13 @@ def outer_faces(mesh: QuadraticMesh) -> Array:
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "linear_elastic"])
 def test_tangent_of_a_body(measure, kind):
-    cls = kinds("tactsim.materials", Material)[kind]
+    cls = kinds(Material)[kind]
     assert_taylor(body_map(patch(measure, cls.example())[1]), patch(measure, cls.example())[1])
 
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_tangent_of_a_linear_body_has_no_remainder(measure):
-    _, body = patch(measure, kinds("tactsim.materials", Material)["linear_elastic"].example())
+    _, body = patch(measure, kinds(Material)["linear_elastic"].example())
     unknowns, direction = state_and_direction(body)
     map_ = body_map(body)
     change = map_.value(unknowns + direction) - map_.value(unknowns)

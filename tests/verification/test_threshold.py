@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tactsim.case import load_case
-from tactsim.experiments.indentation_path import indentation_path
-from tactsim.experiments.indentation_report import IndentationRecord
+from tactsim.experiments.indentation.path import indentation_path
+from tactsim.experiments.indentation.record import IndentationRecord
 
 MESH_TOLERANCE = 0.01
 STEP_TOLERANCE = 0.005

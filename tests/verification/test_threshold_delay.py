@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tactsim.experiments.contact_curve import Approach
-from tactsim.experiments.threshold_sampling import SILENT, ApproachSampling
-from tactsim.experiments.threshold_source import ClosedFormSource
-from tactsim.experiments.threshold_trial import ThresholdTrial
+from tactsim.experiments.threshold.contact_curve import Approach
+from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling
+from tactsim.experiments.threshold.source import ClosedFormSource
+from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.sensors.converter import Converter
 from tactsim.sensors.low_pass import LowPass

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from tactsim.localization.interface import Estimator
-from tactsim.registry import tagged_union
+from typing import Annotated
 
-PACKAGE = "tactsim.localization.estimators"
-AnyEstimator = tagged_union(PACKAGE, Estimator)
+from tactsim.localization.interface import Estimator
+from tactsim.registry import Registered
+
+AnyEstimator = Annotated[Estimator, Registered(Estimator)]
 """Pydantic type of an estimator."""

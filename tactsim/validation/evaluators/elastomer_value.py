@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError, UnknownName
-from tactsim.experiments.elastomer_report import RankingReport
+from tactsim.experiments.durometer.elastomer_report import RankingReport
 from tactsim.validation.evaluator import Evaluator, Inputs
 
 

@@ -9,7 +9,7 @@ from pydantic import Field
 from scipy.optimize import brentq
 
 from tactsim.errors import InputError
-from tactsim.experiments.threshold_source import CurveSource
+from tactsim.experiments.threshold.source import CurveSource
 from tactsim.units import Force, Length, format_quantity
 from tactsim.validation.evaluator import Evaluator, Inputs
 

@@ -10,8 +10,8 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
-from tactsim.experiments.block_source import TetrahedraSource
-from tactsim.experiments.grasp_model import SIDES
+from tactsim.mechanics.block_model import SIDES
+from tactsim.mechanics.block_source import TetrahedraSource
 from tactsim.mesh.inclusions.surface import read_surface
 from tactsim.mesh.inclusions.triangulated import check_closed
 from tactsim.mesh.manifest import entries

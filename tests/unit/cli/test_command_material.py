@@ -8,11 +8,12 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from tactsim.case import load_case, model
+from tactsim.case import load_case
 from tactsim.cli import main
 from tactsim.interfaces import Experiment, Progress
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.library import LIBRARY, named_material
+from tactsim.registry import register
 from tactsim.results import Result, Status
 from tactsim.units import FrozenModel
 
@@ -46,8 +47,8 @@ class Stack(Experiment):
 
 
 @pytest.fixture
-def stack_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(model, "kinds", lambda package, base: {"stack": Stack})
+def stack_file(tmp_path: Path) -> Path:
+    register(Stack)
     path = tmp_path / "stack.yaml"
     lines = ["schema: tactsim/case/1", "experiment:", "  kind: stack", "  samples:", f"    - material: {NAME}"]
     lines += ["    - material: {kind: neo_hookean, c10: 3 kPa}", "  skin: b1a_stable"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from pretence import PNG, Pretence
 
-from tactsim import display
+from tactsim import plotting
 from tactsim.cli import main
 from tactsim.results import read_result
 
@@ -101,7 +101,7 @@ def test_a_figure_that_cannot_be_drawn_does_not_cost_the_numbers(
     def broken() -> bytes:
         raise ZeroDivisionError("nothing to draw")
 
-    monkeypatch.setattr(display, "figures_for", lambda result: {"good": lambda: PNG, "bad": broken})
+    monkeypatch.setattr(plotting, "figures_for", lambda result: {"good": lambda: PNG, "bad": broken})
     assert main(["run", "case.yaml"]) == 0
     assert "warning: not every figure could be drawn: ZeroDivisionError: nothing to draw" in capsys.readouterr().out
     assert os.listdir("results/case/figures") == ["good.png"]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pretence import PNG, pretended_result
 
-from tactsim import display
+from tactsim import plotting
 from tactsim.cli import main
 from tactsim.results import Status, StepRecord, write_result
 
@@ -36,7 +36,7 @@ def test_the_main_figure_is_saved(folder: Path, tmp_path: Path) -> None:
 def test_a_result_without_figure_is_told(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(display, "figures_for", lambda result: {})
+    monkeypatch.setattr(plotting, "figures_for", lambda result: {})
     assert main(["show", str(folder), "--save", str(tmp_path / "a.png")]) == 2
     assert "a result of kind 'pretence' has no figure" in capsys.readouterr().err
 

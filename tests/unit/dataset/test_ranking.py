@@ -124,7 +124,7 @@ def test_the_command_writes_report_and_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = response()
-    monkeypatch.setattr("tactsim.experiments.response_store.stored_response", lambda folder: table)
+    monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
     store, plain = made_store(tmp_path, table), plain_result(tmp_path / "plain")
     order = [
         "data",

@@ -12,12 +12,12 @@ from tactsim.dataset.block import decoded
 from tactsim.dataset.computing import computed
 from tactsim.dataset.drawing import drawn_specimen
 from tactsim.dataset.layout import layout_of, split_of
-from tactsim.dataset.recorder import PACKAGE, Recorder, recorder_for
-from tactsim.dataset.recorders.grasp import GraspRecorder
 from tactsim.dataset.settings import SweepSettings
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import FAILED
-from tactsim.experiments.grasp import Grasp
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.recorder import GraspRecorder
+from tactsim.experiments.recording import Recorder, recorder_for
 from tactsim.registry import kinds
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 
@@ -45,7 +45,7 @@ def test_all_five_sweeps_of_the_issue_are_there() -> None:
     assert {path.stem for path in SWEEPS} >= ASKED
 
 
-@pytest.mark.parametrize("kind", sorted(kinds(PACKAGE, Recorder)))
+@pytest.mark.parametrize("kind", sorted(kinds(Recorder)))
 def test_labels_fill_what_a_recorder_declares(kind: str) -> None:
     recorder = recorder_for(kind, SweepSettings(samples=1), 1)
     from tactsim.case.model import experiment_kinds

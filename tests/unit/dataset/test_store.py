@@ -31,8 +31,8 @@ from tactsim.dataset.running import opened_run
 from tactsim.dataset.store import Store
 from tactsim.dataset.store_writing import chunk_samples, tell
 from tactsim.dataset.sweep import load_sweep
-from tactsim.dataset.variable import Variable
 from tactsim.errors import CaseError, StorageError, TactsimError
+from tactsim.interfaces.variable import Variable
 
 CASES = Path(__file__).parents[3] / "cases"
 SCRIPT = Path(__file__).parents[2] / "sweeps.py"

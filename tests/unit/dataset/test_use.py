@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
 import shutil
 import signal
@@ -315,7 +316,8 @@ def test_an_export_to_a_full_disk_is_an_error_and_leaves_nothing(kept: Path, tmp
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
     command = [sys.executable, "-m", "tactsim.cli", "data", "export", str(kept), "--to", str(tmp_path / name)]
-    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=small, check=False)
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}  # a compiled module cut off at that size would break later runs
+    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=small, check=False, env=environment)
     assert done.returncode == 5
     assert "cannot write" in done.stderr
     assert "Traceback" not in done.stderr

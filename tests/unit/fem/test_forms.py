@@ -18,7 +18,7 @@ pytestmark = pytest.mark.usefixtures("one_thread")
 MEASURES = {"axisymmetric": (2, 3), "plane_strain": (2, 3), "solid": (2, 1, 2)}
 ROUND_OFF = 1e-12
 """Relative to the largest entry: some thousand operations of 1e-16 each, and cancellation of W1, W2 and pressure terms."""
-KINDS = sorted(kinds("tactsim.materials", Material).items())
+KINDS = sorted(kinds(Material).items())
 
 
 def mesh_of(measure: str) -> QuadraticMesh:

@@ -11,7 +11,7 @@ import pytest
 from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, taxel_forces
 
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.localization_source import readings_of
+from tactsim.experiments.localization.source import readings_of
 from tactsim.live.choices import CHOICES, stored_choice
 from tactsim.live.content import opened_content
 from tactsim.live.estimating import estimated, frame_readings, shown_signal

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InputError, InvalidQuantity
-from tactsim.localization.estimators.any_estimator import PACKAGE
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings, told
 from tactsim.registry import kinds
-from tactsim.sensors.taxel_layout import TaxelLayout
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])
 LAYOUT = TaxelLayout()
@@ -151,9 +150,9 @@ def test_estimates_that_contradict_themselves_are_refused():
         EstimatedInclusion("sphere", (0.0, float("nan"), 0.0))
 
 
-@pytest.mark.parametrize("kind", sorted(kinds(PACKAGE, Estimator)))
+@pytest.mark.parametrize("kind", sorted(kinds(Estimator)))
 def test_every_estimator_answers_and_comes_back_from_its_text(kind):
-    estimator = kinds(PACKAGE, Estimator)[kind].example()
+    estimator = kinds(Estimator)[kind].example()
     assert type(estimator).model_validate_json(estimator.model_dump_json()) == estimator
     if estimator.needs_response or kind == "learned":  # these need the response of the tissue or weights: tests of their own
         return

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
-from tactsim.experiments.block_source import GradedSource
+from tactsim.mechanics.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded_block import graded_block
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid

@@ -9,7 +9,7 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
-from tactsim.experiments.indentation import Indentation
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.validation.execution import StudyRunner, Task, simulated
 from tactsim.validation.study import RunOutcome, Study
 

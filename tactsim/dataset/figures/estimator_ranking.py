@@ -1,0 +1,143 @@
+"""Figures of a ranking of estimators: errors over what varies, coverage, noise, and where each saw the lumps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.plotting.canvas import despined, new_figure, png, styled
+
+Array = np.ndarray
+Drawing = Callable[[], bytes]
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
+"""Of the estimators, told apart by the colour-blind: Okabe & Ito 2008."""
+MARKERS = "osD^vP"
+MILLIMETRES = 1e3
+AXES = {
+    "depth": "depth of the centre [mm]",
+    "radius": "radius [mm]",
+    "contrast": "shear modulus over the tissue's",
+    "closing": "closing of each jaw [mm]",
+}
+ROWS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("detection_rate", (), "part detected"),
+    ("lateral_error", ("median",), "lateral error [mm]"),
+    ("depth_error", ("median",), "depth error [mm]"),
+    ("coverage", (), "coverage of 90 % regions"),
+)
+"""Measure, place in it, heading."""
+RATES = ("detection_rate", "coverage")
+NOMINAL = (0.85, 0.95)
+"""Band in which the coverage of 90 % regions should lie: the plan of the display."""
+
+
+def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
+    """File name -> drawing, of the numbers of a ranking in SI."""
+    estimators = record["estimators"]
+    return {
+        "errors.png": lambda: png(errors_figure(estimators)),
+        "noise.png": lambda: png(noise_figure(estimators)),
+        "places.png": lambda: png(places_figure(estimators, record["block_size"]["value"])),
+    }
+
+
+def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
+    """Rates and median errors, one row each, over depth, radius, contrast and closing, one column each, with 95 % intervals."""
+    with styled():
+        figure = new_figure(2.6 * len(AXES) + 0.6, 2.1 * len(ROWS) + 0.5)
+        grid = figure.subplots(len(ROWS), len(AXES), squeeze=False, sharex="col", sharey="row")
+        for row, (measure, place, heading) in enumerate(ROWS):
+            for column, (label, words) in enumerate(AXES.items()):
+                axis = grid[row, column]
+                _draw_bins(axis, estimators, label, (measure, place))
+                if column == 0:
+                    axis.set_ylabel(heading)
+                if row == len(ROWS) - 1:
+                    axis.set_xlabel(words)
+        _legend(figure, grid[0, 0])
+    return figure
+
+
+def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
+    """The same over the noise."""
+    with styled():
+        figure = new_figure(2.7 * len(ROWS), 2.7)
+        for axis, (measure, place, heading) in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
+            for number, one in enumerate(estimators):
+                multiples = np.array([told["multiple"] for told in one["noise"]])
+                _draw_line(
+                    axis, multiples, [_number(told, measure, place) for told in one["noise"]], number, one["name"], measure
+                )
+            axis.set_xlabel("noise over the stated noise")
+            axis.set_title(heading)
+            _finish(axis, measure)
+        _legend(figure, figure.axes[0])
+    return figure
+
+
+def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[float]) -> Figure:
+    """Estimated over true x, y and height of the lumps that were detected."""
+    names = ("x", "y", "height")
+    with styled():
+        figure = new_figure(2.6 * len(estimators) + 0.3, 7.4)
+        grid = figure.subplots(3, len(estimators), squeeze=False, sharex="row", sharey="row")
+        for column, one in enumerate(estimators):
+            hits = [row for row in one["samples"] if row["found"] and row["truth"]["center"] is not None]
+            true = MILLIMETRES * np.array([row["truth"]["center"] for row in hits]).reshape(-1, 3)
+            found = MILLIMETRES * np.array([row["center"] for row in hits]).reshape(-1, 3)
+            for row, name in enumerate(names):
+                axis, side = grid[row, column], MILLIMETRES * float(block_size[row])
+                axis.plot([0, side], [0, side], color="0.6", linewidth=0.8)
+                axis.plot(true[:, row], found[:, row], ".", color=COLOURS[column % len(COLOURS)], markersize=4)
+                axis.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel=f"true {name} [mm]")
+                if column == 0:
+                    axis.set_ylabel(f"estimated {name} [mm]")
+            grid[0, column].set_title(f"{one['name']}\n{len(hits)} detected", fontsize=8)
+    return figure
+
+
+def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, measure: tuple[str, tuple[str, ...]]) -> None:
+    factor = 1.0 if label == "contrast" else MILLIMETRES
+    if label == "contrast":
+        ends = [part[end] for one in estimators for part in one["bins"][label] for end in ("low", "high")]
+        axis.set_xscale("log")
+        axis.set_xlim(min(ends, default=1.0) / 1.2, max(ends, default=10.0) * 1.2)
+    for number, one in enumerate(estimators):
+        bins = one["bins"][label]
+        middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
+        values = [_number(part, *measure) for part in bins]
+        _draw_line(axis, factor * middles, values, number, one["name"], measure[0])
+    _finish(axis, measure[0])
+
+
+def _draw_line(axis: Axes, at: Array, values: Sequence[dict | None], number: int, name: str, measure: str) -> None:
+    """One estimator's values with their intervals; those that are not known are left out."""
+    factor = 1.0 if measure in RATES else MILLIMETRES
+    known = [k for k, value in enumerate(values) if value is not None]
+    told = factor * np.array([[values[k][key] for key in ("value", "low", "high")] for k in known]).reshape(-1, 3)  # type: ignore[index]
+    colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
+    axis.plot(at[known], told[:, 0], f"-{marker}", color=colour, markersize=4, label=name)
+    axis.vlines(at[known], told[:, 1], told[:, 2], color=colour, linewidth=0.8, alpha=0.6)
+
+
+def _finish(axis: Axes, measure: str) -> None:
+    if measure == "coverage":
+        axis.axhspan(*NOMINAL, color="0.9", zorder=0)
+    axis.set_ylim(bottom=0, top=1.05 if measure in RATES else None)
+    despined(axis)
+
+
+def _legend(figure: Figure, axis: Axes) -> None:
+    handles, labels = axis.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(4, len(labels)), fontsize=8)
+
+
+def _number(told: Mapping[str, Any], measure: str, place: Sequence[str]) -> dict | None:
+    found: Any = told[measure]
+    for key in place:
+        found = None if found is None else found[key]
+    return found

@@ -1,1 +1,0 @@
-"""Recorders, one file for each kind of experiment."""

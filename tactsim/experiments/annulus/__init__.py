@@ -1,0 +1,1 @@
+"""The rigid annulus by its exact and viscoelastic closed forms."""

@@ -1,0 +1,177 @@
+"""The annulus on linear viscoelastic tissue by its closed form: any history in milliseconds, small displacements only."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.interfaces import Experiment, Material, Progress
+from tactsim.materials import AnyMaterial
+from tactsim.materials.library import named_material
+from tactsim.materials.viscoelasticity import shear_compliance
+from tactsim.mechanics.loading import AnyLoading, ForceLoading
+from tactsim.mechanics.plausibility import oddities
+from tactsim.mechanics.success import within_layer
+from tactsim.results.result import Quantity, Result, StepRecord
+from tactsim.units import Length, format_quantity
+
+Array = np.ndarray
+SMALL = 0.1
+"""Displacement over the outer radius beyond which the result warns; materials that stiffen leave linear theory before."""
+DECADES, PER_DECADE = 6, 10
+"""Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
+MOST_TIMES = 1_000_000
+"""Sampled times of all pieces: each takes 1 kB, and all are rows of the history."""
+
+
+def check_closed_form(inner_radius: float, outer_radius: float, material: Material) -> None:
+    """Nothing if there is a closed form of an annulus of these radii in m on this material.
+
+    Raises
+    ------
+    ValueError
+        If the face is too narrow or the material is compressible.
+    """
+    if inner_radius > 0.99 * outer_radius:
+        inner, outer = format_quantity(inner_radius, "m"), format_quantity(outer_radius, "m")
+        raise ValueError(f"inner_radius {inner} must be at most 0.99 of the outer_radius {outer}")
+    if material.bulk_modulus is not None:
+        raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
+
+
+class ClosedForm(Experiment):
+    r"""A rigid frictionless annulus under a prescribed history, with the small-strain shear response of a material.
+
+    .. math:: \epsilon(t) = \frac{1}{8 a \kappa} \int_{0^-}^t J(t - s)\, dP(s)
+
+    The contact is bilateral: where the force becomes negative a real contact opens, and the result says so.
+
+    Source: thesis, 4.6.1 to 4.6.4 and section 4.7.
+    """
+
+    kind: Literal["closed_form"] = "closed_form"
+    material: AnyMaterial
+    """Tissue; its small-strain shear relaxation counts; incompressible."""
+    inner_radius: Annotated[Length, Field(ge=0)] = 1.5e-3
+    """Inner radius; 0 is a solid punch."""
+    outer_radius: Annotated[Length, Field(gt=0)] = 3e-3
+    """Outer radius."""
+    thickness: Annotated[Length, Field(gt=0)] | None = None
+    """Thickness of the layer of tissue; null is a half-space."""
+    base: Literal["bonded", "slipping"] = "bonded"
+    """Base of the layer."""
+    formula: Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"] = "exact"
+    """Force factor of the annulus on a half-space."""
+    loading: AnyLoading
+    """The prescribed history; it may pull."""
+    points: Annotated[int, Field(ge=2, le=100_000)] = 200
+    """Evenly spaced times in each piece, beside ten per decade after its beginning."""
+
+    history_units: ClassVar[dict[str, str]] = {"time": "s", "displacement": "m", "force": "N", "tissue_rise_axis": "m"}
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        count = len(self.loading.segments()) * (self.points + DECADES * PER_DECADE)
+        if count > MOST_TIMES:
+            raise ValueError(
+                f"points: {count:.2g} times in all pieces; allowed: up to {MOST_TIMES:.2g}; take fewer points or pieces"
+            )
+        check_closed_form(self.inner_radius, self.outer_radius, self.material)
+        if self.thickness is not None and self.formula != "exact":
+            raise ValueError(f"the formula {self.formula} is for a half-space; on a layer only exact is known")
+        if self.thickness is not None and self.loading.control == "displacement":
+            deepest, thickness = max(map(abs, self.loading.least_and_most())), format_quantity(self.thickness, "m")
+            if deepest >= self.thickness:
+                given = format_quantity(deepest, "m")
+                raise ValueError(f"loading: displacement {given} must be smaller than the thickness of the layer, {thickness}")
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """The load of section 4.7: 0.2 N, and a sine of 0.2 N at 1 Hz after 2 s."""
+        pieces = [
+            {"kind": "jump", "to": 0.2, "duration": 2.0},
+            {"kind": "sine", "amplitude": 0.2, "frequency": 1.0, "duration": 4.0},
+        ]
+        loading = ForceLoading.model_validate({"control": "force", "pieces": pieces})
+        return cls(material=named_material("atrial").material, loading=loading)
+
+    def run(self, progress: Progress) -> Result:
+        """Evaluate at the sampled times."""
+        begin = time.perf_counter()
+        annulus = ViscoelasticAnnulus(
+            self.outer_radius,
+            self.inner_radius / self.outer_radius,
+            shear_compliance(self.material),
+            formula=self.formula,
+            radius_over_thickness=0.0 if self.thickness is None else self.outer_radius / self.thickness,
+            base=self.base,
+        )
+        times, history = self._times(), self.loading.history()
+        if self.loading.control == "force":
+            force, displacement = history.value(times), annulus.displacement(history, times)
+        else:
+            force, displacement = annulus.force(history, times), history.value(times)
+        status, reason = within_layer("end of the history", float(np.abs(displacement).max()), self.thickness)
+        columns = (times, displacement, force, annulus.rise(displacement))
+        steps = [
+            StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, values), strict=True)))
+            for number, values in enumerate(zip(*columns, strict=True), 1)
+        ]
+        for step in steps:
+            progress(step)
+        return Result(
+            kind=self.kind,
+            status=status,
+            reason=reason,
+            quantities=self._quantities(annulus, steps[-1].values, columns),
+            assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
+            warnings=tuple(self._warnings(times, force, displacement)),
+            timing={"total": time.perf_counter() - begin},
+            steps=tuple(steps),
+            units=self.history_units,
+            details={"body": {"kind": "annulus"}, "control": self.loading.control},
+        )
+
+    def _times(self) -> Array:
+        """Sampled times in s, each piece's beginning and end included."""
+        sampled = []
+        for segment in self.loading.segments():
+            duration = segment.end - segment.start
+            early = duration * np.geomspace(10.0**-DECADES, 1.0, DECADES * PER_DECADE + 1)
+            sampled.append(segment.start + np.union1d(early, np.linspace(0.0, duration, self.points)))
+        return np.unique(np.concatenate(sampled))
+
+    def _quantities(
+        self, annulus: ViscoelasticAnnulus, last: dict[str, float], columns: tuple[Array, ...]
+    ) -> dict[str, Quantity]:
+        told = {
+            "displacement": "displacement of the annulus at the end",
+            "force": "force on the annulus at the end",
+            "tissue_rise_axis": "height of the tissue on the axis above the face of the annulus at the end",
+        }
+        found = {name: Quantity(last[name], self.history_units[name], words) for name, words in told.items()}
+        _, displacement, force, _ = columns
+        found["largest_displacement"] = Quantity(float(displacement.max()), "m", "largest displacement")
+        found["largest_force"] = Quantity(float(force.max()), "N", "largest force")
+        found["smallest_force"] = Quantity(float(force.min()), "N", "smallest force; negative is a pull")
+        found["force_factor"] = Quantity(annulus.force_factor, "1", "kappa = P / (8 G a eps)")
+        found["rise_factor"] = Quantity(annulus.rise_factor, "1", "height of the tissue on the axis over the displacement")
+        return found
+
+    def _warnings(self, times: Array, force: Array, displacement: Array) -> list[str]:
+        told = []
+        pulled = force < -1e-9 * np.abs(force).max()
+        if pulled.any():
+            first = format_quantity(float(times[pulled][0]), "s")
+            told.append(f"the force is negative, first at {first}: a real contact opens there, and the closed form ends")
+        deepest = float(np.abs(displacement).max()) / self.outer_radius
+        if deepest > SMALL:
+            told.append(f"the displacement reaches {deepest:.3g} of the outer radius; linear theory is meant for up to {SMALL:g}")
+        tissue = {} if self.thickness is None else {"thickness": self.thickness}
+        radii = {"inner_radius": self.inner_radius} if self.inner_radius else {}
+        return told + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})

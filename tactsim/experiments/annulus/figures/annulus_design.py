@@ -1,0 +1,128 @@
+"""Design of the annular sensor: the force with which the tissue touches, over the ratio of the radii and the recess."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from tactsim.plotting.canvas import entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+PANELS = 3
+"""Times that are shown: the shortest, the middle and the longest of more."""
+LIMIT_COLOURS, POINT_COLOUR = ("#000000", "#ff9d5c"), "#d62728"
+DECADES = 4
+"""Decades of the force that are coloured below the largest one."""
+
+
+class AnnulusDesignFigures(ResultFigures):
+    """One figure: a map for each of up to three times."""
+
+    kind: Literal["annulus_design"] = "annulus_design"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``annulus_design.png``, unless the map is incomplete."""
+        complete = "force_to_touch" in result.quantities
+        return {"annulus_design.png": lambda: png(annulus_design_figure(result))} if complete else {}
+
+
+def annulus_design_figure(result: Result) -> Figure:
+    """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
+    times = result.details["times"]
+    shown = list(range(len(times))) if len(times) <= PANELS else [0, len(times) // 2, len(times) - 1]
+    force = np.array(result.quantities["force_to_touch"].value, dtype=float)
+    largest = 10.0 ** np.ceil(np.log10(np.nanmax(force[:, :, shown])))
+    smallest = max(largest / 10**DECADES, float(np.nanmin(force[:, :, shown])))
+    norm = LogNorm(smallest, largest)
+    with styled():
+        figure = new_figure(1.6 + 3.4 * len(shown), 4.9)
+        axes = figure.subplots(1, len(shown), squeeze=False, sharey=True)[0]
+        for axis, index in zip(axes, shown, strict=True):
+            drawn = _draw_map(axis, result, force[:, :, index].T, norm)
+            _draw_point(axis, result, times[index])
+            axis.set_title(f"after {format_quantity(times[index], 's')}", loc="left")
+            axis.set_xlabel("ratio of the radii ri/ro")
+        axes[0].set_ylabel("recess L in mm")
+        extend = "min" if np.nanmin(force[:, :, shown]) < smallest * (1 - 1e-9) else "neither"
+        bar = figure.colorbar(drawn, ax=list(axes), pad=0.01, aspect=30, extend=extend)
+        bar.set_label("constant force with which the tissue touches, in N")
+        bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
+        entitle(figure, _title(result))
+    return figure
+
+
+def _title(result: Result) -> str:
+    return str(result.details.get("title") or "") or "Annular sensor: where the tissue touches"
+
+
+def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
+    """The coloured force (recess, ratio), the contours of its limits, and hatching outside small displacements."""
+    ratio, recess = np.array(result.details["ratios"]), 1e3 * np.array(result.details["recesses"])
+    drawn = axis.pcolormesh(ratio, recess, force, norm=norm, cmap="viridis", shading="gouraud", rasterized=True)
+    for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
+        if force.min() < limit < force.max():
+            axis.contour(ratio, recess, np.log(force), levels=[np.log(limit)], colors=[colour], linewidths=2)
+    relative, end = np.array(result.quantities["touch_displacement_over_radius"].value).T, result.details["small_displacement"]
+    if relative.max() > end:
+        levels = [end, max(float(relative.max()), 2 * end) * 1.01]
+        hatched = axis.contourf(ratio, recess, relative, levels=levels, colors="none", hatches=["///"])
+        hatched.set_edgecolor((1, 1, 1, 0.45))
+        hatched.set_linewidth(0)
+        if relative.min() < end:
+            axis.contour(ratio, recess, relative, levels=levels[:1], colors="white", linewidths=1, linestyles="dashed")
+    axis.set_yscale("log")
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.yaxis.set_minor_formatter(NullFormatter())
+    return drawn
+
+
+def _draw_point(axis: Axes, result: Result, time: float) -> None:
+    """The design point; with its own force to touch where the time is its own."""
+    point = result.details["design_point"]
+    axis.plot(point["ratio"], 1e3 * point["recess"], "*", color=POINT_COLOUR, markeredgecolor="white", markersize=13, zorder=5)
+    if time != point["time"]:
+        return
+    needed, rise = (_three_digits(result, name) for name in ("point_force_to_touch", "point_rise"))
+    axis.annotate(
+        f"touches at {needed};\n{format_quantity(point['force'], 'N')} lifts it by {rise}",
+        (point["ratio"], 1e3 * point["recess"]),
+        (12, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=8,
+        color="black",
+        bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
+    )
+
+
+def _three_digits(result: Result, name: str) -> str:
+    quantity = result.quantities[name]
+    return format_quantity(float(f"{quantity.value:.3g}"), quantity.unit)
+
+
+def _limits(result: Result) -> tuple[float, float]:
+    return result.details["recommended_force"], result.details["largest_force"]
+
+
+def _legend(result: Result) -> list[Any]:
+    names = ("recommended force", "largest force")
+    lines: list[Any] = [
+        Line2D([], [], color=colour, linewidth=2, label=f"{name}, {format_quantity(limit, 'N')}: touched below the line")
+        for name, limit, colour in zip(names, _limits(result), LIMIT_COLOURS, strict=True)
+    ]
+    point = result.details["design_point"]
+    where = f"ri/ro = {point['ratio']:g}, L = {format_quantity(point['recess'], 'm')}"
+    star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
+    words = f"displacement at touch beyond {result.details['small_displacement']:g} ro: outside small-displacement theory"
+    return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=words)]

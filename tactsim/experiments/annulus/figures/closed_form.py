@@ -1,0 +1,51 @@
+"""Closed form of the annulus: force, displacement and rise over time."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+COLOUR = "#1f4e79"
+HISTORIES = (("force", "force", "N"), ("displacement", "displacement", "m"), ("tissue_rise_axis", "rise on\nthe axis", "m"))
+
+
+class ClosedFormFigures(ResultFigures):
+    """One figure: the histories one above the other."""
+
+    kind: Literal["closed_form"] = "closed_form"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``closed_form.png``."""
+        return {"closed_form.png": lambda: png(closed_form_figure(result))} if result.steps else {}
+
+
+def closed_form_figure(result: Result) -> Figure:
+    """Histories of a closed form, shaded where the force pulls."""
+    time = np.array([step.values["time"] for step in result.steps])
+    pulls = np.array([step.values["force"] for step in result.steps]) < 0
+    with styled():
+        figure = new_figure(6.4, 5.2)
+        axes = figure.subplots(len(HISTORIES), 1, sharex=True)
+        for axis, (name, words, unit) in zip(axes, HISTORIES, strict=True):
+            values = np.array([step.values[name] for step in result.steps])
+            factor, prefixed = scale_of(float(np.abs(values).max()), unit)
+            axis.plot(time, factor * values, color=COLOUR)
+            axis.axhline(0.0, color="0.6", linewidth=0.6)
+            if pulls.any():
+                reach = axis.get_ylim()
+                axis.fill_between(time, *reach, where=pulls, color="#b00020", alpha=0.12, label="a real contact is open")
+                axis.set_ylim(reach)
+            axis.set_ylabel(f"{words} in {prefixed}")
+            despined(axis)
+        if pulls.any():
+            axes[0].legend(fontsize=8, loc="upper left")
+        axes[-1].set(xlabel="time in s", xlim=(0, time[-1]))
+        title = str(result.details.get("title") or "") or "Annulus on viscoelastic tissue, closed form"
+        entitle(figure, title)
+    return figure

@@ -1,0 +1,76 @@
+"""The annulus in closed form."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.experiments.recording import Recorder, Values
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.variable import Variable, label, reading
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.results.result import Result
+from tactsim.sensors.force_reading import read_variables
+
+HISTORY = {"displacement": ("m", "displacement of the annulus"), "force": ("N", "force on the annulus, without noise")}
+READ = read_variables("voltage after the low pass", "force by the calibration")
+
+
+class ClosedFormRecorder(Recorder):
+    """Geometry and moduli; displacement and force over time, and what a sensor reads of the force."""
+
+    kind: Literal["closed_form"] = "closed_form"
+    histories: ClassVar = True
+    reads_force: ClassVar = True
+    quantities: ClassVar = {
+        "largest_displacement": ("m", "largest displacement"),
+        "largest_force": ("N", "largest force"),
+        "tissue_rise_axis": ("m", "height of the tissue on the axis above the face at the end"),
+        "force_factor": ("1", "kappa = P / (8 G a eps)"),
+        "rise_factor": ("1", "height of the tissue on the axis over the displacement"),
+    }
+
+    def labels_of(self, experiment: Experiment) -> list[Variable]:
+        """Radii and moduli."""
+        told = {
+            "inner_radius": ("m", "inner radius of the annulus"),
+            "outer_radius": ("m", "outer radius of the annulus"),
+            "instantaneous_shear_modulus": ("Pa", "shear modulus of the tissue at once"),
+            "equilibrium_shear_modulus": ("Pa", "shear modulus of the tissue after a long time"),
+        }
+        return [label(name, unit, words) for name, (unit, words) in told.items()]
+
+    def labels(self, experiment: ClosedForm) -> Values:
+        """Values of the same."""
+        relaxation = shear_relaxation(experiment.material)
+        told = (
+            experiment.inner_radius,
+            experiment.outer_radius,
+            relaxation.instantaneous_modulus,
+            relaxation.equilibrium_modulus,
+        )
+        return {v.name: np.array(value) for v, value in zip(self.labels_of(experiment), told, strict=True)}
+
+    def readings_of(self, experiment: Any) -> list[Variable]:
+        """Histories."""
+        told = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.reading else {})}
+        times, given = self.settings.times, experiment.loading.control
+        return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in told.items()]
+
+    def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
+        """Linear between the times that the experiment sampled."""
+        times, columns = self.history(result)
+        at = self.stored_times(float(times[-1]))
+        found = {"time_s": at, **{name: np.interp(at, times, columns[name]) for name in HISTORY}}
+        if self.reading:
+            found |= self.reading.read(times, columns["force"], at, generator)
+        return found
+
+    def describe(self) -> str:
+        """What is simulated."""
+        return (
+            "A rigid, frictionless annulus on linear viscoelastic, incompressible tissue under a prescribed history, "
+            "in closed form (small displacements, bilateral contact)."
+        )

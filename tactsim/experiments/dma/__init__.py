@@ -1,0 +1,1 @@
+"""Constants of a viscoelastic model identified from dynamic mechanical analysis."""

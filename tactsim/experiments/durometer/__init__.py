@@ -1,0 +1,1 @@
+"""Hardness after ASTM D2240: the test simulated, and elastomers ranked by it."""

@@ -1,0 +1,121 @@
+"""A durometer on soft material: the depth at which the tissue bears the spring, and the reading there."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tactsim.analytic.durometer import DurometerScale
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.rod import Rod
+from tactsim.experiments.collecting import ended_early
+from tactsim.experiments.durometer.report import DurometerRecord
+from tactsim.experiments.indentation.contact_setup import AnyLaw, MeshSettings
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.path import started
+from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.fem.loading import Event
+from tactsim.interfaces import Experiment, Progress
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.specimen import Specimen
+from tactsim.results.result import Result, Status
+from tactsim.units import Force, Length, format_quantity
+
+LEAST_THICKNESS = 6e-3
+"""Thickness in m of a specimen that ASTM D2240 asks for; recalled, a declared assumption."""
+EVENT_TOLERANCE = 1e-5
+"""Tolerance of the depth at the reading, as a part of the travel: a thousandth of a unit."""
+
+
+class Durometer(Experiment):
+    r"""A spring-loaded indentor pressed to the depth at which tissue and spring balance.
+
+    .. math:: F_{\mathrm{tissue}}(d) = F_0 + k H, \qquad d = L (1 - H / 100)
+
+    Source: ASTM D2240, type OO, by its declared dimensions; thesis, 3.1.3 and Table 3.3.
+    """
+
+    kind: Literal["durometer"] = "durometer"
+    specimen: Specimen
+    """What is measured; at least 6 mm thick."""
+    contact: AnyLaw = Coulomb()
+    """Friction between tissue and indentor."""
+    indentor: Rod = Rod()
+    """The indentor; 2.38 mm in diameter for type OO."""
+    scale: DurometerScale = DurometerScale()
+    """Travel and spring; type OO."""
+    spring_tolerance: Annotated[Force, Field(ge=0)] = 0.00908
+    """Uncertainty of the spring's force, which makes the interval of the reading; by default one unit of type OO."""
+    stop: Literal["reading", "travel"] = "reading"
+    """Whether the run ends at the reading, or goes on over the whole travel."""
+    penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
+    """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO.
+    At most a tenth of that radius, of the travel and of the thinnest layer."""
+    mesh: MeshSettings = MeshSettings(growth=0.8, adaptive=False)
+    """Size of the elements."""
+    steps: StepSettings = StepSettings()
+    """Length of the load steps; by default the first a fiftieth, the largest a tenth of the indentor's radius."""
+
+    history_units: ClassVar[dict[str, str]] = DurometerRecord.UNITS
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.specimen.thickness < LEAST_THICKNESS:
+            given, least = (format_quantity(value, "m") for value in (self.specimen.thickness, LEAST_THICKNESS))
+            raise ValueError(f"a durometer needs a specimen of at least {least} (ASTM D2240); this one is {given} thick")
+        if any(material.relaxation is not None for material in self.specimen.materials):
+            raise ValueError(
+                "a durometer is read without regard to time; give the constants at the time of reading, no relaxation"
+            )
+        lengths = {"travel": self.scale.travel, "indentor's radius": self.indentor.radius}
+        check_penetration(self.penetration_tolerance, lengths)
+        _ = self.indentation
+        return self
+
+    @property
+    def indentation(self) -> Indentation:
+        """The indentation over the whole travel."""
+        radius, given = self.indentor.radius, self.steps
+        first, largest = given.first or radius / 50, given.largest or radius / 10
+        return Indentation(
+            specimen=self.specimen,
+            body=self.indentor,
+            contact=self.contact,
+            penetration_tolerance=self.penetration_tolerance or default_penetration(1e-3 * radius, self.scale.travel),
+            stop="displacement",
+            displacement=self.scale.travel,
+            mesh=self.mesh,
+            steps=StepSettings(first=first, largest=largest, smallest=given.smallest),
+        )
+
+    @classmethod
+    def example(cls) -> Self:
+        """A specimen of the hard elastomer of chapter 3."""
+        return cls(specimen=Specimen(material="b1a_stable"))
+
+    def run(self, progress: Progress) -> Result:
+        """Press until tissue and spring balance; see ``DurometerRecord`` for what is reported."""
+        begin = time.perf_counter()
+        setup = self.indentation
+        model = setup.model()
+        record = DurometerRecord(setup, model, begin, scale=self.scale, spring_tolerance=self.spring_tolerance)
+        early = ended_early(
+            record, (record.accept(state, threshold=balanced) for state, balanced in self._path(record)), progress
+        )
+        if early is not None:
+            return early
+        return record.result(Status.CONVERGED, record.told())
+
+    def _path(self, record: DurometerRecord) -> Iterator[tuple[ContactEquilibrium, bool]]:
+        """Accepted states, each with whether tissue and spring balance in it."""
+        first, course = started(record.experiment, record.model, record)
+        event = Event[ContactEquilibrium](record.surplus, tolerance=EVENT_TOLERANCE * self.scale.travel)
+        state, balanced = first, False
+        for state, balanced in course.follow(first, event):
+            yield state, balanced
+        if balanced and self.stop == "travel":
+            yield from course.follow(state, None)

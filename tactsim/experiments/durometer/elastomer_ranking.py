@@ -1,0 +1,220 @@
+"""Seven elastomers by inverse simulation: modulus from the sensor's threshold, then the reading of a durometer on it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tactsim.analytic.durometer import DurometerScale
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.rod import Rod
+from tactsim.errors import ConvergenceError, Unfinished
+from tactsim.experiments.durometer.durometer import Durometer
+from tactsim.experiments.durometer.elastomer_report import RankingReport, ShapeFinding
+from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3, Elastomer, Reading, Shape
+from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
+from tactsim.experiments.indentation.contact_setup import AnyLaw, MeshSettings
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.interfaces import Experiment, Progress
+from tactsim.materials.moduli import youngs_modulus
+from tactsim.mechanics.specimen import Specimen
+from tactsim.results.result import Result, Status
+from tactsim.units import FrozenModel, Length, Time, format_quantity
+
+PositiveLength = Annotated[Length, Field(gt=0)]
+
+
+class SpecimenSize(FrozenModel):
+    """Size of a cylindrical specimen on a fixed base, of any of the materials."""
+
+    thickness: PositiveLength = 10e-3
+    """Thickness."""
+    radius: PositiveLength = 15e-3
+    """Radius."""
+
+    def of(self, shape: Shape) -> Specimen:
+        """The specimen of a material."""
+        return Specimen(material=shape.material, thickness=self.thickness, radius=self.radius)
+
+
+class SensorTest(FrozenModel):
+    """The annular sensor pressed to its threshold."""
+
+    specimen: SpecimenSize = SpecimenSize()
+    """What is pressed."""
+    body: Annulus = Annulus(fillet=0.4e-3)
+    """The filler plate; a neo-Hookean energy gives way at a sharper edge before the threshold."""
+    recess: PositiveLength = 0.8e-3
+    """Depth of the inner sensor."""
+    contact: AnyLaw = Coulomb()
+    """Friction."""
+    displacement: PositiveLength = 8e-3
+    """Most that is tried."""
+    mesh: MeshSettings = MeshSettings(finest=0.2e-3, growth=0.6)
+    """Size of the elements."""
+
+    def of(self, shape: Shape) -> Indentation:
+        """The simulation on a material."""
+        return Indentation(
+            specimen=self.specimen.of(shape),
+            body=self.body,
+            recess=self.recess,
+            contact=self.contact,
+            displacement=self.displacement,
+            mesh=self.mesh,
+        )
+
+
+class DurometerTest(FrozenModel):
+    """The durometer pressed over its whole travel."""
+
+    specimen: SpecimenSize = SpecimenSize()
+    """What is measured."""
+    indentor: Rod = Rod()
+    """The indentor."""
+    scale: DurometerScale = DurometerScale()
+    """Travel and spring."""
+    contact: AnyLaw = Coulomb()
+    """Friction."""
+    mesh: MeshSettings = MeshSettings(growth=0.8, adaptive=False)
+    """Size of the elements."""
+
+    def of(self, shape: Shape) -> Durometer:
+        """The simulation on a material, past the reading to the whole travel."""
+        return Durometer(
+            specimen=self.specimen.of(shape),
+            indentor=self.indentor,
+            scale=self.scale,
+            contact=self.contact,
+            stop="travel",
+            mesh=self.mesh,
+        )
+
+
+class AtriumTest(FrozenModel):
+    """Porcine atrium: what the durometer read, and the tissue of Table 4.1."""
+
+    reading: Reading = 25.0
+    """Shore reading, thesis 3.2."""
+    times: Annotated[tuple[Annotated[Time, Field(gt=0)], ...], Field(min_length=1)] = (1e-3, 10e-3, 0.1, 1.0, 10.0)
+    """Times after the load at which the creep modulus 1/D(t) is taken."""
+    shape: str | None = None
+    """Shape of energy of the tissue; by default the last one."""
+
+
+class ElastomerRanking(Experiment):
+    r"""Modulus of each elastomer from its threshold pressure, and the durometer's reading on a material of that modulus.
+
+    .. math:: p = E\, \hat p, \qquad F(d) = E\, f(d)
+
+    An exactly incompressible energy that is a modulus times a fixed shape has the same deformation for every modulus at the same
+    displacements. One run per shape therefore gives the threshold, one more the force-depth curve, of every elastomer.
+
+    Source: thesis, 3.1.3, 3.2 and Table 3.3.
+    """
+
+    kind: Literal["elastomer_ranking"] = "elastomer_ranking"
+    elastomers: Annotated[tuple[Elastomer, ...], Field(min_length=3)] = TABLE_3_3
+    """What was measured."""
+    shapes: Annotated[tuple[Shape, ...], Field(min_length=1)] = STABLE_SHAPES
+    """Energies that the elastomers are given."""
+    sensor: SensorTest = SensorTest()
+    """The annular sensor."""
+    durometer: DurometerTest = DurometerTest()
+    """The durometer."""
+    atrium: AtriumTest = AtriumTest()
+    """Porcine atrium."""
+
+    history_units: ClassVar[dict[str, str]] = RankingReport.UNITS
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        for what, given in (("elastomers", self.elastomers), ("shapes", self.shapes)):
+            names = [one.name for one in given]
+            if len(set(names)) < len(names):
+                raise ValueError(f"two {what} have the same name: {', '.join(names)}")
+        known = [elastomer.name for elastomer in self.elastomers]
+        for shape in self.shapes:
+            if shape.material.bulk_modulus is not None or shape.material.relaxation is not None:
+                raise ValueError(f"the shape {shape.name} must be incompressible and without relaxation, or it does not scale")
+            if shape.constants_of is not None and shape.constants_of not in known:
+                raise ValueError(f"constants_of {shape.constants_of!r} is none of the elastomers {', '.join(known)}")
+            _ = self.sensor.of(shape), self.durometer.of(shape)
+        shapes = [shape.name for shape in self.shapes]
+        if self.atrium.shape is not None and self.atrium.shape not in shapes:
+            raise ValueError(f"atrium.shape {self.atrium.shape!r} is none of the shapes {', '.join(shapes)}")
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """Table 3.3 with a neo-Hookean energy alone."""
+        return cls(shapes=STABLE_SHAPES[2:])
+
+    def run(self, progress: Progress) -> Result:
+        """Two simulations per shape, then one step per shape and elastomer."""
+        begin = time.perf_counter()
+        report = RankingReport(self.elastomers, self.durometer.scale, self.durometer.indentor.radius)
+        status, reason = Status.CONVERGED, f"{len(self.elastomers)} elastomers by {len(self.shapes)} shapes of energy"
+        try:
+            for shape in self.shapes:
+                for step in report.add(self._finding(shape)):
+                    progress(step)
+            shapes = [shape.name for shape in self.shapes]
+            report.add_atrium(self.atrium.reading, self.atrium.times, shapes.index(self.atrium.shape or shapes[-1]))
+        except Unfinished as error:
+            status, reason = Status.FAILED, str(error)
+        except KeyboardInterrupt:
+            status, reason = Status.INTERRUPTED, "interrupted; the shapes that were finished are kept, the run is incomplete"
+        result = report.result(status, reason, time.perf_counter() - begin)
+        return replace(result, assumptions=tuple(self._assumptions()))
+
+    def _finding(self, shape: Shape) -> ShapeFinding:
+        """Threshold and force-depth curve of a shape.
+
+        Raises
+        ------
+        ConvergenceError
+            If the threshold was not reached, or the durometer made no curve.
+        """
+        sensor, durometer = self.sensor.of(shape), self.durometer.of(shape)
+        pressed, indented = (_finished(experiment) for experiment in (sensor, durometer))
+        if pressed.status is not Status.CONVERGED or len(indented.steps) < 2:
+            raise ConvergenceError(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
+        modulus = youngs_modulus(shape.material.shear_modulus, None)
+        found = {name: float(pressed.quantities[f"threshold_{name}"].value) for name in ("pressure", "displacement")}
+        told = "" if indented.status is Status.CONVERGED else indented.reason
+        return ShapeFinding(
+            shape=shape,
+            youngs_modulus=modulus,
+            threshold_pressure=found["pressure"],
+            threshold_displacement=found["displacement"],
+            curve=ForceDepthCurve.of(indented, modulus),
+            cut_short=told,
+        )
+
+    def _assumptions(self) -> list[str]:
+        sizes = (("sensor", self.sensor.specimen), ("durometer", self.durometer.specimen))
+        told = [
+            f"specimen under the {name}: radius {format_quantity(size.radius, 'm')}, thickness "
+            f"{format_quantity(size.thickness, 'm')}, on a fixed base (the thesis prints no size)"
+            for name, size in sizes
+        ]
+        told.append("durometer of type OO by its recalled dimensions; its presser foot, and how long it rests, do not count")
+        told.append("all elastomers share the shape of energy, so that the threshold and the predicted reading rank them alike")
+        told.append("exactly incompressible, elastic and homogeneous (H1-N is said to be denser at its surface)")
+        told.append(
+            "Table 4.1 as creep compliance 1/E with retardation times in s, the modulus at a time taken as its reciprocal"
+        )
+        return told
+
+
+def _finished(experiment: Experiment) -> Result:
+    """The result of a simulation that the user did not interrupt."""
+    result = experiment.run(lambda step: None)
+    if result.status is Status.INTERRUPTED:
+        raise KeyboardInterrupt
+    return result

@@ -1,0 +1,77 @@
+"""Durometer: the deformed section under the indentor, and force over depth of tissue, spring and Hertz with the reading."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.indentation.figures.indentation import section_beside
+from tactsim.plotting.canvas import png, scale_of
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+Array = np.ndarray
+TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
+ROOM = 1.25
+"""The force axis ends at this many times the larger of spring and tissue."""
+
+
+class DurometerFigures(ResultFigures):
+    """One figure: section and balance of forces side by side."""
+
+    kind: Literal["durometer"] = "durometer"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``durometer.png``, unless no step was accepted."""
+        return {"durometer.png": lambda: png(durometer_figure(result))} if result.steps else {}
+
+
+def durometer_figure(result: Result) -> Figure:
+    """Section (if the result has fields) and forces over the depth."""
+    return section_beside(result, _draw_balance, str(result.details.get("title") or "") or "Durometer")
+
+
+def _draw_balance(axis: Axes, result: Result) -> None:
+    """Forces of tissue, spring and Hertz over the depth, and the readings along the top."""
+    depth, tissue, hertz = (_history(result, name) for name in ("displacement", "reaction_force", "hertz_force"))
+    scale = result.details["scale"]
+    whole = np.array([0.0, scale["travel"]])
+    spring = scale["force_at_zero"] + scale["force_per_unit"] * 100 * (1 - whole / scale["travel"])
+    top = ROOM * max(spring.max(), min(float(tissue.max()), 2 * spring.max()))
+    factor, unit = scale_of(top, "N")
+    axis.plot(1e3 * depth, factor * tissue, ".-", color=TISSUE_COLOUR, markersize=4, label="tissue, simulated")
+    axis.plot(1e3 * depth, factor * hertz, ":", color=HERTZ_COLOUR, label="Hertz, same modulus at small strain")
+    axis.plot(1e3 * whole, factor * spring, "--", color=SPRING_COLOUR, label="spring of the durometer")
+    axis.set(xlabel="depth of the indentor in mm", ylabel=f"force in {unit}", xlim=(0, 1e3 * whole[1]), ylim=(0, factor * top))
+    travel = 1e3 * float(whole[1])
+
+    def reading(depth: Any) -> Any:
+        return 100 - 100 / travel * depth
+
+    def depth_at(reading: Any) -> Any:
+        return travel - travel / 100 * reading
+
+    readings = axis.secondary_xaxis("top", functions=(reading, depth_at))
+    readings.set_xlabel("reading")
+    axis.spines["right"].set_visible(False)
+    _mark_reading(axis, result, factor)
+    axis.legend(loc="upper left", fontsize=8)
+
+
+def _mark_reading(axis: Axes, result: Result, factor: float) -> None:
+    """A ring where tissue and spring balance and the reading above, or the words that there is no such place."""
+    if "depth" not in result.quantities:
+        axis.set_title("bottoms out: below 0" if "reading" in result.quantities else "no reading", loc="left")
+        return
+    depth, force, reading, low, high = (
+        float(result.quantities[name].value) for name in ("depth", "spring_force", "reading", "reading_low", "reading_high")
+    )
+    axis.plot(1e3 * depth, factor * force, "o", color=TISSUE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
+    axis.set_title(f"reading {reading:.1f} ({low:.1f} to {high:.1f})", loc="left")
+
+
+def _history(result: Result, name: str) -> Array:
+    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -1,0 +1,136 @@
+"""What a durometer reports: the reading with its interval, or that it is off the scale, beside Hertz's contact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
+from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.setup import IndentationSetup
+from tactsim.materials.moduli import youngs_modulus
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.section_model import IndentationModel
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+APART = 0.95
+"""The slope of the force is taken from the last step at most this part as deep as the reading."""
+WIDE = 12e-3
+"""Distance in m from the edge of the specimen that ASTM D2240 asks for; recalled, a declared assumption."""
+
+
+class DurometerRecord(IndentationRecord):
+    """Collects the accepted steps of a durometer, among them the balance of tissue and spring."""
+
+    UNITS: ClassVar[dict[str, str]] = {
+        name: unit
+        for name, unit in IndentationRecord.UNITS.items()
+        if name not in ("tissue_rise", "tissue_rise_axis", "sensor_force")
+    } | {"spring_force": "N", "hertz_force": "N"}
+
+    def __init__(
+        self,
+        experiment: IndentationSetup,
+        model: IndentationModel,
+        begin: float,
+        *,
+        scale: DurometerScale,
+        spring_tolerance: float,
+    ):
+        super().__init__(experiment, model, begin)
+        self.scale, self.spring_tolerance = scale, spring_tolerance
+        self.balance: dict[str, float] = {}
+        specimen = experiment.specimen
+        self.youngs_modulus = youngs_modulus(specimen.materials[0].shear_modulus, specimen.materials[0].bulk_modulus)
+
+    def surplus(self, state: ContactEquilibrium) -> float:
+        """Force in N of the tissue on the indentor above that of the spring."""
+        contact = state.contacts[0]
+        traction = contact.at(self.model.displacement(state.unknowns)).traction
+        return -float(self.model.surface.total(traction)[1]) - float(self.scale.spring_force(state.load))
+
+    def accept(self, state: ContactEquilibrium, *, threshold: bool) -> StepRecord:
+        """Record an accepted state, and whether tissue and spring balance in it."""
+        record = super().accept(state, threshold=False)
+        if threshold:
+            self.balance = record.values
+        return record
+
+    def told(self) -> str:
+        """How a run ended that went its way."""
+        if self.balance:
+            reading = float(self.scale.reading(self.balance["displacement"]))
+            return f"tissue and spring balance at a reading of {reading:.2f}"
+        borne, asked = self.steps[-1].values["reaction_force"], self.scale.force_at_zero
+        words = f"the tissue bears {format_quantity(borne, 'N')} of {format_quantity(asked, 'N')} at the whole travel"
+        return f"the indentor bottoms out: {words}, the reading is below 0"
+
+    def _values(self, state: ContactEquilibrium) -> dict[str, float]:
+        hertz = float(hertz_force(state.load, self.experiment.body.radius, self.youngs_modulus))
+        return super()._values(state) | {"spring_force": float(self.scale.spring_force(state.load)), "hertz_force": hertz}
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with everything that was accepted."""
+        return replace(super().result(status, reason), kind="durometer")
+
+    def _quantities(self) -> dict[str, Quantity]:
+        found = super()._quantities()
+        radius = self.experiment.body.radius
+        hertz = hertz_reading(self.youngs_modulus, self.scale, radius)
+        told = {
+            "hertz_reading": Quantity(
+                hertz or 0.0, "1", "reading by Hertz on a half-space of the same modulus; 0 is off the scale"
+            )
+        }
+        told["youngs_modulus"] = Quantity(self.youngs_modulus, "Pa", "small-strain Young's modulus of the surface")
+        if self.balance:
+            told = self._reading() | told
+        elif self._went_all_the_way():
+            told = {"reading": Quantity(0.0, "1", "reading of an indentor that bottoms out: the true one is below 0")} | told
+            told["bottoms_out"] = Quantity(1, "1", "1 where the tissue does not bear the spring at the whole travel")
+        return told | found
+
+    def _went_all_the_way(self) -> bool:
+        return bool(self.steps) and self.steps[-1].values["displacement"] >= self.scale.travel * (1 - 1e-9)
+
+    def _reading(self) -> dict[str, Quantity]:
+        """Reading, its interval, and what Hertz would make of it."""
+        depth, force = self.balance["displacement"], self.balance["reaction_force"]
+        reading = float(self.scale.reading(depth))
+        width = self.spring_tolerance / (self._slope(depth, force) * self.scale.travel / FULL + self.scale.force_per_unit)
+        modulus = hertz_modulus(reading, self.scale, self.experiment.body.radius)
+        tolerance = format_quantity(self.spring_tolerance, "N")
+        return {
+            "reading": Quantity(reading, "1", "reading at which tissue and spring balance"),
+            "reading_low": Quantity(max(0.0, reading - width), "1", f"reading with a spring stronger by {tolerance}"),
+            "reading_high": Quantity(min(FULL, reading + width), "1", f"reading with a spring weaker by {tolerance}"),
+            "bottoms_out": Quantity(0, "1", "1 where the tissue does not bear the spring at the whole travel"),
+            "depth": Quantity(depth, "m", "depth of the indentor at the reading"),
+            "spring_force": Quantity(force, "N", "force of tissue and spring at the reading"),
+            "hertz_modulus": Quantity(modulus, "Pa", "Young's modulus that Hertz makes of the reading"),
+        }
+
+    def _slope(self, depth: float, force: float) -> float:
+        """Growth of the tissue's force with the depth in N/m at the reading, by a power law from the steps before it."""
+        before = [step.values for step in self.steps if step.values["displacement"] <= APART * depth]
+        last = before[-1] if before else {"displacement": 0.0, "reaction_force": 0.0}
+        if last["reaction_force"] <= 0:
+            return force / depth
+        exponent = np.log(force / last["reaction_force"]) / np.log(depth / last["displacement"])
+        return float(exponent * force / depth)
+
+    def _warnings(self) -> list[str]:
+        warnings = super()._warnings()
+        if self._went_all_the_way() and not self.balance:
+            warnings.append("the reading is below 0: off the scale; the force at the whole travel tells more")
+        if self.experiment.specimen.radius < WIDE:
+            given, asked = (format_quantity(value, "m") for value in (self.experiment.specimen.radius, WIDE))
+            warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")
+        return warnings
+
+    def _details(self) -> dict[str, Any]:
+        return super()._details() | {"scale": self.scale.model_dump(mode="json"), "youngs_modulus": self.youngs_modulus}

@@ -1,0 +1,1 @@
+"""Tests of a sensor film and its electronics: response, creep, calibration."""

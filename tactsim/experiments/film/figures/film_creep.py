@@ -1,0 +1,69 @@
+"""Creep tests of a film with their fits, and the coefficients over the force with their lines: thesis Fig. 2.6."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.film.figures.film_test import COEFFICIENTS
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+PER_CENT = 100.0
+MARKERS = "os^"
+
+
+class FilmCreepFigures(ResultFigures):
+    """One figure: creep on the left, coefficients on the right."""
+
+    kind: Literal["film_creep"] = "film_creep"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``film_creep.png``, unless no fit was made."""
+        return {"film_creep.png": lambda: png(film_creep_figure(result))} if result.steps else {}
+
+
+def film_creep_figure(result: Result) -> Figure:
+    """Strain over time of every test with its fit, and E0, E1 and mu1 over the force with intervals."""
+    with styled():
+        figure = new_figure(10.0, 4.2)
+        creep, coefficients = figure.subplots(1, 2)
+        _draw_creep(creep, result)
+        _draw_coefficients(coefficients, result)
+        for axis in (creep, coefficients):
+            despined(axis)
+        title = str(result.details.get("title") or "Creep of a piezoresistive film")
+        entitle(figure, title)
+    return figure
+
+
+def _draw_creep(axis: Axes, result: Result) -> None:
+    tests = result.details["tests"]
+    colours = colormaps["viridis"](np.linspace(0, 0.85, len(tests)))
+    for test, step, colour in zip(tests, result.steps, colours, strict=False):
+        values = step.values
+        time, stress = np.asarray(test["time"]), values["force"] / float(result.details["area"])
+        delayed = -np.expm1(-values["delayed"] / values["viscosity"] * time) * stress / values["delayed"]
+        axis.plot(time, PER_CENT * np.asarray(test["strain"]), ".", color=colour, markersize=2.0, alpha=0.5)
+        axis.plot(time, PER_CENT * (stress / values["instantaneous"] + delayed), color=colour, label=f"{values['force']:.3g} N")
+    axis.set(xlabel="time in s", ylabel="strain in %", title="Creep, dots, and fits, lines", ylim=(0, None))
+    axis.legend(loc="lower right", ncols=2)
+
+
+def _draw_coefficients(axis: Axes, result: Result) -> None:
+    forces = np.array([step.values["force"] for step in result.steps])
+    for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
+        values = np.array([step.values[name] for step in result.steps]) / 1e6
+        widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
+        axis.errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
+        if f"{name}_slope" in result.quantities:
+            slope, intercept = (float(result.quantities[f"{name}_{part}"].value) / 1e6 for part in ("slope", "intercept"))
+            ends = np.array([0.0, forces.max()])
+            axis.plot(ends, slope * ends + intercept, "-", color=colour, linewidth=1)
+    axis.set(xlabel="force in N", ylabel="coefficient", title="Coefficients and their lines", ylim=(0, None), xlim=(0, None))
+    axis.legend(loc="upper left")

@@ -1,0 +1,112 @@
+"""Film under constant forces: resistance and conductance over force, creep, coefficients, and the surface R(F, t)."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+Array = np.ndarray
+DATA, LINE = "#1f4e79", "#b8540a"
+MOST_CURVES = 6
+"""Forces whose creep is drawn."""
+COEFFICIENTS = (
+    ("instantaneous", "$E_0$ in MPa", "#1f4e79", "-"),
+    ("delayed", "$E_1$ in MPa", "#b8540a", "--"),
+    ("viscosity", "$\\mu_1$ in MPa s", "#4d9221", "-."),
+)
+
+
+class FilmTestFigures(ResultFigures):
+    """Four panels, and the surface of Fig. 2.10."""
+
+    kind: Literal["film_test"] = "film_test"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``film_test.png`` and, with at least two times, ``film_surface.png``."""
+        found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result))}
+        if len(result.quantities["times"].value) > 1:
+            found["film_surface.png"] = lambda: png(film_surface_figure(result))
+        return found
+
+
+def film_test_figure(result: Result) -> Figure:
+    """Thesis Fig. 2.5a, 2.5b, 2.9b and 2.6b."""
+    with styled():
+        figure = new_figure(10.0, 7.0)
+        axes = figure.subplots(2, 2)
+        _draw_readings(axes[0, 0], axes[0, 1], result)
+        _draw_creep(axes[1, 0], result)
+        _draw_coefficients(axes[1, 1], result)
+        for axis in axes.flat:
+            despined(axis)
+        title = str(result.details.get("title") or "Piezoresistive film under constant forces")
+        entitle(figure, title)
+    return figure
+
+
+def film_surface_figure(result: Result) -> Figure:
+    """Resistance over force and time, thesis Fig. 2.10."""
+    with styled():
+        figure = new_figure(7.0, 5.5)
+        axis: Any = figure.add_subplot(projection="3d")
+        forces, times = np.meshgrid(_values(result, "forces"), _values(result, "times"))
+        axis.plot_surface(
+            forces, times, np.log10(_values(result, "resistance")), cmap=colormaps["viridis"], linewidth=0.2, edgecolor="#444444"
+        )
+        axis.set_xlabel("force in N")
+        axis.set_ylabel("time since the force began in s")
+        axis.set_zlabel("$\\log_{10}$ of the resistance in ohm")
+        axis.view_init(elev=25, azim=40)
+        axis.set_box_aspect((1, 1, 0.75), zoom=0.95)
+        entitle(figure, "Resistance over force and time")
+    return figure
+
+
+def _values(result: Result, name: str) -> Array:
+    return np.asarray(result.quantities[name].value, dtype=float)
+
+
+def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
+    forces, read = _values(result, "forces"), _values(result, "reading_resistance")
+    when = f"{float(result.details['reading_time']):g} s after the force began"
+    resistance.semilogy(forces, read / 1e3, "o-", color=DATA, markersize=3, label="film and contacts")
+    resistance.semilogy(forces, _values(result, "reading_film_resistance") / 1e3, "--", color=LINE, label="film alone")
+    resistance.legend(loc="upper right")
+    resistance.set(xlabel="force in N", ylabel="resistance in kΩ", title=f"Resistance, {when}")
+    conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3, label="film")
+    slope, intercept = (float(result.quantities[f"line_{part}"].value) for part in ("slope", "intercept"))
+    label = f"C = {slope * 1e3:.4g} mS/N · F {intercept * 1e3:+.3g} mS"
+    ends = np.array([0.0, forces[-1]])
+    conductance.plot(ends, 1e3 * (slope * ends + intercept), "--", color=LINE, label=label)
+    conductance.set(xlabel="force in N", ylabel="conductance in mS", title="Conductance and its line", ylim=(0, None))
+    conductance.legend(loc="upper left")
+
+
+def _draw_creep(axis: Axes, result: Result) -> None:
+    forces, times, resistance = (_values(result, name) for name in ("forces", "times", "resistance"))
+    chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
+    colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
+    for k, colour in zip(chosen, colours, strict=True):
+        axis.semilogy(times, resistance[:, k] / 1e3, "-", color=colour, label=f"{forces[k]:.3g} N")
+    axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ", title="Creep of the resistance")
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.yaxis.set_minor_formatter(NullFormatter())
+    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.legend(loc="center right", bbox_to_anchor=(1.0, 0.62), ncols=2)
+
+
+def _draw_coefficients(axis: Axes, result: Result) -> None:
+    forces = _values(result, "forces")
+    for name, label, colour, style in COEFFICIENTS:
+        axis.plot(forces, np.asarray(result.details["coefficients"][name]) / 1e6, style, color=colour, label=label)
+    axis.set(xlabel="force in N", ylabel="coefficient", title="Standard linear solid over force", ylim=(0, None))
+    axis.legend(loc="upper left")

@@ -1,0 +1,118 @@
+"""Calibration of a force sensor: conductance over force with its line, the force errors below."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, StepRecord
+
+Array = np.ndarray
+LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
+MILLISIEMENS = 1e3
+COLUMNS = ("force", "line", "line_lower", "line_upper", "conductance", "used")
+
+
+class ForceCalibrationFigures(ResultFigures):
+    """One figure, after Fig. 3.4 of the thesis."""
+
+    kind: Literal["calibration"] = "calibration"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``calibration.png``."""
+        return {"calibration.png": lambda: png(force_calibration_figure(result))} if result.steps else {}
+
+
+def force_calibration_figure(result: Result) -> Figure:
+    """Readings, line and band above; force errors with the two limits of linearity below."""
+    with styled():
+        figure = new_figure(6.6, 5.6)
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        _draw_line(upper, result)
+        _draw_errors(lower, result)
+        title = str(result.details.get("title") or "") or "Calibration of a force sensor"
+        entitle(figure, title)
+    return figure
+
+
+def _draw_line(axis: Axes, result: Result) -> None:
+    """Conductance in mS over force in N, one line per sensor."""
+    confidence = f"{100 * float(result.details.get('confidence', np.nan)):.3g} % band of the line"
+    for number, steps in enumerate(_sensors(result)):
+        force, line, low, high, conductance, used = (_history(steps, name) for name in COLUMNS)
+        order = np.argsort(force, kind="stable")
+        labels = (confidence, _equation(result), "readings") if number == 0 else (None, None, None)
+        low, line, high, conductance = (MILLISIEMENS * values for values in (low, line, high, conductance))
+        axis.fill_between(force[order], low[order], high[order], color=LINE_COLOUR, alpha=0.3, linewidth=0, label=labels[0])
+        axis.plot(force[order], line[order], color=LINE_COLOUR, linewidth=_width(result), label=labels[1])
+        axis.plot(force, conductance, "o", color=DATA_COLOUR, markersize=_size(result), label=labels[2])
+        out = used == 0
+        if out.any():
+            axis.plot(force[out], line[out], "x", color=LIMIT_COLOUR, label="saturated, left out (on the line)")
+    axis.set_ylabel("conductance in mS")
+    handles = dict(zip(*reversed(axis.get_legend_handles_labels()), strict=True))
+    axis.legend(handles.values(), handles.keys(), loc="upper left", fontsize=8.5)
+    despined(axis)
+
+
+def _equation(result: Result) -> str:
+    """The line in the form that the thesis prints, or how many there are."""
+    slope, intercept = (MILLISIEMENS * np.atleast_1d(result.quantities[name].value) for name in ("slope", "intercept"))
+    if slope.size > 1:
+        return f"lines of {slope.size} sensors, F = {1 / slope.max():.2f} C to {1 / slope.min():.2f} C (N, mS)"
+    return f"F = {1 / slope[0]:.2f} C {'−' if intercept[0] >= 0 else '+'} {abs(intercept[0] / slope[0]):.3f} (N, mS)"
+
+
+def _draw_errors(axis: Axes, result: Result) -> None:
+    """Force read less force applied, and the bands of the lines in force, in percent of full scale."""
+    scale = float(result.details.get("full_scale", np.nan))
+    slopes = np.atleast_1d(result.quantities["slope"].value)
+    for slope, steps in zip(slopes, _sensors(result), strict=True):
+        force, line, low, high = (_history(steps, name) for name in COLUMNS[:4])
+        order = np.argsort(force, kind="stable")
+        low, high = (100 * (end - line)[order] / slope / scale for end in (low, high))
+        axis.fill_between(force[order], low, high, color=LINE_COLOUR, alpha=0.3 / np.sqrt(slopes.size), linewidth=0)
+        axis.plot(force, 100 * _history(steps, "force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
+    axis.axhline(0.0, color=LINE_COLOUR, linewidth=1)
+    for name, extreme in (("linearity_positive", np.max), ("linearity_negative", np.min)):
+        _draw_limit(axis, 100 * float(extreme(result.quantities[name].value)))
+    axis.set(xlabel="force in N", ylabel=f"read less applied,\n% of {scale:g} N")
+    despined(axis)
+
+
+def _draw_limit(axis: Axes, limit: float) -> None:
+    """A limit of linearity in percent, with its number at the right."""
+    axis.axhline(limit, color=LIMIT_COLOUR, linewidth=1, linestyle="--")
+    axis.annotate(
+        f"{limit:+.2f} %",
+        (1.0, limit),
+        xycoords=("axes fraction", "data"),
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center",
+        color=LIMIT_COLOUR,
+        fontsize=8.5,
+    )
+
+
+def _sensors(result: Result) -> list[list[StepRecord]]:
+    """The steps of each sensor."""
+    numbers = sorted({step.values["sensor"] for step in result.steps})
+    return [[step for step in result.steps if step.values["sensor"] == number] for number in numbers]
+
+
+def _width(result: Result) -> float:
+    return 1.5 if np.ndim(result.quantities["slope"].value) == 0 else 0.7
+
+
+def _size(result: Result) -> float:
+    return 3.5 if np.ndim(result.quantities["slope"].value) == 0 else 1.5
+
+
+def _history(steps: list[StepRecord], name: str) -> Array:
+    return np.array([step.values.get(name, np.nan) for step in steps])

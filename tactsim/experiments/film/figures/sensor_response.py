@@ -1,0 +1,54 @@
+"""A piezoresistive sensor under a force over time: applied and read force, and the error: thesis Fig. 3.5."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+READINGS = (
+    ("unfiltered_force", "line, unfiltered", "#9ecae1", 0.8),
+    ("read_force", "line, low pass", "#1f4e79", 1.4),
+    ("model_force", "inverse of the film", "#b8540a", 1.0),
+)
+APPLIED, SATURATED = "#000000", "#b00020"
+
+
+class SensorResponseFigures(ResultFigures):
+    """One figure: forces above, errors below."""
+
+    kind: Literal["sensor_response"] = "sensor_response"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``sensor_response.png``."""
+        return {"sensor_response.png": lambda: png(sensor_response_figure(result))}
+
+
+def sensor_response_figure(result: Result) -> Figure:
+    """Applied force with the three readings, and each reading's error."""
+    columns = {name: np.array([step.values[name] for step in result.steps]) for name in result.units}
+    time, force = columns["time"], columns["force"]
+    with styled():
+        figure = new_figure(10.0, 6.0)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1))
+        above.plot(time, force, "--", color=APPLIED, linewidth=1.0, label="applied", zorder=5)
+        for name, label, colour, width in READINGS:
+            above.plot(time, columns[name], color=colour, linewidth=width, label=label)
+            below.plot(time, columns[name] - force, color=colour, linewidth=width)
+        flagged = columns["saturated"] > 0
+        if flagged.any():
+            above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")
+        rms = float(result.quantities["rms_error"].value)
+        below.set(xlabel="time in s", ylabel="reading - applied in N", title=f"Error; root mean square {rms:.3g} N with low pass")
+        above.set(ylabel="force in N")
+        above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        for axis in (above, below):
+            despined(axis)
+        title = str(result.details.get("title") or "Response of a piezoresistive sensor")
+        entitle(figure, title)
+    return figure

@@ -1,0 +1,150 @@
+"""Calibration of a force sensor: the line C = m F + n from forces and voltages, with intervals and linearity."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
+from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
+from tactsim.interfaces import Array, Experiment, Progress
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.sensors.signal_chain import SignalChain
+from tactsim.units import Force, format_quantity
+
+FOLLOWING = 3.0
+"""Standard deviations of the residuals' correlation with their neighbours in force from which they are said to follow a curve."""
+
+
+class ForceCalibration(Experiment):
+    r"""Least-squares line of each of several piezoresistive sensors and what it leaves.
+
+    .. math:: C = m F + n, \qquad C = \frac{1}{(V^+/V_o - 1) R}
+
+    Source: thesis, 2.2.1 and 3.1.2 (Fig. 3.4: F = 20.94 C - 0.132 with C in mS, +3.9 % and -6.15 % of full scale).
+    """
+
+    kind: Literal["calibration"] = "calibration"
+    data: Annotated[SyntheticCalibration | MeasuredCalibration, Field(discriminator="kind")] = SyntheticCalibration()
+    """Where the readings come from."""
+    chain: SignalChain = SignalChain()
+    """Supply and load resistor of the divider, range of the converter; synthetic readings pass through all of it."""
+    confidence: Annotated[float, Field(ge=0.5, le=0.999)] = 0.95
+    """Of the intervals and of the band."""
+    full_scale: Annotated[Force, Field(gt=0)] | None = None
+    """Force that the linearity refers to; null is the largest force applied."""
+
+    history_units: ClassVar[dict[str, str]] = {
+        "sensor": "1",
+        "force": "N",
+        "voltage": "V",
+        "conductance": "S",
+        "line": "S",
+        "line_lower": "S",
+        "line_upper": "S",
+        "force_error": "N",
+        "used": "1",
+    }
+
+    @classmethod
+    def example(cls) -> Self:
+        """The line of 3.1.2 through a chain without noise."""
+        return cls()
+
+    def run(self, progress: Progress) -> Result:
+        """Fit the line of every sensor; one step per reading of a sensor."""
+        begin = time.perf_counter()
+        force, voltage, saturated = self.data.readings(self.chain)
+        fit = fit_calibration_line(
+            force,
+            voltage,
+            supply=self.chain.supply,
+            load=self.chain.load_resistor,
+            saturated=saturated,
+            confidence=self.confidence,
+            full_scale=self.full_scale,
+        )
+        steps = tuple(self._steps(force, voltage, fit))
+        for step in steps:
+            progress(step)
+        lines = "line" if fit.slope.size == 1 else f"{fit.slope.size} lines"
+        return Result(
+            kind=self.kind,
+            status=Status.CONVERGED,
+            reason=f"{lines} through {np.count_nonzero(fit.used)} readings",
+            quantities=self._quantities(fit),
+            assumptions=tuple(self._assumptions()),
+            warnings=tuple(self._warnings(force, fit)),
+            timing={"total": time.perf_counter() - begin},
+            steps=steps,
+            units=self.history_units,
+            details={"full_scale": float(fit.full_scale.max()), "confidence": self.confidence, "sensors": fit.slope.size},
+        )
+
+    def _steps(self, force: Array, voltage: Array, fit: CalibrationFit) -> Iterator[StepRecord]:
+        """Readings sensor by sensor; a saturated one has no conductance."""
+        line, half = np.multiply.outer(force, fit.slope) + fit.intercept, fit.band(force)
+        conductance = self.chain.conductance(np.where(fit.used, voltage, 0.0))
+        sensor, applied = np.broadcast_arrays(np.arange(1, fit.slope.size + 1), force[:, None])
+        columns = (sensor, applied, voltage, conductance, line, line - half, line + half, fit.force_error, fit.used)
+        for number, values in enumerate(zip(*(column.T.ravel() for column in columns), strict=True), 1):
+            named = dict(zip(self.history_units, map(float, values), strict=True))
+            if not named["used"]:
+                del named["conductance"], named["force_error"]
+            yield StepRecord(number, 0, 0.0, named)
+
+    def _quantities(self, fit: CalibrationFit) -> dict[str, Quantity]:
+        sure, scaled = f"{100 * self.confidence:g} % interval", "over the full scale"
+        told = {
+            "slope": (fit.slope, "S/N", "m of C = m F + n"),
+            "slope_interval": (fit.slope_interval, "S/N", f"{sure} of m, lower and upper"),
+            "intercept": (fit.intercept, "S", "n of C = m F + n"),
+            "intercept_interval": (fit.intercept_interval, "S", f"{sure} of n, lower and upper"),
+            "linearity_positive": (fit.linearity_positive, "1", f"largest force read less applied, {scaled}"),
+            "linearity_negative": (fit.linearity_negative, "1", f"smallest force read less applied, {scaled}"),
+            "rms": (fit.rms, "N", "root mean square of force read less applied"),
+            "noise": (fit.noise, "V", "standard deviation of a reading, from the residuals"),
+            "readings": (np.count_nonzero(fit.used, axis=0), "1", "readings that were fitted"),
+            "excluded": (fit.excluded, "1", "saturated readings that were left out"),
+        }
+        truth = self.data.truth()
+        if truth is not None:
+            told["slope_error"] = (fit.slope / truth[0] - 1, "1", "m over its true value, less one")
+            told["intercept_error"] = (fit.intercept - truth[1], "S", "n less its true value")
+        return {name: Quantity(_alone(value), unit, words) for name, (value, unit, words) in told.items()}
+
+    def _assumptions(self) -> list[str]:
+        told = ["the applied forces are exact; the noise is independent, Gaussian and alike in voltage at every force"]
+        if isinstance(self.data, SyntheticCalibration):
+            told.append("synthetic readings of a declared line: the data of Fig. 3.4 are not printed")
+        supply, load = format_quantity(self.chain.supply, "V"), format_quantity(self.chain.load_resistor, "ohm")
+        told.append(f"supply {supply} (0.5 V in 3.1.2, 5 V in 2.2: E27) and load resistor {load} (not printed)")
+        return told
+
+    def _warnings(self, force: Array, fit: CalibrationFit) -> list[str]:
+        told = []
+        excluded = int(fit.excluded.sum())
+        if excluded:
+            told.append(f"{excluded} of {fit.used.size} readings are saturated and were left out")
+        curved = [k + 1 for k in range(fit.slope.size) if self._curved(force, fit, k)]
+        if curved:
+            which = "" if fit.slope.size == 1 else f" of sensor {', '.join(map(str, curved))}"
+            told.append(f"the residuals{which} follow a curve: the intervals, which know noise alone, are too narrow")
+        return told
+
+    def _curved(self, force: Array, fit: CalibrationFit, sensor: int) -> bool:
+        """Whether neighbouring residuals of a sensor are more alike than noise beyond a step of the converter makes them."""
+        used = fit.used[:, sensor]
+        error = fit.force_error[used, sensor][np.argsort(force[used], kind="stable")]
+        alike = float((error[1:] * error[:-1]).sum() / max((error**2).sum(), np.finfo(float).tiny))
+        return alike * np.sqrt(error.size) > FOLLOWING and float(fit.noise[sensor]) > self.chain.converter.step
+
+
+def _alone(value: Array) -> Any:
+    """Values of shape (..., sensors) without the last axis if there is one sensor."""
+    values = value[..., 0] if value.shape[-1] == 1 else value
+    return values.item() if values.ndim == 0 else values

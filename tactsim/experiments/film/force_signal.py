@@ -1,0 +1,163 @@
+"""Forces on a sensor over time: a chirp, a square wave, pieces one after the other, or a measured record."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+from scipy.signal import chirp, square
+
+from tactsim.errors import InvalidQuantity
+from tactsim.identification.columns import read_columns
+from tactsim.mechanics.loading import ForceLoading
+from tactsim.outside.input_path import InputPath
+from tactsim.sensors.film import HOLM
+from tactsim.sensors.force_history import checked_forces, checked_times
+from tactsim.units import Force, Frequency, FrozenModel, Time, format_quantity
+
+Array = np.ndarray
+PositiveTime = Annotated[Time, Field(gt=0)]
+PositiveFrequency = Annotated[Frequency, Field(gt=0)]
+SensorForce = Annotated[Force, Field(ge=0)]
+
+
+class Wave(FrozenModel):
+    """A force between two bounds."""
+
+    low: SensorForce
+    """Smallest force."""
+    high: SensorForce
+    """Largest force."""
+    duration: PositiveTime
+    """Length."""
+
+    @model_validator(mode="after")
+    def _bounds(self) -> Self:
+        if self.low >= self.high:
+            low, high = format_quantity(self.low, "N"), format_quantity(self.high, "N")
+            raise ValueError(f"low {low} must be below high {high}")
+        return self
+
+    def sampled(self, time: Array) -> Array:
+        """Force in N at times in s."""
+        return self.low + (self.high - self.low) * self.share(time)
+
+    @property
+    @abstractmethod
+    def highest_frequency(self) -> float:
+        """In Hz."""
+
+    @abstractmethod
+    def share(self, time: Array) -> Array:
+        """Part of the way from the smallest to the largest force, between 0 and 1."""
+
+
+class Chirp(Wave):
+    """A sine whose frequency rises linearly, from the smallest force on.
+
+    Source: thesis, 3.1.2 and Fig. 3.5a: 0.1 to 2.6 N, 0.2 to 2 Hz; the duration is not printed.
+    """
+
+    kind: Literal["chirp"]
+    low: SensorForce = 0.1
+    """Smallest force."""
+    high: SensorForce = 2.6
+    """Largest force."""
+    start_frequency: PositiveFrequency = 0.2
+    """Frequency at the beginning."""
+    end_frequency: PositiveFrequency = 2.0
+    """Frequency at the end."""
+    duration: PositiveTime = 20.0
+    """Length."""
+
+    @property
+    def highest_frequency(self) -> float:
+        """In Hz."""
+        return max(self.start_frequency, self.end_frequency)
+
+    def share(self, time: Array) -> Array:
+        """Half of one plus the chirp, which begins at minus one."""
+        return (1 + chirp(time, self.start_frequency, self.duration, self.end_frequency, phi=180)) / 2
+
+
+class Square(Wave):
+    """Jumps between two forces; with an increment the upper one climbs from the lower one, period by period.
+
+    Source: thesis, 3.1.2 and Fig. 3.5b: 0.1 to 2.5 N "with 0.1 N interval" at 1 Hz; the duration is not printed.
+    """
+
+    kind: Literal["square"]
+    low: SensorForce = 0.1
+    """Smallest force."""
+    high: SensorForce = 2.5
+    """Largest force."""
+    frequency: PositiveFrequency = 1.0
+    """Frequency."""
+    increment: Annotated[Force, Field(gt=0)] | None = None
+    """Growth of the upper force with each period; null jumps between the bounds at once."""
+    duration: PositiveTime = 24.0
+    """Length."""
+
+    @property
+    def highest_frequency(self) -> float:
+        """In Hz, that of the fundamental."""
+        return self.frequency
+
+    def share(self, time: Array) -> Array:
+        """Zero in the first half of a period, then one or what the increments have reached."""
+        phase = self.frequency * np.asarray(time) * (1 + 1e-12)
+        up = (1 - square(2 * np.pi * phase)) / 2
+        if self.increment is None:
+            return up
+        return up * np.minimum(1.0, (np.floor(phase) + 1) * self.increment / (self.high - self.low))
+
+
+class Pieces(FrozenModel):
+    """Jumps, ramps, holds, sines and samples one after the other."""
+
+    kind: Literal["pieces"]
+    loading: ForceLoading
+    """The pieces."""
+    highest_frequency: ClassVar[float] = 0.0
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return self.loading.duration
+
+    def sampled(self, time: Array) -> Array:
+        """Force in N at times in s."""
+        return np.asarray(self.loading.history().value(np.asarray(time)))
+
+
+class Record(FrozenModel):
+    """A measured or computed force, linear between its samples; times count from the first one."""
+
+    kind: Literal["file"]
+    path: InputPath
+    """CSV file, beside the case or in the working folder, with the columns ``time [s], force [N]``."""
+    highest_frequency: ClassVar[float] = 0.0
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return float(self._columns[0][-1])
+
+    def sampled(self, time: Array) -> Array:
+        """Force in N at times in s."""
+        return np.interp(time, *self._columns)
+
+    @cached_property
+    def _columns(self) -> tuple[Array, Array]:
+        columns = read_columns(self.path, {"time": "s", "force": "N"}, complete=True)
+        try:
+            times = checked_times(columns["time"])
+            return times - times[0], checked_forces(columns["force"], len(times), HOLM)
+        except InvalidQuantity as error:
+            raise InvalidQuantity(f"{self.path}: {error}") from None
+
+
+AnyForceSignal = Annotated[Chirp | Square | Pieces | Record, Field(discriminator="kind")]

@@ -1,0 +1,1 @@
+"""Tissue with inclusions grasped between two jaws that carry matrices of force sensors."""

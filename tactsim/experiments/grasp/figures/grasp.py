@@ -1,0 +1,110 @@
+"""Grasp: the section through the block, the pressure maps of both jaws, a view in space, and the course over time."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any, Literal
+
+from matplotlib.figure import Figure
+
+from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
+from tactsim.experiments.grasp.figures.maps import draw_maps
+from tactsim.experiments.grasp.figures.moment import shown_moment
+from tactsim.experiments.grasp.figures.parts import grasp_of
+from tactsim.experiments.grasp.figures.section import draw_section
+from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
+from tactsim.experiments.grasp.figures.view import VIEW, grasp_view
+from tactsim.experiments.localization.figures.parts import has_views
+from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.plotting.canvas import entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, Status
+
+FAILED_COLOUR = "#b00020"
+LETTERS_PER_INCH = 11
+"""Of the status across the foot."""
+PANEL_HEIGHT = 2.1
+"""Of a history, in inches."""
+
+
+class GraspFigures(ResultFigures):
+    """The overview first; the view in space last, as it alone needs a renderer."""
+
+    kind: Literal["grasp"] = "grasp"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """What the result has fields and steps for; nothing if no step was accepted."""
+        if not result.steps:
+            return {}
+        moment = shown_moment(result) if result.status is Status.CONVERGED else result
+        drawings: dict[str, Drawing] = {"grasp.png": lambda: png(grasp_figure(moment))}
+        drawings["grasp_maps.png"] = lambda: png(maps_figure(moment))
+        if result.frames:
+            drawings["grasp_section.png"] = lambda: png(section_figure(moment))
+        if has_history(result):
+            drawings["grasp_history.png"] = lambda: png(history_figure(result))
+        if has_views(result):
+            drawings[VIEWS] = lambda: png(views_figure(moment))
+            drawings[VIEWS_PRESSURE] = lambda: png(views_figure(moment, "pressure"))
+        if has_voltages(result):
+            drawings[VOLTAGES] = lambda: png(voltages_figure(result))
+        if result.frames:
+            drawings[VIEW] = lambda: grasp_view(result)
+        return drawings
+
+
+def grasp_figure(result: Result) -> Figure:
+    """Overview: the section above the maps, and the histories beside them."""
+    grasp, timed = grasp_of(result), has_history(result)
+    with styled():
+        figure = new_figure(14.0 if timed else 8.6, 9.4 if result.frames else 5.2)
+        parts: Any = figure.subfigures(1, 2, width_ratios=(1.62, 1)) if timed else (figure,)
+        left: Any = parts[0].subfigures(2, 1) if result.frames else [parts[0]]
+        if result.frames:
+            draw_section(left[0].add_subplot(), result, grasp)
+        axes = left[-1].subplots(1, 2)
+        draw_maps((axes[0], axes[1]), result, grasp)
+        if timed:
+            draw_histories(parts[1].subplots(len(panels(result)), 1, squeeze=False)[:, 0].tolist(), result)
+        _entitle(figure, result)
+    return figure
+
+
+def section_figure(result: Result) -> Figure:
+    """The section alone."""
+    with styled():
+        figure = new_figure(9.0, 5.2)
+        draw_section(figure.add_subplot(), result, grasp_of(result))
+        _entitle(figure, result)
+    return figure
+
+
+def maps_figure(result: Result) -> Figure:
+    """The maps alone."""
+    with styled():
+        figure = new_figure(9.0, 5.0)
+        axes = figure.subplots(1, 2)
+        draw_maps((axes[0], axes[1]), result, grasp_of(result))
+        _entitle(figure, result)
+    return figure
+
+
+def history_figure(result: Result) -> Figure:
+    """The histories alone."""
+    with styled():
+        rows = panels(result)
+        figure = new_figure(8.0, PANEL_HEIGHT * len(rows) + 0.8)
+        draw_histories(figure.subplots(len(rows), 1, squeeze=False)[:, 0].tolist(), result)
+        _entitle(figure, result)
+    return figure
+
+
+def _entitle(figure: Figure, result: Result) -> None:
+    """The title, and across the foot of a run that did not end as it should its status and reason."""
+    entitle(figure, str(result.details.get("title") or "") or "Grasp")
+    if result.status is not Status.CONVERGED:
+        words = f"{str(result.status).upper()}; the last accepted step is shown: {result.reason}"
+        lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=2, placeholder=" …")
+        figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+        figure.supxlabel("\n".join(lines), color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
+        figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)

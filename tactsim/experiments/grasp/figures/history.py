@@ -1,0 +1,116 @@
+"""A grasp over time: the forces of the jaws, the pressure in an artery and the taxels that carry most."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, described, history
+from tactsim.plotting.canvas import despined, scale_of
+from tactsim.results import Result
+
+Array = np.ndarray
+
+MOST_TAXELS = 9
+FROM_ZERO = 0.5
+"""Curves that vary by more than from this part of their largest value to all of it are drawn from zero on."""
+FORCE_STYLES = {"upper": ("#0072b2", "-", "o"), "lower": ("#d55e00", "--", "s")}
+LUMEN_COLOURS = ("#7a0177", "#009e73", "#000000", "#e69f00")
+TAXEL_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d00", "#7f7f7f")
+TAXEL_MARKERS = "os^vDP*Xd"
+
+
+def has_history(result: Result) -> bool:
+    """Whether there is more than one step to draw."""
+    return len(result.steps) > 1
+
+
+def panels(result: Result) -> list[str]:
+    """What there is to draw over time, from above."""
+    found = ["forces"]
+    if _lumens(result):
+        found.append("lumen")
+    if "taxel_force_upper_history" in result.quantities:
+        found.append("taxels")
+    return found
+
+
+def draw_histories(axes: Sequence[Axes], result: Result) -> None:
+    """The panels, one under the other."""
+    along, words = abscissa(result)
+    for axis, panel in zip(axes, panels(result), strict=True):
+        {"forces": _draw_forces, "lumen": _draw_lumen, "taxels": _draw_taxels}[panel](axis, result, along)
+        axis.margins(x=0.02)
+        low, high = axis.dataLim.intervaly
+        if 0 < low < FROM_ZERO * high:
+            axis.set_ylim(bottom=0.0)
+        despined(axis)
+    for axis in axes[:-1]:
+        axis.tick_params(labelbottom=False)
+    axes[-1].set_xlabel(words)
+
+
+def abscissa(result: Result) -> tuple[Array, str]:
+    """Values (steps,) over which to draw and their name: time, or the closing where no time passes."""
+    time = history(result, "time")
+    if np.isfinite(time).all() and np.ptp(time) > 0:
+        return time, "time in s"
+    closing = history(result, "displacement")
+    factor, unit = scale_of(float(np.abs(closing).max()), "m")
+    return factor * closing, f"closing of each jaw in {unit}"
+
+
+def _lumens(result: Result) -> list[str]:
+    """History names of the pressures in lumens."""
+    return sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
+
+
+def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
+    signs = {"upper": 1.0, "lower": -1.0}
+    forces = {side: signs[side] * history(result, f"jaw_force_{side}_z") for side in SIDES}
+    factor, unit = _scale(list(forces.values()), "N")
+    for side, force in forces.items():
+        colour, line, marker = FORCE_STYLES[side]
+        axis.plot(along, factor * force, line, marker=marker, markersize=3.5, color=colour, label=f"{side} jaw")
+    axis.set_ylabel(f"force in {unit}")
+    axis.set_title("force of the tissue on each jaw, along z and away from the tissue", loc="left")
+    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
+
+
+def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
+    names = _lumens(result)
+    pressures = [history(result, name) for name in names]
+    factor, unit = _scale(pressures, "Pa")
+    for name, pressure, colour in zip(names, pressures, itertools.cycle(LUMEN_COLOURS), strict=False):
+        number = name.removeprefix("lumen_pressure").strip("_")
+        axis.plot(along, factor * pressure, ".-", color=colour, markersize=4, label=described(result.details, int(number or 1)))
+    axis.set_ylabel(f"pressure in {unit}")
+    axis.set_title("pressure in the lumen", loc="left")
+    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
+
+
+def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
+    """Factor and unit in which the largest value of all curves reads well."""
+    return scale_of(max(1e-12, *(float(np.nanmax(np.abs(curve))) for curve in curves)), unit)
+
+
+def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
+    """The taxels of both jaws that ever carry the most."""
+    forces = {
+        (side, *place): np.asarray(result.quantities[f"taxel_force_{side}_history"].value, float)[:, place[0], place[1]]
+        for side in SIDES
+        for place in np.ndindex(np.shape(result.quantities[f"taxel_force_{side}_history"].value)[1:])
+    }
+    shown = sorted(forces, key=lambda taxel: -float(np.abs(forces[taxel]).max()))[:MOST_TAXELS]
+    factor, unit = _scale([forces[shown[0]]], "N")
+    for taxel, colour, marker in zip(shown, TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
+        side, row, column = taxel
+        line = FORCE_STYLES[side][1]
+        name = f"{LETTERS[side]}{row + 1},{column + 1}"
+        axis.plot(along, factor * forces[taxel], line, color=colour, marker=marker, markersize=3.5, linewidth=1.1, label=name)
+    axis.set_ylabel(f"force in {unit}")
+    axis.set_title(f"the {len(shown)} of {len(forces)} taxels that carry most (row, column)", loc="left")
+    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)

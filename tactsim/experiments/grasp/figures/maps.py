@@ -1,0 +1,148 @@
+"""The two pressure maps of a grasp: every taxel in its place on the jaw, both jaws on one scale."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PatchCollection
+from matplotlib.colors import Normalize
+from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
+
+from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, Grasp
+from tactsim.plotting.canvas import scale_of
+from tactsim.plotting.plane_cut import QUARTERS, interfaces
+from tactsim.results import FieldFrame, Result
+
+Array = np.ndarray
+
+COLOURS = "plasma"
+MOST_NAMED = 5
+"""Matrices with more rows or columns than this have the first and the last one named."""
+MOST_WRITTEN = 100
+"""Matrices with more taxels than this show colours only, without borders, which would cover them."""
+BESIDE = 0.6
+"""Distance in mm of the names of rows and columns from the jaw."""
+BRIGHT = 0.5
+"""Brightness of a cell above which numbers are dark."""
+LUMA = (0.299, 0.587, 0.114)
+"""Weights of red, green and blue in brightness (ITU-R BT.601)."""
+CELL = 0.25e-3
+"""Spacing in m of the points on which the shadow of an inclusion is traced."""
+
+
+def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: Grasp) -> None:
+    """The upper and the lower jaw seen from above, with one colour bar."""
+    factor, unit = scale_of(grasp.largest_pressure, "Pa")
+    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
+    shadows = inclusion_shadows(result.frames[-1], grasp.size) if result.frames else None
+    for axis, side in zip(axes, SIDES, strict=True):
+        _draw_matrix(axis, grasp, side, (factor, norm))
+        _draw_surroundings(axis, grasp, side, shadows)
+        total = float(grasp.forces[side].sum())
+        axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
+        axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
+        axis.spines[:].set_visible(False)
+        axis.tick_params(length=2.5)
+    axes[1].set_ylabel("")
+    bar = axes[0].figure.colorbar(
+        ScalarMappable(norm, COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
+    )
+    small = "; small numbers: force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
+    dashed = "undeformed block" + (" and outline of the inclusions" if shadows is not None and shadows[2].any() else "")
+    bar.set_label(f"mean pressure on the taxel in {unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}")
+    bar.outline.set_linewidth(0.5)
+
+
+def _draw_matrix(axis: Axes, grasp: Grasp, side: str, scale: tuple[float, Normalize]) -> None:
+    """The taxels as squares with their pressure and force; the names of rows and columns beside them."""
+    import matplotlib
+
+    layout, place, (factor, norm) = grasp.layout, grasp.places[side], scale
+    columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
+    colours, size = matplotlib.colormaps[COLOURS], 1e3 * layout.size
+    large = float(np.clip(26 / max(layout.rows, layout.columns), 3.0, 9.0))
+    border = 0.6 if grasp.pressures[side].size <= MOST_WRITTEN else 0.0
+    squares: list[Rectangle] = []
+    for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
+        corner = (columns[column, 0], rows[row, 0])
+        shade = float(norm(factor * pressure))
+        squares.append(Rectangle(corner, size, size, facecolor=colours(shade), edgecolor="#30363d", linewidth=border))
+        if grasp.pressures[side].size > MOST_WRITTEN:
+            continue
+        brightness = float(np.dot(colours(shade)[:3], LUMA))
+        style: dict[str, Any] = {
+            "ha": "center",
+            "color": "k" if brightness > BRIGHT else "w",
+            "zorder": 4,
+            "path_effects": [_rim(colours(shade))],
+        }
+        x, y = corner[0] + size / 2, corner[1] + size / 2
+        axis.text(x, y, f"{factor * pressure:#.3g}".rstrip("."), va="bottom", fontsize=large, fontweight="bold", **style)
+        force = f"{grasp.forces[side][row, column]:#.2g}".rstrip(".")
+        axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
+    axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
+    named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
+    right, back = _extent(grasp, side)[1] + BESIDE
+    for number in _named(layout.rows):
+        axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
+    for number in _named(layout.columns):
+        axis.text(columns[number - 1].mean(), back, f"col. {number}", ha="center", va="bottom", **named)
+
+
+def _named(count: int) -> list[int]:
+    """Numbers of the rows or columns that are named: all of a few, else the first and the last."""
+    return list(range(1, count + 1)) if count <= MOST_NAMED else [1, count]
+
+
+def _extent(grasp: Grasp, side: str) -> tuple[Array, Array]:
+    """Lowest and highest x and y in mm of the jaw's face and the block."""
+    half = np.array([grasp.jaws[side].width, grasp.jaws[side].depth]) / 2
+    middle = grasp.places[side][:2]
+    return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.size[:2], middle + half)
+
+
+def _rim(colour: tuple[float, float, float, float]) -> withStroke:
+    """A rim around letters in the colour of their cell, so that no line runs through them."""
+    return withStroke(linewidth=2.2, foreground=colour)
+
+
+def _draw_surroundings(axis: Axes, grasp: Grasp, side: str, shadows: tuple[Array, Array, Array] | None) -> None:
+    """The jaw's face, the undeformed block and the shadows of the inclusions in it."""
+    jaw, place, size = grasp.jaws[side], 1e3 * grasp.places[side], 1e3 * grasp.size
+    half = 1e3 * np.array([jaw.width, jaw.depth]) / 2
+    face = Rectangle(tuple(place[:2] - half), *(2 * half), facecolor="#e6e8eb", edgecolor="#30363d", linewidth=1.0, zorder=1)
+    axis.add_patch(face)
+    axis.add_patch(Rectangle((0, 0), size[0], size[1], fill=False, edgecolor="#57606a", linewidth=0.8, linestyle=(0, (4, 3))))
+    low, high = _extent(grasp, side)
+    room = 0.11 * (high[0] - low[0])
+    axis.set(xlim=(low[0] - 1.0, high[0] + BESIDE + room), ylim=(low[1] - 1.0, high[1] + BESIDE + room / 2))
+    axis.set_xticks([tick for tick in axis.get_xticks() if low[0] <= tick <= high[0]])
+    axis.set_yticks([tick for tick in axis.get_yticks() if low[1] <= tick <= high[1]])
+    if shadows is not None and shadows[2].any():
+        x, y, covered = shadows
+        axis.contour(x, y, covered, levels=[0.5], colors=["w"], linewidths=2.2, zorder=3)
+        axis.contour(x, y, covered, levels=[0.5], colors=["k"], linewidths=1.0, linestyles="--", zorder=3)
+
+
+def inclusion_shadows(frame: FieldFrame, size: Array) -> tuple[Array, Array, Array]:
+    """Grid lines x and y in mm, and where (y, x) an undeformed inclusion lies above or below."""
+    x, y = (np.arange(-CELL, length + 1.5 * CELL, CELL) for length in size[:2])
+    covered = np.zeros((len(y), len(x)))
+    faces, between = interfaces(frame)
+    inner = faces[between.max(axis=1) > 0]
+    for a, b, c in frame.points[inner[:, QUARTERS].reshape(-1, 3)][:, :, :2]:
+        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+        columns, rows = (slice(*np.searchsorted(line, (low[k], high[k]))) for k, line in enumerate((x, y)))
+        turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if turn == 0 or columns.start == columns.stop or rows.start == rows.stop:
+            continue
+        px, py = x[None, columns], y[rows, None]
+        first = ((b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0])) / turn
+        second = ((px - a[0]) * (c[1] - a[1]) - (py - a[1]) * (c[0] - a[0])) / turn
+        within = (first >= -1e-9) & (second >= -1e-9) & (first + second <= 1 + 1e-9)
+        covered[rows, columns] = np.maximum(covered[rows, columns], within)
+    return 1e3 * x, 1e3 * y, covered

@@ -1,0 +1,161 @@
+"""The vertical cut through a grasped block: deformed tissue with its pressure, inclusions, jaws and their taxels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.tri import Triangulation
+
+from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, Grasp, described, ending, inclusions_of
+from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
+from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
+from tactsim.results import FieldFrame, Result
+
+Array = np.ndarray
+
+JAW_SHOWN = 2.6
+"""Height in mm of the jaws in the picture."""
+TAXEL_SHOWN = 0.55
+"""Height in mm of a taxel's mark in the jaw's face."""
+LONGER = 1.2
+"""An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
+GRID = 250
+"""Points per direction on which a jaw is traced."""
+EVEN = 1e-4
+"""Spread of the pressure over its size below which it counts as even."""
+MOST_NAMED = 12
+"""Taxels along a cut of which each is named; of more, every so many."""
+TAXEL_COLOUR, INCLUSION_COLOUR = "#e69f00", "#000000"
+
+
+def cutting_plane(frame: FieldFrame, size: Array) -> tuple[int, float, int]:
+    """Axis across the cut, its level in m where the body is deformed, and the inclusion that it passes through (0 if none).
+
+    The inclusion is that whose middle is the farthest from both jaws; a long one is cut across its length.
+    """
+    places, inclusions = deformed(frame), inclusions_of(frame)
+    if not inclusions:
+        return 1, float(size[1] / 2), 0
+
+    def height(nodes: Array) -> float:
+        middle = (frame.points[nodes, 2].min() + frame.points[nodes, 2].max()) / 2
+        return round(min(middle, size[2] - middle) / size[2], 6)
+
+    number = max(inclusions, key=lambda k: (height(inclusions[k]), -k))
+    reached = places[inclusions[number]]
+    extent = np.ptp(reached, axis=0)
+    axis = 0 if extent[0] > LONGER * extent[1] else 1
+    return axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number
+
+
+def draw_section(axis: Axes, result: Result, grasp: Grasp) -> None:
+    """The cut of the last frame."""
+    frame = result.frames[-1]
+    across, level, number = cutting_plane(frame, grasp.size)
+    pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
+    cut = plane_cut(frame, across, level, np.asarray(pressure))
+    _draw_pressure(axis, cut)
+    _draw_outlines(axis, cut, result)
+    limits = _window(cut, grasp)
+    for side in SIDES:
+        _draw_jaw(axis, grasp, side, limits, (across, level))
+    along = "yx"[across]
+    axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
+    through = f"the middle of {described(result.details, number)}" if number else "the middle of the block"
+    place = f"cut at {'xy'[across]} = {1e3 * level:.3g} mm through {through}"
+    axis.set_title(place + ("\n" if "moment" in result.details else "; ") + ending(result), loc="left")
+    despined(axis)
+
+
+def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
+    """The pressure with robust limits, so that singular edges do not take all the colours."""
+    areas = np.repeat(cut.areas(), 3) / 3
+    low, high = weighted_percentiles(cut.values.ravel(), areas, (1, 99))
+    factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
+    low, high = factor * low, factor * high
+    if high - low <= EVEN * max(abs(low), abs(high)):  # round-off is no pattern
+        spread = 0.5 * (abs(high) or 1.0)
+        low, high = low - spread, high + spread
+    values = factor * cut.values.ravel()
+    corners = 1e3 * cut.triangles.reshape(-1, 2)
+    mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))
+    style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": "viridis", "vmin": low, "vmax": high}
+    drawn = axis.tripcolor(mesh, values, **style)
+    beyond = (bool(values.min() < low), bool(values.max() > high))
+    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
+    bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)
+    extremes = f"{values.min():.3g} to {values.max():.3g} {unit} in this cut"
+    bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})")
+    bar.outline.set_linewidth(0.5)
+
+
+def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
+    """The outline of the block, and with a white rim that of every inclusion, named."""
+    inner = cut.between.max(axis=1) > 0
+    segments = 1e3 * cut.segments
+    axis.add_collection(LineCollection(list(segments[~inner]), colors="k", linewidths=0.9, capstyle="round"))
+    axis.add_collection(LineCollection(list(segments[inner]), colors="w", linewidths=2.6, capstyle="round"))
+    axis.add_collection(LineCollection(list(segments[inner]), colors=INCLUSION_COLOUR, linewidths=1.2, capstyle="round"))
+    for number in sorted({int(k) for k in cut.between[inner].max(axis=1)}):
+        ends = segments[(cut.between == number).any(axis=1)].reshape(-1, 2)
+        middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
+        box = {"boxstyle": "round,pad=0.2", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
+        axis.text(
+            middle[0], middle[1], described(result.details, number), ha="center", va="center", fontsize=8, bbox=box, zorder=4
+        )
+
+
+def _window(cut: PlaneCut, grasp: Grasp) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Limits in mm of the picture."""
+    low, high = 1e3 * cut.triangles.min(axis=(0, 1)), 1e3 * cut.triangles.max(axis=(0, 1))
+    margin = 0.03 * (high[0] - low[0])
+    top = max(high[1], 1e3 * grasp.places["upper"][2]) + JAW_SHOWN
+    bottom = min(low[1], 1e3 * grasp.places["lower"][2]) - JAW_SHOWN
+    return (float(low[0] - margin), float(high[0] + margin)), (float(bottom), float(top))
+
+
+def _draw_jaw(
+    axis: Axes, grasp: Grasp, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: tuple[int, float]
+) -> None:
+    """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes."""
+    jaw, place, (across, level) = grasp.jaws[side], grasp.places[side], plane
+    middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
+    along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
+    points = np.empty((3, along.size))
+    points[1 - across], points[2], points[across] = 1e-3 * along.ravel(), 1e-3 * height.ravel(), level
+    distance = jaw.signed_distance(points - place[:, None])[0].reshape(along.shape)
+    if distance.min() > 0:
+        return
+    axis.contourf(along, height, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
+    axis.contour(along, height, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
+    _draw_taxels(axis, grasp, side, plane)
+    edge = limits[1][1] - 0.3 if side == "upper" else limits[1][0] + 0.3
+    where: dict[str, Any] = {"ha": "left", "va": "top" if side == "upper" else "bottom"}
+    left = 1e3 * (place[1 - across] - (jaw.depth if across == 0 else jaw.width) / 2)
+    axis.text(max(left, limits[0][0]) + 0.6, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
+
+
+def _draw_taxels(axis: Axes, grasp: Grasp, side: str, plane: tuple[int, float]) -> None:
+    """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
+    (across, level), jaw, place = plane, grasp.jaws[side], grasp.places[side]
+    fixed = (level - place[across]) / jaw.rotation[across, across]
+    passed = grasp.layout.borders("xy"[across])
+    hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
+    for index in hit:
+        borders = grasp.layout.borders("yx"[across])
+        every = -(-len(borders) // MOST_NAMED)
+        for number, (low, high) in enumerate(borders):
+            corners = np.zeros((3, 4))
+            corners[1 - across], corners[across] = [low, high, high, low], fixed
+            corners[2] = np.array([0.0, 0.0, 1e-3, 1e-3]) * TAXEL_SHOWN
+            shown = 1e3 * (jaw.rotation @ corners + place[:, None])
+            axis.fill(shown[1 - across], shown[2], facecolor=TAXEL_COLOUR, edgecolor="#30363d", linewidth=0.5, zorder=4)
+            if number % every:
+                continue
+            row, column = (index, number) if across == 1 else (number, index)
+            above: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5}
+            normal = 2.2 * TAXEL_SHOWN * jaw.rotation[2, 2]
+            axis.text(shown[1 - across].mean(), shown[2].mean() + normal, f"{LETTERS[side]}{row + 1},{column + 1}", **above)

@@ -1,0 +1,84 @@
+"""Voltages of both matrices over time, and the forces read from them beside those applied."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.grasp.figures.parts import SIDES
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+Array = np.ndarray
+VOLTAGES = "taxel_voltages.png"
+MOST_NAMED = 16
+"""Taxels of a matrix up to which each curve is named."""
+READ, APPLIED = "#1f4e79", "#b8540a"
+
+
+class MatrixReadoutFigures(ResultFigures):
+    """One figure."""
+
+    kind: Literal["matrix_readout"] = "matrix_readout"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``taxel_voltages.png``."""
+        return {VOLTAGES: lambda: png(voltages_figure(result))}
+
+
+def has_voltages(result: Result) -> bool:
+    """Whether the matrices of a result were read."""
+    return "voltage_upper_history" in result.quantities
+
+
+def voltages_figure(result: Result) -> Figure:
+    """Upper jaw in the upper row: its voltages over time, and the force of each taxel at the end, read and applied."""
+    with styled():
+        figure = new_figure(10.5, 6.4)
+        axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
+        factor, unit = scale_of(max(float(_values(result, f"voltage_{side}_history").max()) for side in SIDES), "V")
+        for row, side in zip(axes, SIDES, strict=True):
+            _draw_voltages(row[0], result, side, factor)
+            _draw_forces(row[1], result, side)
+            row[0].set(ylabel=f"voltage in {unit}", title=f"{side.capitalize()} jaw")
+        axes[1, 0].set_xlabel("time in s")
+        axes[1, 1].set_xlabel("taxel, row and column")
+        axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
+        axes[0, 1].legend(loc="upper right", ncols=2)
+        for axis in axes.flat:
+            despined(axis)
+        title = str(result.details.get("title") or "Voltages of the matrices")
+        entitle(figure, title)
+    return figure
+
+
+def _values(result: Result, name: str) -> Array:
+    return np.asarray(result.quantities[name].value, dtype=float)
+
+
+def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None:
+    time, voltage = _values(result, "readout_time"), factor * _values(result, f"voltage_{side}_history")
+    rows, columns = voltage.shape[1:]
+    colours = colormaps["viridis"](np.linspace(0, 0.9, rows * columns))
+    for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
+        style = ("-", "--", "-.", ":")[column % 4]
+        axis.plot(time, voltage[:, row, column], style, color=colour, linewidth=1.0, label=f"{row + 1},{column + 1}")
+    if rows * columns <= MOST_NAMED:
+        axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)
+
+
+def _draw_forces(axis: Axes, result: Result, side: str) -> None:
+    applied, read = _values(result, f"taxel_force_{side}"), _values(result, f"read_force_{side}")
+    places = np.arange(applied.size)
+    axis.bar(places, applied.ravel(), width=0.8, color="#fdd0a2", edgecolor=APPLIED, linewidth=0.6, label="applied")
+    axis.plot(places, read.ravel(), "o", color=READ, markersize=4, label="read")
+    axis.set(ylabel="force at the end in N", title="Applied and read")
+    if applied.size <= MOST_NAMED:
+        axis.set_xticks(places, [f"{row + 1},{column + 1}" for row, column in np.ndindex(*applied.shape)], fontsize=7)
+    else:
+        axis.set_xticks([])

@@ -1,0 +1,167 @@
+"""A grasp in space: translucent tissue, its inclusions, the jaws as thin plates and a bar for the pressure on every taxel."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+
+from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.figures.maps import COLOURS
+from tactsim.experiments.grasp.figures.parts import SIDES, Grasp, described, ending, grasp_of, inclusions_of
+from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.off_screen import Camera, Surface, pictures
+from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
+from tactsim.results import FieldFrame, Result, Status
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+FROM_ABOVE, FROM_BELOW = (0.55, -1.0, 0.5), (0.55, -1.0, -0.5)
+"""From the block to the eye."""
+PIXELS = (1500, 1160)
+PLATE, BAR = 0.06, 0.55
+"""Thickness of the plates that stand for the jaws and length of the longest bar, over the height of the block."""
+LEAST_BAR = 0.01
+"""Length of a bar without pressure, over the height of the block, so that its place is seen."""
+TISSUE_COLOUR, INCLUSION_COLOUR, JAW_COLOUR = "#f0b8a0", "#009e73", "#aab1ba"
+ARROW = 0.2
+"""Length of the arrows along the axes, over the longest side of the block."""
+_BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+_BOX_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+_BOX_TRIANGLES = _BOX_SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+VIEW = "grasp_view.png"
+"""File name of the view."""
+
+
+def grasp_view(result: Result) -> bytes:
+    """The PNG of the view.
+
+    Raises
+    ------
+    TactsimError
+        If this machine cannot render.
+    """
+    try:
+        return png(view_figure(result))
+    except TactsimError as error:
+        raise TactsimError(f"{VIEW} is left out: {error}") from error
+
+
+def view_figure(result: Result) -> Figure:
+    """The rendered scene from above and from below, with names, axes and the scale of the bars."""
+    grasp, frame = grasp_of(result), result.frames[-1]
+    surfaces = scene(frame, grasp)
+    cameras = [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
+    images = pictures(surfaces, cameras)
+    with styled():
+        figure = new_figure(12.0, 5.8)
+        figure.set_layout_engine("constrained", h_pad=0.08)
+        axes = figure.subplots(1, 2)
+        for axis, camera, image, words in zip(axes, cameras, images, ("from above", "from below"), strict=True):
+            axis.imshow(imread(io.BytesIO(image)), interpolation="lanczos")
+            axis.set_axis_off()
+            axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
+            annotate(axis, grasp, camera)
+        _tell(axes[1], result)
+        factor, unit = scale_of(grasp.largest_pressure, "Pa")
+        norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
+        bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+        bar.set_label(f"mean pressure on the taxel in {unit}: colour and length of its bar on the back of the jaw")
+        bar.outline.set_linewidth(0.5)
+        status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
+        title = str(result.details.get("title") or "") or "Grasp"
+        entitle(figure, f"{title}: {ending(result)}{status}")
+    return figure
+
+
+def scene(frame: FieldFrame, grasp: Grasp) -> list[Surface]:
+    """Everything in the view, in m."""
+    nodes, (faces, between) = deformed(frame), interfaces(frame)
+    triangles = faces[:, QUARTERS]
+    outer = (between == [OUTER, 0]).all(axis=1)
+    surfaces = [_surface(nodes, triangles[outer], TISSUE_COLOUR, opacity=0.22, creases=True)]
+    for number in inclusions_of(frame):
+        mine = (between == number).any(axis=1)
+        surfaces.append(_surface(nodes, triangles[mine], INCLUSION_COLOUR, smooth=True))
+    for side in SIDES:
+        surfaces += jaw_surfaces(grasp, side)
+    return surfaces
+
+
+def _surface(nodes: Array, triangles: Array, colour: str, **style: Any) -> Surface:
+    used, numbers = np.unique(triangles, return_inverse=True)
+    return Surface(nodes[used], numbers.reshape(-1, 3), colour, **style)
+
+
+def jaw_surfaces(grasp: Grasp, side: str) -> list[Surface]:
+    """The plate, and on its back the bars in the colours of their pressure."""
+    jaw, layout, height = grasp.jaws[side], grasp.layout, float(grasp.size[2])
+    back = PLATE * height
+    low = np.array([-jaw.width / 2, -jaw.depth / 2, 0.0])
+    plate = _placed(grasp, side, _BOX * np.array([jaw.width, jaw.depth, back]) + low)
+    boxes, colours = [], []
+    norm = Normalize(grasp.smallest_pressure, grasp.largest_pressure)
+    for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
+        length = height * max(LEAST_BAR, BAR * max(0.0, float(pressure)) / grasp.largest_pressure)
+        corner = np.array([layout.borders("x")[column, 0], layout.borders("y")[row, 0], back])
+        boxes.append(_placed(grasp, side, _BOX * np.array([layout.size, layout.size, length]) + corner))
+        colours.append(matplotlib.colormaps[COLOURS](float(norm(pressure)))[:3])
+    triangles = np.arange(len(boxes))[:, None, None] * len(_BOX) + _BOX_TRIANGLES
+    painted = np.repeat(np.array(colours), len(_BOX_TRIANGLES), axis=0)
+    bars = Surface(np.concatenate(boxes), triangles.reshape(-1, 3), painted, creases=True)
+    return [Surface(plate, _BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
+
+
+def _placed(grasp: Grasp, side: str, own: Array) -> Array:
+    """Points (n, 3) in the jaw's own axes, in those of the block."""
+    return own @ grasp.jaws[side].rotation.T + grasp.places[side]
+
+
+def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
+    """A camera that sees everything, with a margin."""
+    points = np.concatenate([surface.points for surface in surfaces])
+    trial = Camera((0.0, 0.0, 0.0), direction, 1.0, PIXELS)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    flat = (trial.project(points - middle) - np.array(PIXELS) / 2) / (PIXELS[1] / 2)
+    reach = np.abs(flat).max(axis=0)
+    half = 1.05 * max(float(reach[1]), float(reach[0]) * PIXELS[1] / PIXELS[0])
+    return Camera((float(middle[0]), float(middle[1]), float(middle[2])), direction, half, PIXELS)
+
+
+def annotate(axis: Axes, grasp: Grasp, camera: Camera) -> None:
+    """The directions of the axes with a length, and the jaws' names."""
+    length = ARROW * float(grasp.size.max())
+    corner = np.array([0.06, 0.93]) * camera.pixels
+    begin, *ends = camera.project(length * np.vstack([np.zeros(3), np.eye(3)]))
+    for name, end in zip("xyz", ends, strict=True):
+        tip = corner + end - begin
+        axis.annotate(
+            "",
+            (tip[0], tip[1]),
+            (corner[0], corner[1]),
+            arrowprops={"arrowstyle": "-|>", "color": "k", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
+        )
+        beyond = corner + 1.18 * (end - begin)
+        axis.text(beyond[0], beyond[1], name, ha="center", va="center")
+    words = f"arrows: {format_quantity(length, 'm')}"
+    axis.text(0.0, -0.03, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
+    for side in SIDES:
+        jaw, sign = grasp.jaws[side], 1.0 if side == "upper" else -1.0
+        own = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.size[2]) / 2])
+        x, y = camera.project(_placed(grasp, side, own[None]))[0]
+        axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
+
+
+def _tell(axis: Axes, result: Result) -> None:
+    """The names of the inclusions in their colour."""
+    told = ", ".join(described(result.details, number) for number in inclusions_of(result.frames[-1]))
+    if told:
+        axis.text(0.99, 0.04, told, transform=axis.transAxes, ha="right", color=INCLUSION_COLOUR, fontweight="bold")

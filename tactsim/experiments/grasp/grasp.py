@@ -1,0 +1,49 @@
+"""A block of tissue with lumps and arteries between two jaws that carry matrices of force sensors."""
+
+from __future__ import annotations
+
+import time
+from typing import ClassVar, Literal, Self
+
+from tactsim.experiments.collecting import ended_early
+from tactsim.experiments.grasp.path import grasp_path
+from tactsim.experiments.grasp.record import GraspRecord
+from tactsim.experiments.grasp.setup import Block, GraspSetup
+from tactsim.interfaces import Experiment, Progress
+from tactsim.materials.library import named_material
+from tactsim.mechanics.block_source import StructuredSource
+from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.results.result import Result, Status
+
+
+class Grasp(GraspSetup, Experiment):
+    """A block of tissue between two jaws with matrices of taxels.
+
+    Source: thesis, sections 6.3 and 6.5.
+    """
+
+    kind: Literal["grasp"] = "grasp"
+
+    history_units: ClassVar[dict[str, str]] = GraspRecord.UNITS
+
+    @classmethod
+    def example(cls) -> Self:
+        """A plain block on few elements, closed by 1 mm per jaw."""
+        closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
+        return cls(
+            block=Block(tissue=named_material("icf_stable").material),
+            loading=DisplacementLoading.model_validate(closing),
+            mesh=StructuredSource(kind="structured", cells=(4, 4, 2)),
+        )
+
+    def run(self, progress: Progress) -> Result:
+        """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
+        begin = time.perf_counter()
+        sourced = self.sourced()
+        model = self.model(sourced)
+        path = grasp_path(self, model)
+        record = GraspRecord(self, model, sourced, path, begin)
+        early = ended_early(record, (record.accept(state) for state, _ in path.states()), progress)
+        if early is not None:
+            return early
+        return record.result(Status.CONVERGED, "end of the history")

@@ -1,0 +1,70 @@
+"""The quantities of a grasp: at the last accepted step, and over all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tactsim.experiments.grasp.readings import JawReading
+from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.results.result import Quantity
+
+Array = np.ndarray
+Values = Sequence[dict[str, float]]
+
+LAST = ", at the last accepted step"
+BY_TAXEL = "[row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
+
+
+def final_quantities(values: Values, readings: dict[str, JawReading], experiment: GraspSetup) -> dict[str, Quantity]:
+    """Quantities at the last accepted step, and the extremes of all steps."""
+    last, area = values[-1], experiment.matrix.area
+    found = {
+        "time": Quantity(last["time"], "s", "time of the last accepted step"),
+        "displacement": Quantity(last["displacement"], "m", "closing of each jaw from first touch" + LAST),
+        "reaction_force": Quantity(last["reaction_force"], "N", "force pressing into the face of the upper jaw" + LAST),
+    }
+    for side, reading in readings.items():
+        x, y, normal = reading.taxels.taxels
+        of = f"of the {side} jaw{LAST}"
+        found |= {
+            f"jaw_force_{side}": Quantity(reading.force.tolist(), "N", f"force (x, y, z) of the tissue on the {side} jaw" + LAST),
+            f"taxel_force_{side}": Quantity(normal.tolist(), "N", f"force pressing on each taxel {of}; {BY_TAXEL}"),
+            f"taxel_shear_{side}": Quantity(
+                np.stack([x, y], axis=-1).tolist(), "N", f"force (x, y) along the face on each taxel {of}; {BY_TAXEL}"
+            ),
+            f"taxel_pressure_{side}": Quantity((normal / area).tolist(), "Pa", f"force over area of each taxel {of}; {BY_TAXEL}"),
+            f"gap_force_{side}": Quantity(float(reading.taxels.gaps[2]), "N", f"force pressing between the taxels {of}"),
+            f"outside_force_{side}": Quantity(float(reading.taxels.outside[2]), "N", f"force pressing beside the matrix {of}"),
+        }
+    if experiment.lumens:
+        pressures = [last[f"lumen_pressure_{number}"] for number in experiment.lumens]
+        found["lumen_pressure"] = Quantity(pressures, "Pa", "pressure in each lumen, by the order of the inclusions" + LAST)
+    deepest = max(step["max_penetration"] for step in values)
+    least = min(step["min_volume_ratio"] for step in values)
+    found["max_penetration"] = Quantity(deepest, "m", "largest penetration at any surface point in any step")
+    found["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
+    share = last["unstable_volume_fraction"]
+    found["unstable_volume_fraction"] = Quantity(share, "1", "part of the volume outside strong ellipticity at any accepted step")
+    return found
+
+
+def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]], experiment: GraspSetup) -> dict[str, Quantity]:
+    """What every accepted step had, if there are more than one."""
+    if len(values) < 2:
+        return {}
+    told = {"time": "time", "displacement": "closing of each jaw", "reaction_force": "force pressing into the upper jaw's face"}
+    units = {"time": "s", "displacement": "m", "reaction_force": "N"}
+    found = {
+        f"{name}_history": Quantity([step[name] for step in values], units[name], f"{text}, at each accepted step")
+        for name, text in told.items()
+    }
+    for side in readings[0]:
+        forces = [reading[side].taxels.taxels[2].tolist() for reading in readings]
+        text = f"force pressing on each taxel of the {side} jaw, [step]{BY_TAXEL}"
+        found[f"taxel_force_{side}_history"] = Quantity(forces, "N", text)
+    if experiment.lumens:
+        pressures = [[step[f"lumen_pressure_{number}"] for number in experiment.lumens] for step in values]
+        found["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [step][lumen]")
+    return found

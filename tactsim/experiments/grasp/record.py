@@ -1,0 +1,253 @@
+"""What a grasp reports: history, forces of the taxels, fields, assumptions and warnings."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tactsim.errors import InvalidQuantity
+from tactsim.experiments.grasp.lumen_pressure import PulsePressure
+from tactsim.experiments.grasp.overhang import overhang_warnings
+from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
+from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
+from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
+from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
+from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely, unstable
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.block_source import SourcedBlock
+from tactsim.mechanics.contact_quality import ContactQuality
+from tactsim.mechanics.ellipticity import elliptic_in
+from tactsim.mechanics.history_path import TimedPath, TimedState
+from tactsim.mechanics.penetration_effect import bonded_block_rate
+from tactsim.mechanics.solid_fields import solid_frame
+from tactsim.mechanics.success import judged
+from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.sensors.matrix_readout import MatrixReading
+from tactsim.units import format_quantity
+
+MOST_COLUMNS = 8
+"""Rows and columns of a matrix up to which the history has a column for every taxel."""
+MOST_LUMENS = 32
+AXES = "xyz"
+
+
+class GraspRecord:
+    """Collects accepted steps and turns them into a result."""
+
+    UNITS: ClassVar[dict[str, str]] = {
+        "time": "s",
+        "displacement": "m",
+        "reaction_force": "N",
+        **{f"jaw_force_{side}_{axis}": "N" for side in SIDES for axis in AXES},
+        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in SIDES},
+        "max_penetration": "m",
+        "min_volume_ratio": "1",
+        "unstable_volume_fraction": "1",
+        **ContactQuality.UNITS,
+        **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
+        **{
+            f"taxel_force_{side}_{row}_{column}": "N"
+            for side in SIDES
+            for row in range(1, MOST_COLUMNS + 1)
+            for column in range(1, MOST_COLUMNS + 1)
+        },
+    }
+
+    def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath, begin: float):
+        self.experiment, self.model, self._sourced, self._path, self._begin = experiment, model, sourced, path, begin
+        self.steps: list[StepRecord] = []
+        self.readings: list[dict[str, JawReading]] = []
+        self._kept: dict[str, TimedState] = {}
+        self._quality = ContactQuality(_stiffest(experiment))
+        self._unstable = np.zeros(model.body.points.weights.shape, bool)
+        self._setup_time = time.perf_counter() - begin
+        self._read: MatrixReading | None = None
+        self._unread: str | None = None
+
+    def accept(self, state: TimedState) -> StepRecord:
+        """Record an accepted state.
+
+        Raises
+        ------
+        ConvergenceError
+            If the forces of the taxels do not add up to that of the jaw.
+        """
+        readings = jaw_readings(self.model, state.contact, self.experiment.matrix)
+        values = self._values(state, readings)
+        record = StepRecord(len(self.steps) + 1, state.iterations, state.contact.residual, values)
+        self.steps.append(record)
+        self.readings.append(readings)
+        self._keep(state)
+        return record
+
+    def _values(self, state: TimedState, readings: dict[str, JawReading]) -> dict[str, float]:
+        self._unstable |= ~elliptic_in(self.model.body, state.contact.kinematics)
+        weights, layout = self.model.body.points.weights, self.experiment.matrix
+        values = {"time": state.time, "displacement": state.contact.load, "reaction_force": readings["upper"].normal}
+        for side, reading in readings.items():
+            values |= {f"jaw_force_{side}_{axis}": float(part) for axis, part in zip(AXES, reading.force, strict=True)}
+            values[f"gap_force_{side}"] = float(reading.taxels.gaps[2])
+            values[f"outside_force_{side}"] = float(reading.taxels.outside[2])
+        values["max_penetration"] = deepest_penetration(self.model, state.contact)
+        values["min_volume_ratio"] = float(state.contact.kinematics.J.min())
+        values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
+        values |= self._quality.values(self.model.body, state.contact)
+        values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
+        if max(layout.rows, layout.columns) <= MOST_COLUMNS:
+            for side, reading in readings.items():
+                for (row, column), force in np.ndenumerate(reading.taxels.taxels[2]):
+                    values[f"taxel_force_{side}_{row + 1}_{column + 1}"] = float(force)
+        return values
+
+    def _keep(self, state: TimedState) -> None:
+        """The first and the last state, and that of the largest sum of all pressures in lumens."""
+        self._kept.setdefault("first", state)
+        strongest = self._kept.get("strongest", state)
+        if self.experiment.lumens and sum(state.loads[1:]) >= sum(strongest.loads[1:]):
+            self._kept["strongest"] = state
+        self._kept["last"] = state
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with everything that was accepted; no success if the last state is none."""
+        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
+        readout, layout = self.experiment.readout, self.experiment.matrix
+        if readout is not None and self.steps:
+            times = np.array([step.values["time"] for step in self.steps])
+            forces = np.array([[reading[side].taxels.taxels[2] for side in SIDES] for reading in self.readings])
+            try:
+                self._read = readout.read(times, forces, layout.area)
+            except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
+                self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
+        return Result(
+            kind="grasp",
+            status=status,
+            reason=reason,
+            quantities=self._quantities(),
+            assumptions=tuple(self._assumptions()),
+            warnings=tuple(self._warnings()),
+            timing={
+                "meshing": self._sourced.block.seconds,
+                "setup": self._setup_time,
+                "total": time.perf_counter() - self._begin,
+            },
+            steps=tuple(self.steps),
+            units=self.UNITS,
+            frames=self._frames(),
+            details=self._details(),
+        )
+
+    def _quantities(self) -> dict[str, Quantity]:
+        unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
+        if not self.steps:
+            return unknowns
+        values = [step.values for step in self.steps]
+        found = final_quantities(values, self.readings[-1], self.experiment) | self._quality.quantities(self.steps)
+        if (asymmetry := self._asymmetry()) is not None:
+            text = "largest difference of a taxel's force from that on its mirror image, over the largest force" + LAST
+            found["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
+        found |= history_quantities(values, self.readings, self.experiment) | unknowns
+        return found if self._read is None else found | readout_quantities(self._read)
+
+    def _assumptions(self) -> list[str]:
+        experiment, block = self.experiment, self._sourced.block
+        size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
+        told = [f"block of {size} (the thesis prints no size)"]
+        for side in SIDES:
+            jaw = experiment.jaw(side)
+            width, depth = format_quantity(jaw.width, "m"), format_quantity(jaw.depth, "m")
+            edges = format_quantity(jaw.fillet, "m")
+            told.append(f"{side} jaw of {width} x {depth}, edges rounded by {edges} (not printed)")
+        pitch, taxel = format_quantity(experiment.matrix.pitch, "m"), format_quantity(experiment.matrix.size, "m")
+        told.append(f"taxels of {taxel} at a pitch of {pitch} (not printed)")
+        for number, lumen in experiment.lumens.items():
+            if isinstance(lumen, PulsePressure):
+                least, most = (format_quantity(value, "Pa") for value in lumen.limits)
+                reading = f"reading {lumen.reading} (erratum E14)" if lumen.diastole is lumen.systole is None else "as given"
+                told.append(f"lumen {number}: {reading}, {least} to {most} at {lumen.rate:g} Hz, a raised cosine")
+        if any(material.bulk_modulus is None for material in experiment.materials):
+            told.append("exactly incompressible materials (section 6.5)")
+        told.append(
+            f"mesh {self._sourced.content} ({self._sourced.origin}): {self.model.space.size} unknowns, "
+            f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
+        )
+        told.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
+        if experiment.relaxes:
+            told.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
+        if experiment.readout is not None:
+            told += readout_assumptions(experiment.readout, experiment.matrix.area)
+        return told
+
+    def _warnings(self) -> list[str]:
+        readout, told = self.experiment.readout, []
+        if readout is not None and self._read is not None:
+            told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
+        if self._unread:
+            told.append(self._unread)
+        told += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
+        told += [*overhang_warnings(self.experiment), *self._quality.warnings(), *unlikely(self.experiment)]
+        return [*told, *unstable(self.steps)]
+
+    def _asymmetry(self) -> float | None:
+        """How far the last forces are from their mirror images, None if the grasp is not its own."""
+        axes = mirror_axes(self.experiment)
+        return mirror_asymmetry(self.readings[-1], axes) if axes and self.readings else None
+
+    def _frames(self) -> tuple[FieldFrame, ...]:
+        """Fields of the kept states, by time."""
+        kept = sorted({id(state): state for state in self._kept.values()}.values(), key=lambda state: state.time)
+        return tuple(
+            solid_frame(
+                self.model.mesh,
+                self.model.body,
+                state.contact,
+                time=state.time,
+                isochoric=None if state.memory is None else state.memory.stress,
+            )
+            for state in kept
+        )
+
+    def _details(self) -> dict[str, Any]:
+        block, experiment = self._sourced.block, self.experiment
+        return {
+            "unknowns": self.model.space.size,
+            "elements": len(self.model.space.elements),
+            "linear_solver": self.model.problem.solver.name,
+            "rejected_steps": self._path.rejected,
+            "newton_iterations": sum(step.newton_iterations for step in self.steps),
+            "mesh": {
+                "content": self._sourced.content,
+                "origin": self._sourced.origin,
+                "least_quality": block.quality.minimum,
+                "mean_quality": block.quality.mean,
+                "least_curvature": block.quality.curvature,
+                "straightened_edges": block.quality.straightened,
+                "volume_errors": block.volume_errors.tolist(),
+                "regions": list(block.region_names),
+            },
+            "block_size": list(experiment.block.size),
+            "inclusions": [shape.model_dump(mode="json") for shape in experiment.shapes],
+            "unlike_tissue": [one.unlike(experiment.block.tissue) for one in experiment.inclusions],
+            "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in SIDES},
+            "jaw_places": self._places(),
+            "matrix": experiment.matrix.model_dump(mode="json"),
+            "control": experiment.loading.control,
+        }
+
+    def _places(self) -> dict[str, list[float]]:
+        """Where the middle of each jaw's face stands in m at the last accepted step."""
+        last = self._kept.get("last")
+        if last is None:
+            return {side: self.model.touching_place(side).tolist() for side in SIDES}
+        return {side: contact.place.tolist() for side, contact in zip(SIDES, last.contact.contacts, strict=True)}
+
+
+def _stiffest(experiment: GraspSetup) -> float:
+    """Bound of the growth of the contact pressure in Pa/m: needed where the pressure in a lumen presses against the jaws too."""
+    if not experiment.lumens:
+        return math.inf
+    return bonded_block_rate(shear_relaxation(experiment.block.tissue).instantaneous_modulus, experiment.block.size)

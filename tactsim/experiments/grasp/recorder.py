@@ -1,0 +1,160 @@
+"""A grasp: what lies in the block, and what the taxels feel and read."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from tactsim.errors import InvalidQuantity
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.lumen_pressure import lumen_history
+from tactsim.experiments.recording import Recorder, Values
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.variable import Variable, label, reading
+from tactsim.mechanics.block_model import SIDES
+from tactsim.results.result import Result
+from tactsim.sensors.force_reading import CLEAN, latest, read_variables
+
+Array = np.ndarray
+KINDS = ("none", "sphere", "ellipsoid", "tube", "surface")
+PER_INCLUSION = {
+    "inclusion_radius": ("m", "radius of a sphere, outer radius of a tube, that of a ball of equal volume of others"),
+    "inclusion_wall": ("m", "wall of a tube"),
+    "inclusion_lumen_pressure": ("Pa", "pressure in the empty space of a tube at the end, 0 without"),
+    "inclusion_depth": ("m", "distance of the highest point from the upper face"),
+    "inclusion_shear_modulus": ("Pa", "small-strain shear modulus"),
+    "inclusion_contrast": ("1", "shear modulus over that of the tissue"),
+}
+PER_SAMPLE = {
+    "tissue_shear_modulus": ("Pa", "small-strain shear modulus of the tissue"),
+    "friction": ("1", "coefficient of friction at the jaws"),
+    "closing": ("m", "largest closing of each jaw from first touch; NaN if a force is prescribed"),
+}
+TAXELS = {
+    "taxel_force": ("N", "force pressing on each taxel, without noise"),
+    "taxel_pressure": ("Pa", "force over area of each taxel, without noise"),
+}
+READ = read_variables("voltage of each taxel after the low pass", "force of each taxel by the calibration")
+JAWS = {"displacement": ("m", "closing of each jaw"), "reaction_force": ("N", "force pressing into the face of the upper jaw")}
+
+
+class GraspRecorder(Recorder):
+    """Inclusions, closing and tissue; forces, pressures, voltages and read forces of all taxels over time."""
+
+    kind: Literal["grasp"] = "grasp"
+    noise_seed: ClassVar = ("readout", "seed")
+    histories: ClassVar = True
+    quantities: ClassVar = {
+        "max_penetration": ("m", "largest penetration at any surface point in any step"),
+        "min_volume_ratio": ("1", "least local volume ratio in any step"),
+        "unstable_volume_fraction": ("1", "part of the volume outside strong ellipticity at any accepted step"),
+    }
+
+    def labels_of(self, experiment: Experiment) -> list[Variable]:
+        """Inclusions padded to the largest number of the sweep."""
+        count = self.most_inclusions
+        told = [Variable("inclusion_count", "1", "number of inclusions", "label", dtype="int64")]
+        told += [label(name, unit, words) for name, (unit, words) in PER_SAMPLE.items()]
+        if count:
+            told.append(Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", KINDS))
+            told += [label(name, unit, words, inclusion=count) for name, (unit, words) in PER_INCLUSION.items()]
+            told.append(label("inclusion_center", "m", "centre, x along the columns", inclusion=count, axis=3))
+            told.append(label("inclusion_direction", "1", "unit vector along a tube", inclusion=count, axis=3))
+        return told
+
+    def labels(self, experiment: Grasp) -> Values:
+        """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none."""
+        end = experiment.duration
+        size, tissue = np.array(experiment.block.size), experiment.block.tissue.shear_modulus
+        closing = experiment.loading.least_and_most()[1] if experiment.loading.control == "displacement" else np.nan
+        there = experiment.unlike_tissue
+        if len(there) > self.most_inclusions:
+            raise InvalidQuantity(f"{len(there)} inclusions; the store has place for {self.most_inclusions}")
+        found = {"inclusion_count": len(there), "tissue_shear_modulus": tissue, "closing": closing}
+        found["friction"] = getattr(experiment.contact, "friction", np.nan)
+        padded = {v.name: v.empty(1)[0] for v in self.labels_of(experiment) if "inclusion" in v.dimensions}
+        for number, embedded in enumerate(there):
+            modulus = embedded.material.shear_modulus
+            told = _geometry(embedded.shape, size)
+            if embedded.shape.kind == "tube":
+                lumen = embedded.lumen
+                told["inclusion_lumen_pressure"] = float(lumen_history(lumen, end).value(end)) if lumen else 0.0
+            told |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
+            for name, value in told.items():
+                padded[name][number] = value
+        return {name: np.asarray(value) for name, value in (found | padded).items()}
+
+    def readings_of(self, experiment: Any) -> list[Variable]:
+        """Histories at the stored times."""
+        layout, times = experiment.matrix, self.settings.times
+        told = [reading("time_s", "s", "time since first touch", time=times)]
+        given = "displacement" if experiment.loading.control == "displacement" else "reaction_force"
+        told += [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in JAWS.items()]
+        sizes = {"time": times, "jaw": 2, "row": layout.rows, "column": layout.columns}
+        taxels = TAXELS | (READ if experiment.readout is not None else {})
+        told += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
+        return [*told, reading("outside_force", "N", "force beside and between the taxels of each jaw, at the end", jaw=2)]
+
+    def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
+        """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
+        times, columns = self.history(result)
+        at = self.stored_times(float(times[-1]))
+        force = np.stack([_taxel_history(result, side) for side in SIDES], axis=1)
+        if len(force) < len(times):
+            force = np.concatenate([np.zeros_like(force[:1]), force])
+        taxels = _interpolated(at, times, force)
+        found = {"time_s": at, "taxel_force": taxels, "taxel_pressure": taxels / experiment.matrix.area}
+        found |= {name: np.interp(at, times, columns[name]) for name in JAWS}
+        found["outside_force"] = np.array([_beside(result, side) for side in SIDES])
+        if experiment.readout is not None:
+            quantities = result.quantities
+            sample = latest(np.asarray(quantities["readout_time"].value), at)
+            for name in ("voltage", "read_force"):
+                sides = [np.asarray(quantities[f"{name}_{side}_history"].value) for side in SIDES]
+                found[name] = np.stack(sides, axis=1)[sample]
+            clean = experiment.readout.quiet.read(times, force, experiment.matrix.area)
+            found |= {f"voltage{CLEAN}": clean.filtered[sample], f"read_force{CLEAN}": clean.force[sample]}
+        return found
+
+    def describe(self) -> str:
+        """What is simulated."""
+        return (
+            "A block of soft tissue with lumps or arteries, grasped between two jaws with matrices of force sensors: finite "
+            "strain, nearly or exactly incompressible tissue, unilateral contact with Coulomb friction, by finite elements. "
+            "Row 1 is nearest the front (smallest y), column 1 has the smallest x, jaw 0 is the upper one."
+        )
+
+
+def _taxel_history(result: Result, side: str) -> Array:
+    """Forces (step, row, column) in N."""
+    over_time = result.quantities.get(f"taxel_force_{side}_history")
+    return np.asarray(over_time.value if over_time else [result.quantities[f"taxel_force_{side}"].value], dtype=float)
+
+
+def _interpolated(at: Array, times: Array, values: Array) -> Array:
+    after = np.clip(np.searchsorted(times, at), 1, len(times) - 1) if len(times) > 1 else np.zeros(len(at), int)
+    if len(times) == 1:
+        return values[after]
+    share = np.clip((at - times[after - 1]) / (times[after] - times[after - 1]), 0, 1).reshape(-1, *[1] * (values.ndim - 1))
+    return (1 - share) * values[after - 1] + share * values[after]
+
+
+def _beside(result: Result, side: str) -> float:
+    return float(result.quantities[f"gap_force_{side}"].value) + float(result.quantities[f"outside_force_{side}"].value)
+
+
+def _geometry(shape: Any, size: Array) -> dict[str, Any]:
+    """Labels of an inclusion in a block of size (3,) in m."""
+    told: dict[str, Any] = {"inclusion_kind": KINDS.index(shape.kind)}
+    if shape.kind == "tube":
+        line = np.array(shape.centre_line)
+        along, radius = line[-1] - line[0], shape.outer_radius
+        told |= {"inclusion_direction": along / np.linalg.norm(along), "inclusion_wall": shape.wall}
+        center, top = (line[0] + line[-1]) / 2, line[:, 2].max() + radius
+    else:
+        body = shape.solids(size)[0]
+        bounds = body.bounds()
+        center, top = bounds.mean(axis=0), bounds[1, 2]
+        radius = shape.radius if shape.kind == "sphere" else (0.75 * body.volume() / np.pi) ** (1 / 3)
+    return told | {"inclusion_center": center, "inclusion_radius": radius, "inclusion_depth": size[2] - top}

@@ -1,0 +1,299 @@
+"""What a grasp is given: the block and what is in it, two jaws with their matrices of taxels, the history, the mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.analytic.histories import History
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.jaw import Jaw
+from tactsim.contact.penalty import Augmentation
+from tactsim.errors import InvalidQuantity
+from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
+from tactsim.experiments.indentation.contact_setup import AnyLaw
+from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.interfaces import Material
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.materials.any_material import AnyMaterial
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
+from tactsim.mechanics.loading import AnyLoading, check_periods
+from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
+from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
+from tactsim.mesh.solid import Inclusion, Positive
+from tactsim.sensors.matrix_readout import MatrixReadout
+from tactsim.units import Angle, FrozenModel, Length, Time, format_quantity
+
+Array = np.ndarray
+
+OVERHANG = 1.25
+"""Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
+PENETRATION = 2e-4
+"""Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
+PENETRATION_OF_CLOSING = 1e-2
+"""That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
+SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
+"""Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
+SWITCH_LENGTH = 1e-3
+"""Length in m over which the state of a surface point may change its mind."""
+
+
+class Block(FrozenModel):
+    """The block of tissue, from (0, 0, 0) on the lower jaw, x along the columns of the taxels, y along their rows."""
+
+    size: tuple[Positive, Positive, Positive] = (40e-3, 40e-3, 20e-3)
+    """Along x, y and z; the thesis prints none."""
+    tissue: AnyMaterial
+    """Material around the inclusions."""
+
+
+class Embedded(FrozenModel):
+    """A body in the block."""
+
+    shape: AnyInclusion
+    """Its shape and place."""
+    material: AnyMaterial
+    """Its material."""
+    lumen: AnyLumenPressure | None = None
+    """Pressure in the empty space of a hollow one; null means none."""
+
+    def unlike(self, tissue: Material) -> bool:
+        """Whether it differs from the tissue around it: it is hollow or of another material."""
+        return self.shape.kind == "tube" or self.material != tissue
+
+
+class JawSettings(FrozenModel):
+    """A jaw and how it stands."""
+
+    width: Positive | None = None
+    """Along x; by default a quarter wider than the block."""
+    depth: Positive | None = None
+    """Along y; by default a quarter deeper than the block."""
+    fillet: Annotated[Length, Field(ge=0)] = 1e-3
+    """Radius of the edges."""
+    tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    """Rotation about the x axis, right-handed, before that about y."""
+    tilt_y: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    """Rotation about the y axis."""
+    offset: tuple[Length, Length] = (0.0, 0.0)
+    """Place of the middle of its face in x and y, from that of the block."""
+
+    def jaw(self, side: str, size: Sequence[float]) -> Jaw:
+        """The jaw for a block of this size in m."""
+        width, depth = (
+            given or OVERHANG * size[axis] + 2 * abs(self.offset[axis]) for axis, given in enumerate((self.width, self.depth))
+        )
+        posed = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
+        return Jaw.model_validate({"width": width, "depth": depth, "side": side, **posed})
+
+
+class GraspTimeSettings(TimeSettings):
+    """Steps of time: load steps of elastic tissue, controlled by their error if a material relaxes."""
+
+    steps: Annotated[int, Field(ge=1, le=1000)] = 2
+    """Load steps of a ramp, at least."""
+    per_period: Annotated[int, Field(ge=4, le=1000)] = 8
+    """Steps per period of a sine or pulse, at least."""
+    tolerance: Annotated[float, Field(gt=0, le=0.1)] = 5e-3
+    """Largest estimated error of the stress of materials that relax, relative to its root mean square over the volume."""
+    first: Annotated[Time, Field(gt=0)] | None = None
+    """First step of each piece if a material relaxes; by default a thousandth of the piece, and after a sudden change of the
+    shortest relaxation time if that is shorter."""
+    per_decade: Annotated[int, Field(ge=0, le=1000)] = 0
+    """Times per decade of time at which a step must end if a material relaxes."""
+
+
+class GraspSetup(FrozenModel):
+    """A block of tissue between two jaws that close by a history of displacement or force."""
+
+    block: Block
+    """The tissue."""
+    inclusions: Annotated[tuple[Embedded, ...], Field(max_length=32)] = ()
+    """Lumps and arteries in it."""
+    upper: JawSettings = JawSettings()
+    """The jaw above."""
+    lower: JawSettings = JawSettings()
+    """The jaw below."""
+    matrix: TaxelLayout = TaxelLayout()
+    """Taxels on each jaw."""
+    contact: AnyLaw = Coulomb(friction=0.6)
+    """Friction between jaws and tissue; the default is that of section 6.6."""
+    loading: AnyLoading
+    """What both jaws follow: closing from first touch, each by that much, or force, each by that much."""
+    penetration_tolerance: Positive | None = None
+    """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height, at most 1e-2 of a prescribed
+    closing. At most a tenth of that closing, of the block's height and of a jaw's fillet."""
+    mesh: AnyBlockSource = TetrahedraSource()
+    """Where the mesh comes from."""
+    time: GraspTimeSettings = GraspTimeSettings()
+    """Steps of time."""
+    readout: MatrixReadout | None = None
+    """Sensors and electronics of the taxels, from force to voltage and back; null ends at the force."""
+
+    @property
+    def tolerance(self) -> float:
+        """Largest penetration in m."""
+        usual = PENETRATION * self.block.size[2]
+        return self.penetration_tolerance or default_penetration(usual, self._closing, PENETRATION_OF_CLOSING)
+
+    @property
+    def _closing(self) -> float | None:
+        """Largest closing in m that is prescribed; None if a force is."""
+        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
+
+    @property
+    def softness(self) -> float:
+        """Penetration in m that the contact would have without multipliers."""
+        return min(SOFTNESS * self.tolerance, SOFTNESS_OF_HEIGHT * self.block.size[2])
+
+    @property
+    def shapes(self) -> tuple[Inclusion, ...]:
+        """The bodies in the block."""
+        return tuple(embedded.shape for embedded in self.inclusions)
+
+    @property
+    def unlike_tissue(self) -> tuple[Embedded, ...]:
+        """The inclusions that differ from the tissue around them."""
+        return tuple(embedded for embedded in self.inclusions if embedded.unlike(self.block.tissue))
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """One per region of the mesh, the tissue first."""
+        return (self.block.tissue, *(embedded.material for embedded in self.inclusions))
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether a material relaxes."""
+        return any(material.relaxation is not None for material in self.materials)
+
+    @property
+    def shortest_time(self) -> float:
+        """Shortest relaxation time of the materials in s, infinite if none relaxes."""
+        return min((min(m.relaxation.times) for m in self.materials if m.relaxation is not None), default=math.inf)
+
+    @property
+    def lumens(self) -> dict[int, AnyLumenPressure]:
+        """Pressure by the number of the inclusion, counted from 1."""
+        return {k: embedded.lumen for k, embedded in enumerate(self.inclusions, 1) if embedded.lumen is not None}
+
+    @property
+    def duration(self) -> float:
+        """Time in s at which the last of all histories ends."""
+        return max([self.loading.duration, *(lumen.duration for lumen in self.lumens.values())])
+
+    def histories(self) -> list[History]:
+        """Closing in m or force in N, then the pressure in Pa of every lumen."""
+        return [self.loading.history(), *(lumen_history(lumen, self.duration) for lumen in self.lumens.values())]
+
+    def jaw(self, side: str) -> Jaw:
+        """The upper or the lower jaw."""
+        settings: JawSettings = getattr(self, side)
+        return settings.jaw(side, self.block.size)
+
+    def regularisation(self) -> Augmentation:
+        """How stiff the contact is."""
+        softest = shear_relaxation(self.block.tissue).instantaneous_modulus
+        return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=self.softness)
+
+    def sourced(self) -> SourcedBlock:
+        """The mesh, finer at the edges of jaws that are smaller than the block and in its middle."""
+        source, size = self.mesh, self.block.size
+        jaws = [self.jaw(side) for side in SIDES]
+        widths = {(jaw.width, jaw.depth) for jaw in jaws}
+        covered = all(jaw.width >= size[0] and jaw.depth >= size[1] for jaw in jaws)
+        centred = len(widths) == 1 and not any(self.upper.offset + self.lower.offset)
+        if isinstance(source, TetrahedraSource) and source.jaw is None and centred and not covered:
+            source = source.model_copy(update={"jaw": widths.pop()})
+        return source.sourced(size, self.shapes)
+
+    def model(self, sourced: SourcedBlock) -> GraspModel:
+        """The finite element model on a mesh."""
+        middle = np.array(self.block.size[:2]) / 2
+        return GraspModel(
+            sourced.block.mesh,
+            self.materials,
+            sourced.block.facets,
+            jaws=[self.jaw(side) for side in SIDES],
+            offsets=np.array([middle + self.upper.offset, middle + self.lower.offset]),
+        )
+
+    @model_validator(mode="after")
+    def _embedded(self) -> Self:
+        size = np.array(self.block.size)
+        try:
+            check_inclusions(size, self.shapes, self.mesh.least_gap)
+        except InvalidQuantity as error:
+            names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
+            blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
+            raise ValueError(f"{''.join(blamed)}{error}") from None
+        for number, embedded in enumerate(self.inclusions, 1):
+            name, hollow = inclusion_name(number, embedded.shape), len(embedded.shape.solids(size)) > 1
+            if embedded.lumen is not None and not hollow:
+                raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
+            if hollow and self.mesh.kind == "structured":
+                raise ValueError(f"mesh.kind: structured cannot follow the wall of {name}; take kind: tetrahedra")
+        round_ones = all(shape.kind in ("sphere", "ellipsoid") for shape in self.shapes)
+        if self.mesh.kind == "layers" and not (round_ones and len(self.shapes) == 1):
+            raise ValueError("mesh.kind: layers serves exactly one sphere or ellipsoid; take kind: tetrahedra")
+        if self.mesh.kind == "graded" and not (round_ones and len(self.shapes) <= 1):
+            raise ValueError("mesh.kind: graded serves at most one inclusion, a sphere or an ellipsoid; take kind: tetrahedra")
+        return self
+
+    @model_validator(mode="after")
+    def _jaws_meet_the_block(self) -> Self:
+        for side in SIDES:
+            jaw, settings = self.jaw(side), getattr(self, side)
+            for axis, (name, extent) in enumerate((("width", jaw.width), ("depth", jaw.depth))):
+                most = (self.block.size[axis] + extent) / 2 - jaw.fillet
+                if abs(settings.offset[axis]) >= most:
+                    given, allowed = (format_quantity(v, "m") for v in (settings.offset[axis], most))
+                    raise ValueError(f"{side}.offset {given}: the jaw passes beside the block; allowed: less than {allowed}")
+                needed = self.matrix.extent()[axis]
+                if needed > extent * (1 + 1e-12):
+                    wide, has = format_quantity(needed, "m"), format_quantity(extent, "m")
+                    raise ValueError(f"matrix: {wide} wide, more than {side}.{name} {has}; take a smaller pitch or a larger jaw")
+        return self
+
+    @model_validator(mode="after")
+    def _beating(self) -> Self:
+        for number, lumen in self.lumens.items():
+            if isinstance(lumen, PulsePressure):
+                try:
+                    check_periods(lumen.rate, self.duration - lumen.rise)
+                except ValueError as error:
+                    raise ValueError(f"inclusions.{number - 1}.lumen: rate: {error}") from None
+        return self
+
+    @model_validator(mode="after")
+    def _kept_out(self) -> Self:
+        fillets = {f"{side} jaw's fillet": getattr(self, side).fillet for side in SIDES}
+        lengths = {"closing": self._closing, "block's height": self.block.size[2]}
+        check_penetration(self.penetration_tolerance, lengths | fillets)
+        return self
+
+    @model_validator(mode="after")
+    def _pressed(self) -> Self:
+        least, most = self.loading.least_and_most()
+        if self.loading.control == "force":
+            if least <= 0:
+                raise ValueError(
+                    f"loading: the force falls to {format_quantity(least, 'N')}; it must press all the time, "
+                    "or no closing answers it"
+                )
+            return self
+        given, height = format_quantity(most, "m"), format_quantity(self.block.size[2], "m")
+        if most >= self.block.size[2] / 2:
+            raise ValueError(f"loading: each jaw closes by {given}; allowed: less than half the block's height {height}")
+        if least < 0:
+            raise ValueError(
+                f"loading: the closing falls to {format_quantity(least, 'm')}, away from first touch; allowed: from 0"
+            )
+        if most == 0 and not self.lumens:
+            raise ValueError("loading: the jaws do not close and no lumen has a pressure, so that nothing happens")
+        return self

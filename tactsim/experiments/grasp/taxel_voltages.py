@@ -1,0 +1,71 @@
+"""What the matrices of a grasp deliver: voltages over time and the forces read from them, as quantities of a result."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.mechanics.block_model import SIDES
+from tactsim.results.result import Quantity
+from tactsim.sensors.film_report import film_assumptions, film_warnings
+from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
+from tactsim.sensors.response_errors import root_mean_square
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+AT_END = "at the end; [row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
+OVER_TIME = "at each of readout_time, [time][row][column]"
+
+
+def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
+    """Readings with the channels (jaw, row, column), upper jaw first."""
+    found = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels")}
+    for k, side in enumerate(SIDES):
+        of = f"of each taxel of the {side} jaw"
+        voltage, force = reading.filtered[:, k], reading.force[:, k]
+        found |= {
+            f"voltage_{side}": Quantity(voltage[-1].tolist(), "V", f"voltage after the low pass {of} {AT_END}"),
+            f"read_force_{side}": Quantity(force[-1].tolist(), "N", f"force by the calibration {of} {AT_END}"),
+            f"voltage_{side}_history": Quantity(voltage.tolist(), "V", f"voltage after the low pass {of} {OVER_TIME}"),
+            f"read_force_{side}_history": Quantity(force.tolist(), "N", f"force by the calibration {of} {OVER_TIME}"),
+            f"saturated_{side}": Quantity(
+                reading.saturated[:, k].mean(axis=0).tolist(), "1", f"part of the samples {of} outside the range of the converter"
+            ),
+            f"saturated_{side}_history": Quantity(
+                reading.saturated[:, k].astype(int).tolist(), "1", f"1 for a sample {of} outside that range, else 0, {OVER_TIME}"
+            ),
+        }
+    error = reading.force - reading.applied
+    words = "read minus applied force, over all taxels and times"
+    found["read_force_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
+    found["read_force_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
+    return found
+
+
+def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
+    """What is assumed of sensors and electronics."""
+    line = readout.line(area)
+    told = [*film_assumptions(readout.film), "force linear between the accepted steps, from zero at 0 s"]
+    if readout.calibration is None:
+        low, high = (format_quantity(value, "N") for value in readout.calibration_forces)
+        told.append(
+            f"calibration by the film's own line from {low} to {high} after 1 s: "
+            f"C = {line.slope * 1e3:.4g} mS/N F {line.intercept * 1e3:+.3g} mS"
+        )
+    if readout.scatter is not None:
+        told.append(
+            f"channels differ by {readout.scatter.repeatability:.3g} of a full scale of "
+            f"{format_quantity(readout.scatter.full_scale, 'N')} (one standard deviation)"
+        )
+    return tuple(told)
+
+
+def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
+    """What a user must know of the readings."""
+    told = list(film_warnings(readout.film_of(area), float(reading.applied.max())))
+    if reading.strongest_pull > 0:
+        pull = format_quantity(reading.strongest_pull, "N")
+        told.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
+    if reading.saturated.any():
+        count = int(reading.saturated.sum())
+        told.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
+    return tuple(told)

@@ -1,0 +1,73 @@
+"""What a user is told of a grasp beside its answer: its mesh, its taxels, and what in its case looks like a slip."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tactsim.experiments.grasp.readings import JawReading
+from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.mechanics.block_model import SIDES
+from tactsim.mechanics.plausibility import oddities
+from tactsim.mesh.any_inclusion import inclusion_name
+from tactsim.mesh.block import BlockMesh
+from tactsim.results.result import StepRecord
+from tactsim.units import format_quantity
+
+RAGGED, SUCTION = 0.05, 0.01
+"""Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is told."""
+VISIBLE = 0.01
+"""Asymmetry of a symmetric grasp's forces of which a user is told: as much as the least lump that can be felt changes a taxel."""
+
+
+def ragged(block: BlockMesh) -> list[str]:
+    """Regions whose volume the mesh misses."""
+    return [
+        f"the mesh gives {name} {100 * error:+.0f} % of its volume too much or too little: take smaller elements"
+        for name, error in zip(block.region_names, block.volume_errors, strict=True)
+        if abs(error) > RAGGED
+    ]
+
+
+def suction(readings: Sequence[Mapping[str, JawReading]]) -> list[str]:
+    """Taxels that are pulled, which contact without adhesion cannot do."""
+    forces = [reading[side].taxels.taxels[2] for reading in readings for side in SIDES]
+    least, most = (min(map(np.min, forces)), max(map(np.max, forces))) if forces else (0.0, 0.0)
+    if least >= -SUCTION * most:
+        return []
+    pull = format_quantity(-float(least), "N")
+    return [f"a taxel is pulled by up to {pull}: it is smaller than the mesh resolves; take smaller elements at the faces"]
+
+
+def uneven(asymmetry: float | None) -> list[str]:
+    """Forces of a symmetric grasp that the mesh makes unlike; None is a grasp without symmetry."""
+    if asymmetry is None or asymmetry <= VISIBLE:
+        return []
+    return [
+        f"the grasp is its own mirror image, but its taxels differ from theirs by up to {asymmetry:.1%} of the largest force: "
+        "the mesh shows in the forces, and nothing smaller than this should be read from a single taxel; take smaller elements"
+    ]
+
+
+def unstable(steps: Sequence[StepRecord]) -> list[str]:
+    """Volume outside strong ellipticity."""
+    share = steps[-1].values["unstable_volume_fraction"] if steps else 0.0
+    if share == 0:
+        return []
+    first = next(step for step in steps if step.values["unstable_volume_fraction"] > 0)
+    at = format_quantity(first.values["displacement"], "m")
+    return [
+        f"{share:.1%} of the volume left strong ellipticity, first at a closing of {at} per jaw: "
+        "there the answer depends on the mesh; take a stable material set"
+    ]
+
+
+def unlikely(grasp: GraspSetup) -> list[str]:
+    """Sizes and materials that look like a wrong unit."""
+    materials = {"block.tissue": grasp.block.tissue}
+    materials |= {f"the material of {inclusion_name(k, e.shape)}": e.material for k, e in enumerate(grasp.inclusions, 1)}
+    tissue = {f"block.size along {axis}": side for axis, side in zip("xyz", grasp.block.size, strict=True)}
+    jaws = {side: grasp.jaw(side) for side in SIDES}
+    bodies = {f"{name} of the {side} jaw": getattr(jaw, name) for side, jaw in jaws.items() for name in ("width", "depth")}
+    return oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})

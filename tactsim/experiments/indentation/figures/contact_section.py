@@ -1,0 +1,97 @@
+"""The deformed section under a rigid body, with its pressure and the inner sensor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh
+from tactsim.interfaces import RigidBody
+from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
+from tactsim.registry import read_kind
+from tactsim.results import Result
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+SHOWN_RADII = 2.4
+"""Half width of the picture in radii of the body: farther out the tissue is at rest."""
+SENSOR_COLOUR = "#d62728"
+GRID = 700
+"""Points per direction on which a body's outline is traced."""
+
+
+def draw_contact_section(axis: Axes, result: Result, displacement: float) -> None:
+    """The deformed section of the last frame with its pressure, under the body at a displacement in m."""
+    frame = result.frames[-1]
+    section = Section(frame)
+    pressure = np.asarray(frame.point_data["pressure [Pa]"]).ravel()
+    body: RigidBody | None = _body(result)
+    height = 1e3 * (result.details.get("starting_height", 0.0) - displacement)
+    limits = _window(section, body, height)
+    _draw_pressure(axis, section, pressure, limits)
+    draw_mesh(axis, section)
+    if body is not None:
+        r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))
+        points = np.stack([r.ravel(), z.ravel() - height]) * 1e-3
+        draw_body(axis, body.signed_distance(points)[0].reshape(r.shape), (r, z))
+        _draw_sensor(axis, result, body, height)
+    axis.set(xlim=(-limits[0], limits[0]), ylim=limits[1:], aspect="equal", xlabel="radius in mm", ylabel="height in mm")
+    axis.set_title(f"at a displacement of {format_quantity(displacement, 'm')} (elements shown on the left)", loc="left")
+    axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
+    despined(axis)
+
+
+def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[float, float, float]) -> None:
+    """The pressure with robust limits, so that the singular edges do not take all the colours."""
+    seen = (section.places[:, 0] <= limits[0]) & (section.places[:, 1] >= limits[1])
+    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
+    factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
+    low, high = (factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)
+    values = factor * pressure
+    drawn = draw_field(axis, section, values, cmap="viridis", vmin=low, vmax=high)
+    beyond = (bool(values[seen].min() < low), bool(values[seen].max() > high))
+    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
+    bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
+    bar.set_label(
+        f"pressure in {unit} (colours from the 1st to the 99th percentile of the area; largest {values.max():.4g} {unit})"
+    )
+    bar.outline.set_linewidth(0.5)
+
+
+def _window(section: Section, body: RigidBody | None, height: float) -> tuple[float, float, float]:
+    """Half width, bottom and top of the picture in mm."""
+    radius = 1e3 * float(getattr(body, "outer_radius", getattr(body, "radius", np.inf)))
+    widest = float(section.places[:, 0].max())
+    half = min(1.03 * widest, SHOWN_RADII * radius)
+    bottom, top = max(section.places[:, 1].min(), -half), section.places[section.places[:, 0] <= half, 1].max()
+    margin = 0.03 * (top - bottom)
+    return half, float(bottom - margin), float(max(top, height) + 0.2 * min(half, radius) + margin)
+
+
+def _body(result: Result) -> Any:
+    """The rigid body that the result describes, None in a result of a version that did not."""
+    described = result.details.get("body")
+    return read_kind(RigidBody, described) if described else None
+
+
+def _draw_sensor(axis: Axes, result: Result, body: RigidBody, height: float) -> None:
+    """The inner sensor's plane across the hole."""
+    recess, inner = result.details.get("recess"), getattr(body, "inner_radius", None)
+    if recess is None or inner is None:
+        return
+    level, edge = height + 1e3 * recess, 1e3 * inner
+    axis.plot([-edge, edge], [level, level], color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
+    axis.annotate(
+        f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face",
+        (0.0, level),
+        (0.0, 3.0),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        color=SENSOR_COLOUR,
+        fontsize=7,
+        zorder=5,
+    )

@@ -1,0 +1,137 @@
+"""Indentation: the deformed section under the body with its pressure, and the force against the displacement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, Status
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+FORCE_COLOUR, RISE_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#b00020"
+
+
+class IndentationFigures(ResultFigures):
+    """One figure: section and curve side by side."""
+
+    kind: Literal["indentation"] = "indentation"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``indentation.png``, unless no step was accepted."""
+        return {"indentation.png": lambda: png(indentation_figure(result))} if result.steps else {}
+
+
+def indentation_figure(result: Result) -> Figure:
+    """Section (if the result has fields) and force-displacement curve of an indentation."""
+    return section_beside(result, draw_curve, _title(result))
+
+
+def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:
+    """The section of the last frame, if there is one, and a curve that ``draw`` draws; a failure across the foot."""
+    with styled():
+        has_section = bool(result.frames)
+        figure = new_figure(11.0 if has_section else 6.0, 4.4)
+        axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
+        if has_section:
+            draw_contact_section(axes[0], result, result.frames[-1].time)
+        draw(axes[-1], result)
+        entitle(figure, title)
+        if result.status is not Status.CONVERGED:
+            mark_failure(figure, result)
+    return figure
+
+
+def _title(result: Result) -> str:
+    given = str(result.details.get("title") or "")
+    return given or f"Indentation by a rigid {result.details.get('body', {}).get('kind', 'body')}"
+
+
+def mark_failure(figure: Figure, result: Result) -> None:
+    """The status and its reason across the foot of the figure, and a coloured frame."""
+    last = format_quantity(result.steps[-1].values["displacement"], "m")
+    words = f"{str(result.status).upper()} after a displacement of {last}: {result.reason}"
+    figure.supxlabel(_shortened(words, 150), color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
+    figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+
+
+def _shortened(words: str, most: int) -> str:
+    return words if len(words) <= most else f"{words[: most - 1]}…"
+
+
+def draw_curve(axis: Axes, result: Result) -> None:
+    """Force and rise against the displacement, with the threshold, and a cross where a run stopped short."""
+    displacement, force, rise = (_history(result, name) for name in ("displacement", "reaction_force", "tissue_rise"))
+    along, length = scale_of(float(displacement.max()), "m")
+    up, unit = scale_of(float(np.abs(force).max()), "N")
+    axis.plot(displacement * along, force * up, ".-", color=FORCE_COLOUR, markersize=4)
+    axis.set(xlabel=f"displacement in {length}", xlim=(0, None), ylim=(0, None))
+    axis.set_ylabel(f"force on the body in {unit}", color=FORCE_COLOUR)
+    axis.set_title(f"{len(result.steps)} accepted steps", loc="left")
+    axis.margins(x=0.03, y=0.08)
+    if np.isfinite(rise).all():
+        _draw_rise(axis.twinx(), displacement * along, rise * 1e3, result)
+    else:
+        despined(axis)
+    _mark_threshold(axis, result, along, up)
+    _mark_last(axis, result, along, up)
+
+
+def _draw_rise(axis: Axes, displacement: Array, rise: Array, result: Result) -> None:
+    axis.plot(displacement, rise, "--", color=RISE_COLOUR)
+    axis.set_ylabel("tissue rise in the hole in mm", color=RISE_COLOUR)
+    axis.set_ylim(0, None)
+    axis.spines["top"].set_visible(False)
+    recess = result.details.get("recess")
+    if recess is not None:
+        axis.set_ylim(0, max(1.12e3 * recess, rise.max() * 1.05))
+        axis.axhline(1e3 * recess, color=SENSOR_COLOUR, linewidth=0.9, linestyle=":")
+
+
+def _mark_threshold(axis: Axes, result: Result, along: float, up: float) -> None:
+    """A ring where the tissue touches the inner sensor, labelled with pressure and force."""
+    names = ("threshold_displacement", "threshold_force", "threshold_pressure")
+    if not all(name in result.quantities for name in names):
+        return
+    at, force, pressure = (result.quantities[name] for name in names)
+    axis.plot(at.value * along, force.value * up, "o", color=FORCE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
+    told = [format_quantity(q.value, q.unit) for q in (pressure, force, at)]
+    axis.text(
+        0.04,
+        0.86,
+        f"threshold\n{told[0]} on the annulus\n{told[1]} at {told[2]}",
+        transform=axis.transAxes,
+        va="top",
+        color=FORCE_COLOUR,
+    )
+
+
+def _mark_last(axis: Axes, result: Result, along: float, up: float) -> None:
+    """A cross on the last accepted step of a run that did not end as it should."""
+    if result.status is Status.CONVERGED:
+        return
+    last = result.steps[-1].values
+    at = (last["displacement"] * along, last["reaction_force"] * up)
+    axis.plot(*at, "X", color=FAILED_COLOUR, markersize=9)
+    words = "interrupted here" if result.status is Status.INTERRUPTED else "stopped here"
+    _label(axis, at, f"{words}\n{format_quantity(last['displacement'], 'm')}", FAILED_COLOUR)
+
+
+def _label(axis: Axes, at: tuple[float, float], text: str, colour: str) -> None:
+    """Text beside a point, toward the middle of the axes."""
+    x, y = axis.transLimits.transform(at)
+    shift = (-26 if x > 0.5 else 12, -4 if y > 0.5 else 12)
+    sides: dict[str, Any] = {"ha": "right" if x > 0.5 else "left", "va": "top" if y > 0.5 else "bottom"}
+    axis.annotate(text, at, shift, textcoords="offset points", color=colour, zorder=6, **sides)
+
+
+def _history(result: Result, name: str) -> Array:
+    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -1,0 +1,58 @@
+"""Indentation in space: the deformed cut, the force against the displacement, and the pressure around the annulus."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, draw_curve, mark_failure
+from tactsim.experiments.indentation.figures.section_3d import draw_cut
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, Status
+
+
+class SpaceIndentationFigures(ResultFigures):
+    """One figure: the cut, and the curves beside it."""
+
+    kind: Literal["indentation_3d"] = "indentation_3d"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``indentation_3d.png``, unless no step was accepted."""
+        return {"indentation_3d.png": lambda: png(space_indentation_figure(result))} if result.steps else {}
+
+
+def space_indentation_figure(result: Result) -> Figure:
+    """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""
+    around = "pressure_around" in result.quantities and result.details.get("symmetry") != "quarter"
+    with styled():
+        wide = bool(result.frames)
+        figure = new_figure(11.0 if wide else 6.0, 5.6 if around else 4.4)
+        grid = figure.add_gridspec(1 + around, 1 + wide, width_ratios=(1.5, 1) if wide else None)
+        if wide:
+            draw_cut(figure.add_subplot(grid[:, 0]), result)
+        draw_curve(figure.add_subplot(grid[0, -1]), result)
+        if around:
+            _draw_around(figure.add_subplot(grid[1, -1]), result)
+        title = str(result.details.get("title") or "") or "Indentation in space"
+        entitle(figure, title)
+        if result.status is not Status.CONVERGED:
+            mark_failure(figure, result)
+    return figure
+
+
+def _draw_around(axis: Axes, result: Result) -> None:
+    """The mean pressure on each sector of the annulus against the angle about its axis."""
+    pressure = np.asarray(result.quantities["pressure_around"].value, float)
+    factor, unit = scale_of(max(float(np.abs(pressure).max()), 1e-12), "Pa")
+    edges = np.linspace(0.0, 360.0, len(pressure) + 1)
+    axis.stairs(factor * pressure, edges, color=FORCE_COLOUR, linewidth=1.5)
+    axis.axhline(factor * pressure.mean(), color=FORCE_COLOUR, linewidth=0.8, linestyle=":")
+    axis.set(xlabel="angle about the annulus's axis in degrees", ylabel=f"pressure in {unit}", xlim=(0, 360))
+    axis.set_xticks(range(0, 361, 90))
+    axis.set_ylim(min(0.0, 1.1 * factor * float(pressure.min())), max(1e-9, 1.15 * factor * float(pressure.max())))
+    axis.set_title("mean pressure on sectors of the annulus", loc="left")
+    despined(axis)

@@ -1,0 +1,103 @@
+"""Timed indentation: the deformed section, and force, displacement and the difference from the closed form over time."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, Status
+
+Array = np.ndarray
+
+FOUND_COLOUR, CLOSED_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#b00020"
+DECADES = 1e3
+"""Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
+
+
+class TimedIndentationFigures(ResultFigures):
+    """One figure: section beside the histories."""
+
+    kind: Literal["timed_indentation"] = "timed_indentation"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``timed_indentation.png``, unless no step was accepted."""
+        return {"timed_indentation.png": lambda: png(timed_indentation_figure(result))} if result.steps else {}
+
+
+def timed_indentation_figure(result: Result) -> Figure:
+    """Section (if the result has fields) and histories of a timed indentation."""
+    histories = [("reaction_force", "force", "N"), ("displacement", "displacement", "m")]
+    compared = "closed_form_difference" in result.steps[-1].values
+    with styled():
+        figure = new_figure(11.0 if result.frames else 6.0, 5.6 if compared else 4.6)
+        rows = len(histories) + compared
+        grid = figure.add_gridspec(rows, 2 if result.frames else 1, width_ratios=(1.3, 1) if result.frames else None)
+        if result.frames:
+            draw_contact_section(figure.add_subplot(grid[:, 0]), result, result.steps[-1].values["displacement"])
+        axes = [figure.add_subplot(grid[row, -1]) for row in range(rows)]
+        for axis, (name, words, unit) in zip(axes, histories, strict=False):
+            _draw_history(axis, result, (name, words, unit))
+        if compared:
+            _draw_difference(axes[-1], result)
+        axes[-1].set_xlabel("time in s")
+        for axis in axes[:-1]:
+            axis.tick_params(labelbottom=False)
+        entitle(figure, _title(result))
+        if result.status is not Status.CONVERGED:
+            words = f"{str(result.status).upper()} at {result.steps[-1].values['time']:.4g} s: {result.reason}"
+            figure.supxlabel(words[:150], color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
+    return figure
+
+
+def _title(result: Result) -> str:
+    body = result.details.get("body", {}).get("kind", "body")
+    return str(result.details.get("title") or "") or f"Prescribed {result.details.get('control', 'history')} on a rigid {body}"
+
+
+def _history(result: Result, name: str) -> Array:
+    return np.array([step.values.get(name, np.nan) for step in result.steps])
+
+
+def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> None:
+    name, words, unit = what
+    time, values = _history(result, "time"), _history(result, name)
+    factor, prefixed = scale_of(float(np.abs(values).max()), unit)
+    axis.plot(time, factor * values, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1, label="finite elements")
+    other = "closed_form_force" if name == "reaction_force" else "closed_form_displacement"
+    if other in result.steps[-1].values:
+        axis.plot(time, factor * _history(result, other), "--", color=CLOSED_COLOUR, label="closed form")
+        axis.legend(fontsize=8)
+    axis.set_ylabel(f"{words}\nin {prefixed}")
+    _scale_time(axis, time)
+    positive = values[values > 0]
+    if axis.get_xscale() == "log" and positive.size and values.min() >= 0 and positive.max() > DECADES * positive.min():
+        axis.set_yscale("log")
+    else:
+        axis.set_ylim(bottom=min(0.0, float(factor * values.min())))
+    despined(axis)
+
+
+def _draw_difference(axis: Axes, result: Result) -> None:
+    time, difference = _history(result, "time"), 100 * _history(result, "closed_form_difference")
+    axis.plot(time, difference, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1)
+    axis.axhline(0.0, color="0.5", linewidth=0.7)
+    widest = max(1.2 * float(np.nanmax(np.abs(difference))), 1e-6)
+    axis.set_ylim(-widest, widest)
+    axis.set_ylabel("difference from\nclosed form in %")
+    _scale_time(axis, time)
+    despined(axis)
+
+
+def _scale_time(axis: Axes, time: Array) -> None:
+    """A logarithmic axis where most of what happens is early."""
+    later = time[time > 0]
+    if later.size and np.median(later) < later.max() / DECADES**0.5:
+        axis.set_xscale("log")
+    else:
+        axis.set_xlim(0, float(time.max()))

@@ -1,0 +1,108 @@
+"""What an indentation in space is given beside that of a section: where the body stands, how it leans, the sectors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.contact.tilted import Tilt, Tilted
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import IndentationSetup
+from tactsim.fem.loading import StepControl
+from tactsim.mechanics.solid_model import SpaceIndentationModel, SweepSymmetry
+from tactsim.mesh.affordable import check_unknowns
+from tactsim.mesh.revolved import largest_offset, shifted_outside, swept
+from tactsim.units import Length, format_quantity
+
+COARSENING = 3.0
+"""Element size at the edges of the body over that of the section's own model: a fillet instead of a third of one."""
+LEAST_ACROSS = 6
+"""Elements across the width of the contact, at least, however wide the fillet."""
+UNSHIFTED = 1.2
+"""The mesh keeps its circles within this many radii of the body."""
+FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
+"""Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in space takes more than in a section."""
+
+
+class SpaceMeshSettings(MeshSettings):
+    """Size of the elements in the section, and the sectors in which it is swept around the body's axis."""
+
+    finest: Annotated[Length, Field(gt=0)] | None = None
+    """Element size at the edges; by default the fillet, or three fiftieths of the body's radius if its edge is sharp."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 1.0
+    """Growth of the element size per distance from the edges, dimensionless."""
+    adaptive: Literal[False] = False
+    """Elements in space are not split on the way."""
+    sectors: Annotated[int, Field(ge=2, le=90)] = 2
+    """Sectors in a quarter turn about the body's axis, each one quadratic element wide."""
+
+
+class SpaceIndentationSetup(IndentationSetup):
+    """A rigid body pressed down into a cylindrical specimen, off its axis and askew if so wished."""
+
+    offset: Annotated[Length, Field(ge=0)] = 0.0
+    """Distance along x of the body's reference point from the axis of the specimen."""
+    tilt_x: Tilt = 0.0
+    """Rotation of the body about the x axis, right-handed, before that about y."""
+    tilt_y: Tilt = 0.0
+    """Rotation of the body about the y axis; a positive one leans its axis towards x and lowers its edge there."""
+    mesh: SpaceMeshSettings = SpaceMeshSettings()
+    """Size of the elements and number of sectors."""
+
+    @model_validator(mode="after")
+    def _placed(self) -> Self:
+        if self.offset == 0:
+            return self
+        given = format_quantity(self.offset, "m")
+        most = largest_offset(self.specimen.radius, UNSHIFTED * self.contact_radius)
+        if self.offset > most:
+            allowed = format_quantity(max(most, 0.0), "m")
+            raise ValueError(f"offset {given} is too close to the side of the specimen: at most {allowed}")
+        if self.specimen.surface != "flat":
+            raise ValueError(f"an offset of {given} needs a flat surface, not a {self.specimen.surface} one")
+        return self
+
+    @model_validator(mode="after")
+    def _held(self) -> Self:
+        if self.specimen.base == "slipping" and self.symmetry is not SweepSymmetry.QUARTER:
+            raise ValueError("on a slipping base an offset or tilted body pushes the specimen away: set base: fixed")
+        return self
+
+    @property
+    def symmetry(self) -> SweepSymmetry:
+        """The part of the specimen that is computed: the largest symmetry that offset and tilts leave."""
+        if self.tilt_x != 0:
+            return SweepSymmetry.WHOLE
+        return SweepSymmetry.HALF if self.offset != 0 or self.tilt_y != 0 else SweepSymmetry.QUARTER
+
+    @property
+    def posed_body(self) -> Tilted:
+        """The body as it leans."""
+        return Tilted(body=self.body, tilt_x=self.tilt_x, tilt_y=self.tilt_y)
+
+    def control(self) -> StepControl:
+        """Lengths of the load steps in m."""
+        return replace(super().control(), few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
+
+    def space_model(self) -> SpaceIndentationModel:
+        """The finite element model in space, the body's axis at the origin of x and y."""
+        section, symmetry = self.section(), self.symmetry
+        swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)
+        check_unknowns(3 * swept_nodes, "mesh.finest, mesh.growth, mesh.refinement and mesh.sectors")
+        sweep = swept(section, self.mesh.sectors * symmetry.quarters, np.pi / 2 * symmetry.quarters)
+        top = sweep.facets_from(self.top_edges(section))
+        nodes = sweep.mesh.nodes
+        if self.offset != 0:
+            rest = UNSHIFTED * self.contact_radius
+            nodes = shifted_outside(nodes, -self.offset, radius=self.specimen.radius, rest=rest)
+        return SpaceIndentationModel(
+            sweep.mesh.moved(nodes), self.specimen.materials, base=self.specimen.base, top=top, symmetry=symmetry
+        )
+
+    def _focus(self) -> tuple[tuple[float, ...], float, float]:
+        """As in the section, with larger elements at the edges."""
+        rims, reach, finest = super()._focus()
+        return rims, reach, max(finest, min(COARSENING * finest, self._narrowest / LEAST_ACROSS))

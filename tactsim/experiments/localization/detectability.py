@@ -1,0 +1,191 @@
+"""The smallest lump that matrices of several resolutions can find, over its depth: what a designer of sensors opens first."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.experiments.grasp.setup import Block, GraspSetup
+from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
+from tactsim.experiments.localization.lump_sensitivity import sensitivity
+from tactsim.experiments.localization.response_store import kept_response
+from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.interface import ROUNDING_NOISE
+from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
+from tactsim.materials.library import named_material
+from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.units import Force, Length, format_quantity
+
+Array = np.ndarray
+RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])
+"""Radii in m of the tabulated balls."""
+SPACING = 2e-3
+"""Of their tabulated centres in m."""
+ROWS_AT_ONCE = 32
+"""Taxels whose densities are turned into responses together, which bounds the memory."""
+AWAY = (0.0, 0.25, 0.5)
+"""Places in plan, each way from the middle, in pitches of the coarsest matrix."""
+ROOM = 0.5e-3
+"""Least distance of a ball from the faces of the block, in m."""
+NOISES = ("same", "by_area")
+
+
+class Detectability(Experiment):
+    r"""Smallest radius found with a stated probability at a stated rate of false alarms, by a matched filter.
+
+    The filter knows the response of the tissue, the plain tissue's readings at the same closing (read with the same noise) and
+    the noise, but neither place nor radius: it takes the largest match over all of them. All matrices cover the same square.
+    Each is judged with the same noise on every reading, and with a noise that is in proportion to the taxel's area, as of a
+    sensor whose resolution is one of pressure. To first order in the contrast; that of a small ball is
+    ``eshelby_contrast``. A large rigid ball acts up to three times more, so its radius comes out too large.
+    """
+
+    kind: Literal["detectability"] = "detectability"
+    grasp: GraspSetup
+    """Plain tissue between two jaws; its own matrix is not used."""
+    matrices: Annotated[tuple[Annotated[int, Field(ge=2, le=32)], ...], Field(min_length=1, max_length=8)] = (3, 8, 16)
+    """Taxels along each side of the matrices on both jaws."""
+    side: Annotated[Length, Field(gt=0)] = 30e-3
+    """Side of the square that every matrix covers: its pitch is this over the number of taxels."""
+    share: Annotated[float, Field(gt=0, le=1)] = 0.9
+    """Size of a taxel over its pitch."""
+    depths: Annotated[tuple[Length, ...], Field(min_length=1)] = tuple(np.linspace(3e-3, 17e-3, 8).tolist())
+    """Of the centre of the lump below the upper face of the undeformed tissue."""
+    shear_ratios: Annotated[tuple[Annotated[float, Field(ge=0)], ...], Field(min_length=1)] = (1.8, 100.0)
+    """Shear modulus of the lump over that of the tissue; 1.8 is the thesis's lump in ICF (erratum E15), 100 a hard ball."""
+    noise: Annotated[Force, Field(gt=0)] = ROUNDING_NOISE
+    """Standard deviation of a reading of the first matrix; the default is what rounding to 0.1 N (thesis 6.2) does."""
+    probability: Annotated[float, Field(gt=0, lt=1)] = 0.9
+    """With which the smallest lump is found."""
+    false_alarms: Annotated[float, Field(gt=0, lt=1)] = 0.05
+    """Probability that plain tissue is taken for a lump."""
+    draws: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
+    """Of errors, by which the threshold is set."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Of these draws."""
+
+    history_units: ClassVar[dict[str, str]] = {"taxels": "1", "threshold": "1"}
+
+    @classmethod
+    def example(cls) -> Self:
+        """A block of ICF closed by 1 mm per jaw."""
+        closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
+        block = Block(tissue=named_material("icf_stable").material)
+        return cls(grasp=GraspSetup(block=block, loading=DisplacementLoading.model_validate(closing)))
+
+    def run(self, progress: Progress) -> Result:
+        """One step per matrix."""
+        begin = time.perf_counter()
+        radii: dict[str, list[list[list[float | None]]]] = {name: [[] for _ in self.shear_ratios] for name in NOISES}
+        steps = []
+        for number, count in enumerate(self.matrices):
+            response = self._response(count)
+            templates = unit_templates(response, every=2)
+            threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
+            for name in NOISES:
+                sigma = np.sqrt(2) * self._noise(name, count)
+                for row, ratio in zip(radii[name], self.shear_ratios, strict=True):
+                    contrast = float(eshelby_contrast(np.array(ratio)))
+                    row.append(self._over_depth(response, contrast, sigma, threshold))
+            steps.append(StepRecord(number + 1, 0, time.perf_counter() - begin, {"taxels": count, "threshold": threshold}))
+            progress(steps[-1])
+        return Result(
+            kind=self.kind,
+            status=Status.CONVERGED,
+            reason=f"{len(self.matrices)} matrices",
+            quantities=self._quantities(radii, [step.values["threshold"] for step in steps]),
+            assumptions=self._assumptions(),
+            timing={"total": time.perf_counter() - begin},
+            steps=tuple(steps),
+            units=self.history_units,
+            details={"probability": self.probability, "false_alarms": self.false_alarms, "noise": self.noise, "side": self.side},
+        )
+
+    def layout(self, count: int) -> TaxelLayout:
+        """The matrix with this many taxels along each side."""
+        pitch = self.side / count
+        return TaxelLayout(rows=count, columns=count, pitch=pitch, size=self.share * pitch)
+
+    def _noise(self, name: str, count: int) -> float:
+        """Standard deviation of a reading in N."""
+        return self.noise * (1.0 if name == "same" else (self.matrices[0] / count) ** 2)
+
+    def _response(self, count: int) -> LumpResponse:
+        setup = self.grasp.model_copy(update={"matrix": self.layout(count)})
+        return kept_response(setup, lambda: coarse_response(setup), how="detectability")
+
+    def _over_depth(self, response: LumpResponse, contrast: float, sigma: float, threshold: float) -> list[float | None]:
+        """Smallest radius at each depth."""
+        width, depth, height = self.grasp.block.size
+        away = np.array(AWAY) * self.side / self.matrices[0]
+        plan = np.array([(width / 2 + dx, depth / 2 + dy) for dx in away for dy in away])
+        volumes = 4 / 3 * np.pi * response.radii**3
+        found = []
+        for below in self.depths:
+            low, high = response.axes[2][[0, -1]]
+            z = float(np.clip(height - below, low, high))
+            centers = np.column_stack([plan, np.full(len(plan), z)])
+            signals = np.stack([response.signal(centers, np.full(len(plan), radius)) for radius in response.radii], axis=1)
+            densities = np.linalg.norm(signals.reshape(len(plan), len(response.radii), -1), axis=2) / volumes
+            most = min(below, height - below) - ROOM
+            sought = {"contrast": contrast, "sigma": sigma, "threshold": threshold, "wanted": self.probability}
+            found.append(smallest_radius(densities, response.radii, most, **sought))
+        return found
+
+    def _quantities(self, radii: dict[str, list[list[list[float | None]]]], thresholds: list[float]) -> dict[str, Quantity]:
+        order = "[shear ratio][matrix][depth]; null where none that fits is found"
+        words = {"same": "the same noise on every reading", "by_area": "noise in proportion to the area of a taxel"}
+        return {
+            "depths": Quantity(list(self.depths), "m", "of the centre below the upper face of the undeformed tissue"),
+            "matrices": Quantity(list(self.matrices), "1", "taxels along each side"),
+            "shear_ratios": Quantity(list(self.shear_ratios), "1", "shear modulus of the lump over that of the tissue"),
+            "smallest_radius": Quantity(radii["same"], "m", f"smallest radius found, {words['same']}; {order}"),
+            "smallest_radius_by_area": Quantity(radii["by_area"], "m", f"smallest radius found, {words['by_area']}; {order}"),
+            "thresholds": Quantity(thresholds, "1", "largest match of the filter that counts as noise, in standard deviations"),
+        }
+
+    def _assumptions(self) -> tuple[str, ...]:
+        noise, side = format_quantity(self.noise, "N"), format_quantity(self.side, "m")
+        return (
+            f"noise of a reading {noise} (one standard deviation), the same on the reference, Gaussian and independent",
+            f"every matrix covers a square with a side of {side}, its taxels {self.share:g} of their pitch",
+            "contrast to first order, that of a small ball (Eshelby); a large hard ball acts more",
+            f"probability averaged over {len(AWAY) ** 2} places near the middle of the matrices, mesh of the forward model fixed",
+        )
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.grasp.inclusions:
+            raise ValueError("grasp.inclusions: the tissue must be plain; leave them out")
+        height = self.grasp.block.size[2]
+        for depth in self.depths:
+            if not 0 < depth < height:
+                told, most = (format_quantity(value, "m") for value in (depth, height))
+                raise ValueError(f"depths: {told} is outside the block; allowed: between 0 and {most}")
+        for ratio in self.shear_ratios:
+            if ratio == 1:
+                raise ValueError("shear_ratios: 1 is plain tissue, which nothing can find; allowed: 0 or more, but not 1")
+        widest = min(self.grasp.jaw("upper").width, self.grasp.jaw("upper").depth, *self.grasp.block.size[:2])
+        if self.side > widest * (1 + 1e-12):
+            told, most = (format_quantity(value, "m") for value in (self.side, widest))
+            raise ValueError(f"side: {told} is wider than the block or the jaws; allowed: at most {most}")
+        return self
+
+
+def coarse_response(setup: GraspSetup) -> LumpResponse:
+    """The response of the taxels of a grasp on a coarse grid of centres and radii."""
+    found = sensitivity(setup)
+    size, densities = setup.block.size, found.densities
+    radii = RADII[min(size) > 2 * RADII]
+    flat = densities.reshape(-1, densities.shape[-1])
+    spacing, tables = min(SPACING, min(size) / 5), []
+    for begin in range(0, len(flat), ROWS_AT_ONCE):
+        part = flat[begin : begin + ROWS_AT_ONCE][:, None, None]
+        tables.append(LumpResponse.of_density(found.places, found.volumes, part, size=size, radii=radii, spacing=spacing))
+    values = np.concatenate([table.values for table in tables], axis=4)
+    return LumpResponse(tables[0].axes, radii, values.reshape(*values.shape[:4], *densities.shape[:-1]))

@@ -1,0 +1,99 @@
+"""Detectability map: the smallest lump found over its depth, for each matrix of taxels."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+PANELS = {"smallest_radius": "same noise on every taxel", "smallest_radius_by_area": "noise in proportion to the taxel's area"}
+STYLES: tuple[Any, ...] = ("-", "--", ":", "-.")
+FILLS: tuple[Any, ...] = ("full", "none", "left", "top")
+"""Of lines and markers, by stiffness: a lump found at one depth only has no line."""
+MARKERS = "osD^vP*X"
+NEVER = "#d0d7de"
+"""Colour of the radii that do not fit at a depth."""
+
+
+class DetectabilityFigures(ResultFigures):
+    """One figure."""
+
+    kind: Literal["detectability"] = "detectability"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``detectability.png``, of a complete result."""
+        complete = all(name in result.quantities for name in PANELS)
+        return {"detectability.png": lambda: png(detectability_figure(result))} if complete else {}
+
+
+def detectability_figure(result: Result) -> Figure:
+    """Smallest radius over depth, a panel for either noise, a colour for each matrix and a line for each stiffness."""
+    values: Any = {name: quantity.value for name, quantity in result.quantities.items()}
+    colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(values["matrices"])))
+    with styled():
+        figure = new_figure(10.4, 5.0)
+        axes = figure.subplots(1, 2, sharey=True)
+        for axis, (name, words) in zip(axes, PANELS.items(), strict=True):
+            _draw(axis, np.array(values[name], dtype=float), 1e3 * np.array(values["depths"]), colours)
+            axis.set_title(words, loc="left")
+        axes[0].set_ylabel("smallest radius found in mm")
+        figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
+        entitle(figure, _title(result))
+    return figure
+
+
+def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
+    """Curves of radii (ratio, matrix, depth) in m over depths in mm; above the grey line a ball leaves the block."""
+    for ratio, matrix in np.ndindex(*radii.shape[:2]):
+        style: dict[str, Any] = {
+            "color": colours[matrix],
+            "linestyle": STYLES[ratio % len(STYLES)],
+            "marker": MARKERS[matrix % len(MARKERS)],
+            "fillstyle": FILLS[ratio % len(FILLS)],
+        }
+        axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=3.5, **style)
+    found = 1e3 * radii[np.isfinite(radii)]
+    top = 1.15 * float(found.max()) if found.size else 1.0
+    axis.fill_between([0.0, top, top], [0.0, top, top], top, color=NEVER, linewidth=0)
+    axis.set(xlim=(0.0, float(depths.max()) * 1.04), ylim=(0.0, top), xlabel="depth of the centre below the upper jaw in mm")
+    axis.grid(alpha=0.25, linewidth=0.6)
+    despined(axis)
+
+
+def _legend(values: Any, colours: Array) -> list[Any]:
+    handles: list[Any] = [
+        Line2D([], [], color=colour, marker=MARKERS[k % len(MARKERS)], markersize=4, label=f"{count} x {count} taxels")
+        for k, (count, colour) in enumerate(zip(values["matrices"], colours, strict=True))
+    ]
+    handles += [
+        Line2D(
+            [],
+            [],
+            color="k",
+            linestyle=STYLES[k % len(STYLES)],
+            marker="o",
+            markersize=4,
+            fillstyle=FILLS[k % len(FILLS)],
+            label=f"{ratio:g} times the tissue's shear modulus",
+        )
+        for k, ratio in enumerate(values["shear_ratios"])
+    ]
+    return [*handles, Patch(color=NEVER, label="reaches the upper face")]
+
+
+def _title(result: Result) -> str:
+    told = result.details
+    title = str(told.get("title") or "") or "Smallest lump found"
+    share, alarms = 100 * told["probability"], 100 * told["false_alarms"]
+    return f"{title}: {share:g} % found at {alarms:g} % false alarms, noise {format_quantity(told['noise'], 'N')}"

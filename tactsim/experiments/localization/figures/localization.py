@@ -1,0 +1,28 @@
+"""The figures of a localization: the three views and the view in space, with the true and the estimated inclusions."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tactsim.experiments.localization.figures.parts import has_views
+from tactsim.experiments.localization.figures.space import SPACE, space_view
+from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.plotting.canvas import png
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result
+
+
+class LocalizationFigures(ResultFigures):
+    """Views in force and in pressure, and in space."""
+
+    kind: Literal["localization"] = "localization"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``views.png``, ``views_pressure.png`` and ``space.png``; the last needs a renderer."""
+        if not has_views(result):
+            return {}
+        drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(result))}
+        drawings[VIEWS_PRESSURE] = lambda: png(views_figure(result, "pressure"))
+        if "jaws" in result.details:
+            drawings[SPACE] = lambda: space_view(result)
+        return drawings

@@ -1,0 +1,117 @@
+"""The estimated and the true inclusions in space, between the jaws with a bar for every taxel: the picture of thesis Fig. 6.8."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.patches import Patch
+
+from tactsim.contact.jaw import Jaw
+from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.figures.maps import COLOURS
+from tactsim.experiments.grasp.figures.parts import SIDES, Grasp
+from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
+from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, viewed
+from tactsim.mesh.solid import Solid
+from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.off_screen import Surface, pictures
+from tactsim.results import Result
+
+Array = np.ndarray
+SPACE = "space.png"
+"""File name of the view."""
+TRUE_COLOUR, ESTIMATE_COLOUR = "#009e73", "#d1242f"
+FACETS = 30
+"""Edges of triangles along the block's height."""
+UNKNOWN_RADIUS = 0.06
+"""Radius over the block's height with which the place of an inclusion of unknown size is marked."""
+_BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+
+
+def space_view(result: Result) -> bytes:
+    """The PNG of the view.
+
+    Raises
+    ------
+    TactsimError
+        If this machine cannot render.
+    """
+    try:
+        return png(space_figure(result))
+    except TactsimError as error:
+        raise TactsimError(f"{SPACE} is left out: {error}") from error
+
+
+def space_figure(result: Result) -> Figure:
+    """What is truly there beside what was found, in the undeformed tissue, seen from the front, right and above."""
+    shown = viewed(result)
+    grasp = _grasp(result, shown)
+    outside = [_tissue(shown.size), *(surface for side in SIDES for surface in jaw_surfaces(grasp, side))]
+    scenes = {"true inclusions": list(_true(shown)), "estimated inclusions": list(_estimated(shown))}
+    camera = framing_camera(outside, FROM_ABOVE)
+    with styled():
+        figure = new_figure(12.0, 5.9)
+        figure.set_layout_engine("constrained", h_pad=0.08)
+        axes = figure.subplots(1, 2)
+        for axis, (words, inside) in zip(axes, scenes.items(), strict=True):
+            image = pictures([*outside, *inside], [camera])[0]
+            axis.imshow(imread(io.BytesIO(image)), interpolation="lanczos")
+            axis.set_axis_off()
+            axis.set_title(words if inside else f"{words}: none", loc="left")
+            annotate(axis, grasp, camera)
+        _scale(figure, axes, grasp, shown)
+        entitle(figure, _title(result))
+    return figure
+
+
+def _title(result: Result) -> str:
+    title = str(result.details.get("title") or "") or "Localization"
+    return f"{title}: {result.reason}" if result.reason else title
+
+
+def _scale(figure: Figure, axes: Any, grasp: Grasp, shown: ViewedGrasp) -> None:
+    factor, unit = scale_of(grasp.largest_pressure, "Pa")
+    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+    bar.set_label(f"mean {shown.meaning.replace('force', 'pressure')} on the taxel in {unit}: colour and length of its bar")
+    bar.outline.set_linewidth(0.5)
+    handles = [Patch(color=TRUE_COLOUR, label="true"), Patch(color=ESTIMATE_COLOUR, label="estimated")]
+    figure.legend(handles=handles, loc="lower right", ncols=2, fontsize=8.5)
+
+
+def _grasp(result: Result, shown: ViewedGrasp) -> Grasp:
+    """The jaws at the faces of the undeformed block, with the pressures of what is shown."""
+    jaws = {side: Jaw.model_validate(result.details["jaws"][side]) for side in SIDES}
+    heights = {"upper": float(shown.size[2]), "lower": 0.0}
+    places = {side: np.array([*shown.middle, heights[side]]) for side in SIDES}
+    forces = dict(zip(SIDES, shown.signal, strict=True))
+    pressures = {side: forces[side] / shown.layout.area for side in SIDES}
+    return Grasp(shown.size, jaws, places, shown.layout, pressures, forces)
+
+
+def _tissue(size: Array) -> Surface:
+    return Surface(_BOX * size, _SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3), TISSUE_COLOUR, opacity=0.18, creases=True)
+
+
+def _true(shown: ViewedGrasp) -> Iterator[Surface]:
+    for body in shown.true:
+        yield _surface(body, shown.size, TRUE_COLOUR)
+
+
+def _estimated(shown: ViewedGrasp) -> Iterator[Surface]:
+    for body in estimated_bodies(shown, UNKNOWN_RADIUS * float(shown.size[2])):
+        yield _surface(body, shown.size, ESTIMATE_COLOUR)
+
+
+def _surface(body: Solid, size: Array, colour: str) -> Surface:
+    """The surface of a body, cut at the faces of the block."""
+    points, triangles = body.triangles(float(size[2]) / FACETS)
+    return Surface(np.clip(points, 0.0, size), triangles, colour, smooth=True)

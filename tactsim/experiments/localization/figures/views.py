@@ -1,0 +1,232 @@
+"""Front, left and top view of a grasp as colour images, in third-angle projection, with the true and estimated inclusions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PatchCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
+
+from tactsim.experiments.localization.figures.parts import SIDES, ViewedGrasp, estimated_bodies, outline, viewed
+from tactsim.localization.views import SHAPE, views
+from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
+from tactsim.results import Result
+
+Array = np.ndarray
+VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
+Shown = Literal["force", "pressure"]
+"""Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""
+COLOURS = "cividis"
+"""Made to look alike with and without colour blindness (Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239)."""
+JAW = 1.2
+"""Thickness in mm with which a jaw is drawn."""
+ROOM = 1.0
+"""Around the drawing in mm."""
+REGION_DASHES: Any = (0, (1.5, 1.5))
+"""Of the line around where an estimated centre may lie."""
+INK, GREY = "#30363d", "#57606a"
+ESTIMATE = "#d1242f"
+LETTERS = {"upper": "U", "lower": "L"}
+MOST_NAMED = 8
+"""Taxels along a jaw up to which each is numbered."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One view.
+
+    Attributes
+    ----------
+    image : (M, N) in N, row 0 at the top
+    away : axis along which it looks
+    horizontal, vertical : axes of the picture
+    summed : number of taxels whose forces are added
+    """
+
+    image: Array
+    away: int
+    horizontal: int
+    vertical: int
+    summed: int
+    what: str
+
+    def scale(self, grasp: ViewedGrasp, shown: Shown) -> tuple[float, str]:
+        """Factor from a sum in N to what is shown, and its unit."""
+        over = 1.0 if shown == "force" else 1 / (self.summed * grasp.layout.area)
+        factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "N" if shown == "force" else "Pa")
+        return over * factor, unit
+
+
+def views_figure(result: Result, shown: Shown = "force") -> Figure:
+    """The top view above the front view, the left view beside it; every picture has its colour scale.
+
+    The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
+    L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
+    """
+    grasp = viewed(result)
+    found, layout = views(grasp.signal, SHAPE), grasp.layout
+    front = View(found.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
+    left = View(found.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
+    top = View(found.top, 2, 0, 1, len(SIDES), "Top view: {} of both jaws")
+    x, y, z = 1e3 * grasp.size
+    with styled():
+        figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
+        axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
+        for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
+            _draw(axis, view, grasp, shown)
+        axes[1, 0].invert_xaxis()
+        _legend(axes[0, 0], grasp, result, shown)
+        title = str(result.details.get("title") or "") or "Three views of the grasp"
+        entitle(figure, title)
+    return figure
+
+
+def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
+    factor, unit = view.scale(grasp, shown)
+    norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
+    extent = _extent(view, grasp)
+    axis.imshow(factor * view.image, cmap=COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1)
+    size = 1e3 * grasp.size
+    block = Rectangle((0, 0), size[view.horizontal], size[view.vertical], fill=False, edgecolor=GREY, linewidth=0.8, zorder=3)
+    block.set_linestyle((0, (4, 3)))
+    axis.add_patch(block)
+    if view.away == 2:
+        _draw_taxels(axis, grasp)
+    else:
+        _draw_jaws(axis, view, grasp)
+    for body in grasp.true:
+        first, second, distance = outline(body, grasp.size, view.away)
+        axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=2.6, zorder=5)
+        axis.contour(first, second, distance, levels=[0.0], colors=["k"], linewidths=1.1, linestyles="--", zorder=6)
+    _draw_estimates(axis, view, grasp)
+    beyond = JAW + ROOM if view.away != 2 else ROOM
+    low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
+    axis.set(xlim=(low_x - ROOM, high_x + ROOM), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
+    axis.set(
+        xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
+    )
+    axis.set_title(view.what.format("sums" if shown == "force" else "means"), loc="left")
+    despined(axis)
+    location = "bottom" if view.away != 2 else "right"
+    bar = axis.figure.colorbar(ScalarMappable(norm, COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85)
+    bar.set_label(f"{grasp.meaning.replace('force', shown)} in {unit}")
+    bar.outline.set_linewidth(0.5)
+
+
+def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top of the image in mm: the outermost pixels stand at the outermost taxels' centres.
+
+    A single row or column has the width of its taxels.
+    """
+    sides = []
+    for axis, pixels in ((view.horizontal, view.image.shape[1]), (view.vertical, view.image.shape[0])):
+        if axis == 2:
+            sides += [0.0, 1e3 * float(grasp.size[2])]
+            continue
+        borders = grasp.borders("xy"[axis])
+        centres = borders.mean(axis=1)
+        half = (centres[-1] - centres[0]) / (pixels - 1) / 2
+        sides += [centres[0] - half, centres[-1] + half] if len(centres) > 1 else list(borders[0])
+    if view.horizontal == 1:
+        sides[:2] = sides[1::-1]
+    return sides[0], sides[1], sides[2], sides[3]
+
+
+def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
+    """Thin borders of the taxels, hatched where one of a place is interpolated."""
+    columns, rows = grasp.borders("x"), grasp.borders("y")
+    side, valid = 1e3 * grasp.layout.size, grasp.valid.all(axis=0)
+    places = [(columns[column, 0], rows[row, 0]) for row, column in np.ndindex(len(rows), len(columns))]
+    squares = [Rectangle(corner, side, side) for corner in places]
+    none: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "linewidth": 0.5, "zorder": 4}
+    axis.add_collection(PatchCollection(squares, facecolor="none", edgecolor="w", linewidth=1.4, zorder=3.5, alpha=0.7))
+    for chosen, hatch in ((valid.ravel(), None), (~valid.ravel(), "xxx")):
+        axis.add_collection(PatchCollection([squares[k] for k in np.flatnonzero(chosen)], hatch=hatch, **none))
+
+
+def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
+    """Both jaws with the sums of their taxels in colours of their own scale, numbered as in thesis Fig. 6.3."""
+    along, summed = ("x", 1) if view.horizontal == 0 else ("y", 2)
+    sums, missing = grasp.signal.sum(axis=summed), (~grasp.valid).sum(axis=summed)
+    norm = Normalize(0.0, max(float(view.image.max()), 1e-12))
+    colours, borders = colormaps[COLOURS], grasp.borders(along)
+    for jaw, side in enumerate(SIDES):
+        bottom = 1e3 * grasp.size[2] if side == "upper" else -JAW
+        for number, (low, high) in enumerate(borders):
+            shade = colours(float(norm(sums[jaw, number])))
+            hatch = None if missing[jaw, number] == 0 else "xxx"
+            axis.add_patch(
+                Rectangle((low, bottom), high - low, JAW, facecolor=shade, edgecolor=INK, linewidth=0.6, zorder=4, hatch=hatch)
+            )
+            if len(borders) <= MOST_NAMED:
+                middle = (low + high) / 2, bottom + JAW + 0.1 if side == "upper" else bottom - 0.1
+                align = "bottom" if side == "upper" else "top"
+                axis.text(*middle, f"{LETTERS[side]}{number + 1}", ha="center", va=align, fontsize=6.5, color=GREY)
+
+
+def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
+    rim = [withStroke(linewidth=3.4, foreground="w")]
+    for body in estimated_bodies(grasp):
+        first, second, distance = outline(body, grasp.size, view.away)
+        axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
+        axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
+    for line in grasp.regions[view.away]:
+        axis.plot(*line.T, color="w", linewidth=2.4, zorder=7)
+        axis.plot(*line.T, color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, zorder=8)
+    for center in 1e3 * grasp.estimates:
+        place = center[view.horizontal], center[view.vertical]
+        axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
+
+
+def _legend(axis: Axes, grasp: ViewedGrasp, result: Result, shown: Shown) -> None:
+    """What the lines mean, and what was found."""
+    axis.axis("off")
+    added = "sums" if shown == "force" else "means"
+    handles: list[Any] = [
+        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block"),
+        Line2D([], [], color=INK, linewidth=0.6, label=f"taxels, their {added} in colour on the jaws"),
+    ]
+    if not grasp.valid.all():
+        handles.append(Rectangle((0, 0), 1, 1, fill=False, edgecolor=INK, linewidth=0.5, hatch="xxx", label="dead or saturated"))
+    if grasp.true:
+        handles.append(Line2D([], [], color="k", linewidth=1.1, linestyle="--", label="true inclusions"))
+    if len(grasp.estimates):
+        handles.append(
+            Line2D([], [], color=ESTIMATE, marker="+", markersize=11, markeredgewidth=1.8, linestyle="", label="estimated")
+        )
+    if any(grasp.regions.values()):
+        words = "its centre lies in here with a probability of 90 %"
+        handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
+    axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)
+    axis.text(0.0, 0.68, "\n".join(_findings(grasp, result)), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
+
+
+def _findings(grasp: ViewedGrasp, result: Result) -> list[str]:
+    quantities = result.quantities
+    if "present" not in quantities:
+        return [
+            "Thesis 6.3 on the bare forces: plain tissue, too, is bright",
+            "in the middle, and shows a row of maxima in the top view.",
+            "Pictures reach from centre to centre of the outer taxels.",
+        ]
+    if not quantities["present"].value:
+        return ["Nothing there."]
+    places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in grasp.estimates]
+    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    told += [f"Estimated at {place}" for place in places]
+    if "center_deviation" in quantities:
+        deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
+        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+    if "lateral_error" in quantities:
+        lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
+        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+    return told

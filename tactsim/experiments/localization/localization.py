@@ -1,0 +1,192 @@
+"""Where a lump lies, from the readings of a grasp that was run before."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import InputError
+from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.source import (
+    SIDES,
+    Source,
+    away_from_truth,
+    folder_words,
+    readings_of,
+    reference_notes,
+    stored_grasp,
+    true_inclusions,
+    true_places,
+    with_reference,
+)
+from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.estimators.any_estimator import AnyEstimator
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
+from tactsim.localization.readings import silent_taxels, silent_words
+from tactsim.outside.input_path import InputPath
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.units import Force, format_quantity
+
+Array = np.ndarray
+KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
+"""Details of the grasp that the figures need."""
+Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+
+
+class Localization(Experiment):
+    """Estimate from a stored grasp, held against the inclusions that it was computed with.
+
+    Run a grasp first, for example ``tactsim run cases/grasp_lump_icf.yaml --out results/grasp_lump_icf``, and the same grasp with
+    ``material`` of the inclusion set to that of the tissue as ``reference``. Then::
+
+        experiment:
+          kind: localization
+          grasp: results/grasp_lump_icf
+          reference: results/grasp_plain
+          estimator: {kind: thesis, background: reference}
+
+    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and tells
+    how uncertain place, radius and contrast are.
+    """
+
+    kind: Literal["localization"] = "localization"
+    grasp: InputPath
+    """Folder of the result of a grasp, beside the case or in the working folder."""
+    reference: InputPath | None = None
+    """Folder of the same grasp without a lump at the same closing; null if there is none."""
+    readings: Source = "taxel_force"
+    """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""
+    noise: Annotated[Force, Field(ge=0)] = ROUNDING_NOISE
+    """Standard deviation of a reading; the default is what rounding to the sensor's resolution of 0.1 N (thesis 6.2) does."""
+    dead: tuple[Taxel, ...] = ()
+    """Taxels (jaw, row, column) that cannot be trusted; they are interpolated from their neighbours."""
+    estimator: AnyEstimator = ThesisEstimator()
+    """How the inclusion is sought."""
+
+    history_units: ClassVar[dict[str, str]] = {"total_upper": "N", "total_lower": "N"}
+
+    @classmethod
+    def example(cls) -> Self:
+        """The main grasp, wherever it was written."""
+        return cls(grasp="results/grasp_lump_icf")
+
+    def run(self, progress: Progress) -> Result:
+        """One step: the last of the grasp."""
+        begin = time.perf_counter()
+        stored = stored_grasp(self.grasp)
+        plain = None if self.reference is None else stored_grasp(self.reference)
+        readings = self._readings(stored, plain)
+        estimate = self.estimator.estimate(readings)
+        step = StepRecord(1, 0, 0.0, dict(zip(self.history_units, map(float, readings.filled.sum(axis=(1, 2))), strict=True)))
+        progress(step)
+        true = [true_places(shape, readings.block_size) for shape in true_inclusions(stored.details)]
+        return Result(
+            kind=self.kind,
+            status=Status.CONVERGED,
+            reason=estimate.reason,
+            quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
+            assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
+            warnings=tuple(self._warnings(stored, plain, readings)),
+            timing={"total": time.perf_counter() - begin},
+            steps=(step,),
+            units=self.history_units,
+            details={name: stored.details[name] for name in KEPT if name in stored.details}
+            | {
+                "estimates": [
+                    {
+                        "kind": found.kind,
+                        "center": list(found.center),
+                        "radius": found.radius,
+                        "line": found.line,
+                        "region": None if found.region is None else found.region.shadows(),
+                    }
+                    for found in estimate.inclusions
+                ],
+                "estimator": self.estimator.kind,
+                "noise": self.noise,
+                "valid": None if readings.valid is None else readings.valid.tolist(),
+                "words": [told(found) for found in estimate.inclusions],
+            },
+        )
+
+    def _readings(self, stored: Result, plain: Result | None) -> Readings:
+        dead = self._dead(TaxelLayout.model_validate(stored.details["matrix"]))
+        readings = readings_of(stored, self.readings, noise=self.noise, dead=dead)
+        if self.reference is None or plain is None:
+            return readings
+        readings = with_reference(readings, readings_of(plain, self.readings, noise=self.noise, dead=None))
+        return replace(readings, response=stored_response(self.reference)) if self.estimator.needs_response else readings
+
+    def _dead(self, layout: TaxelLayout) -> Array:
+        dead = np.zeros((len(SIDES), layout.rows, layout.columns), bool)
+        for side, row, column in self.dead:
+            if row > layout.rows or column > layout.columns:
+                raise InputError(
+                    f"dead: taxel {side}, {row}, {column} of a matrix of {layout.rows} rows and {layout.columns} columns"
+                )
+            dead[SIDES.index(side), row - 1, column - 1] = True
+        return dead
+
+    def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
+        found = []
+        if stored.status is not Status.CONVERGED:
+            found.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
+        if readings.valid is not None:
+            found.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
+        silent = silent_taxels(readings.filled)
+        if silent.any():
+            found.append(f"{silent_words(silent)}; name dead taxels by the key dead")
+        return found if plain is None else [*found, *reference_notes(true_inclusions(plain.details))]
+
+
+def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:
+    found = {}
+    for jaw, side in enumerate(SIDES):
+        of = f"of the {side} jaw; [row][column], row 1 nearest the front, column 1 the smallest x"
+        found[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
+        if readings.difference is not None:
+            text = f"force on each taxel less that of the reference, {of}"
+            found[f"taxel_difference_{side}"] = Quantity(readings.difference[jaw].tolist(), "N", text)
+    return found
+
+
+def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
+    found = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
+    if estimate.probability is not None:
+        found["probability"] = Quantity(estimate.probability, "1", "that anything is there")
+    if estimate.classes is not None:
+        names = ", ".join(estimate.classes)
+        found["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")
+    if not estimate.inclusions:
+        return found
+    first = estimate.inclusions[0]
+    found["estimated_center"] = Quantity(list(first.center), "m", "x, y, z of the strongest inclusion, in the undeformed block")
+    if first.radius is not None:
+        found["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
+    if first.contrast is not None:
+        found["estimated_contrast"] = Quantity(first.contrast, "1", "contrast of the strongest inclusion, negative if softer")
+    if first.covariance is not None:
+        deviations = np.sqrt(np.diag(first.covariance))
+        found["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
+        found["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
+        found["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
+    return found
+
+
+def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quantity]:
+    """Errors of the strongest inclusion against the true one nearest to it in plan."""
+    if not estimate.inclusions or not true:
+        return {}
+    nearest, lateral, depth = away_from_truth(np.array(estimate.inclusions[0].center), np.concatenate(true))
+    of = "of the strongest inclusion from the nearest true one (its centre, or the centre line of an artery)"
+    return {
+        "true_center": Quantity(nearest.tolist(), "m", "x, y, z of the true inclusion nearest in plan, in the undeformed block"),
+        "lateral_error": Quantity(lateral, "m", f"distance in plan {of}"),
+        "depth_error": Quantity(depth, "m", f"height {of}; positive if estimated too near to the upper jaw"),
+    }

@@ -1,0 +1,137 @@
+r"""What a small change of stiffness at a point does to the force on each taxel: adjoint solutions on the plain tissue.
+
+The force on a taxel is the virtual work of the stress in the virtual displacement w that moves the taxel by one into the tissue
+and leaves the rest of both jaws at rest. If w solves the equations linearised about the grasped plain tissue, a change of stress
+:math:`\delta P` in a part of the tissue changes the force by
+
+.. math:: \delta F = \int \delta P : \nabla w\, dV
+
+and stiffness times 1 + c is :math:`\delta P = c P_{iso}`; pressure does no work in w, which keeps the volume. Tissue that
+touches a jaw is taken to stick to it. See K.-J. Bathe, Finite Element Procedures, 1996, for the linearised equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import splu
+
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.experiments.grasp.path import grasp_path
+from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.fem.linear import SymmetricPardiso, direct_solver
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.mechanics.block_model import CLOSING, SIDES, GraspModel
+from tactsim.mechanics.block_source import StructuredSource
+
+Array = np.ndarray
+CELLS = (14, 14, 8)
+"""Cells of the block, each of six tetrahedra: 45 000 unknowns."""
+RADII = np.linspace(1.5e-3, 8e-3, 14)
+"""Radii in m of the tabulated balls."""
+SPACING = 1e-3
+"""Of the tabulated centres in m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Densities (jaw, row, column, n) in N/m^3 at points ``places`` (n, 3) in m that stand for ``volumes`` (n,) in m^3."""
+
+    places: Array
+    volumes: Array
+    densities: Array
+    forces: Array
+    """What the taxels (jaw, row, column) read on the plain tissue, in N."""
+
+
+def lump_response(setup: GraspSetup) -> LumpResponse:
+    """The fast forward model of lumps in the tissue of a grasp without inclusions, at the end of its history.
+
+    Raises
+    ------
+    InputError
+        If the grasp has inclusions.
+    ConvergenceError
+        If the plain tissue cannot be grasped.
+    """
+    found = sensitivity(setup)
+    size = setup.block.size
+    radii = RADII[min(size) > 2 * RADII]
+    return LumpResponse.of_density(
+        found.places, found.volumes, found.densities, size=size, radii=radii, spacing=min(SPACING, min(size) / 10)
+    )
+
+
+def sensitivity(setup: GraspSetup) -> Sensitivity:
+    """Densities of the change of every taxel's force, on a structured mesh."""
+    if setup.inclusions:
+        raise InputError("the response is that of plain tissue; give a grasp without inclusions")
+    plain = setup.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)})
+    model = plain.model(plain.sourced())
+    last = None
+    for state, _ in grasp_path(plain, model).states():
+        last = state.contact
+    if last is None:
+        raise ConvergenceError("the history of the grasp has no step")
+    adjoint = _Adjoint(model, last.unknowns)
+    body, F = model.body, last.kinematics.F
+    stress = body.materials[0].first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
+    densities = []
+    for side in SIDES:
+        for border in adjoint.indicators(side, last.contacts[SIDES.index(side)].place, plain.matrix):
+            gradient = adjoint.gradient(side, border)
+            densities.append(np.einsum("ijeq,ijeq->eq", stress, gradient).ravel())
+    shape = (len(SIDES), plain.matrix.rows, plain.matrix.columns)
+    corners = model.mesh.nodes[model.space.elements]
+    places = np.einsum("qa,ead->eqd", body.points.values, corners).reshape(-1, 3)
+    forces = np.stack([model.taxels(last, side, plain.matrix).taxels[2] for side in SIDES])
+    return Sensitivity(places, body.points.weights.ravel(), np.array(densities).reshape(*shape, -1), forces)
+
+
+class _Adjoint:
+    """The tangent of the grasped plain tissue, factored with both faces held."""
+
+    def __init__(self, model: GraspModel, unknowns: Array):
+        self.model = model
+        self.displacement = model.space.split(unknowns)[0]
+        size, pattern = model.space.size, model.body.pattern
+        tangent = csr_matrix((model.body.tangent(unknowns), pattern.indices, pattern.indptr), shape=(size, size))
+        self.nodes = {side: np.unique(model.facets[side]) for side in SIDES}
+        held = np.concatenate([(nodes[:, None] * 3 + np.arange(3)).ravel() for nodes in self.nodes.values()])
+        self.free = np.setdiff1d(np.arange(size), held)
+        self.coupling = tangent[self.free]
+        self.solver = direct_solver(SymmetricPardiso.name)
+        inner = self.coupling[:, self.free].tocsr()
+        inner.sort_indices()
+        self.solver.factor(inner)
+
+    def indicators(self, side: str, place: Array, layout: TaxelLayout) -> list[Array]:
+        """For each taxel, by rows, the nodal values (nodes of the face,) that come nearest to one on it and zero beside it."""
+        surface = self.model.space.surface_points(self.model.facets[side])
+        nodes = self.nodes[side]
+        number = np.searchsorted(nodes, surface.nodes)
+        products = surface.weights[:, None, None] * surface.values[:, :, None] * surface.values[:, None, :]
+        count = surface.values.shape[1]
+        places = np.repeat(number[:, :, None], count, axis=2), np.repeat(number[:, None, :], count, axis=1)
+        mass = splu(csr_matrix((products.ravel(), tuple(p.ravel() for p in places)), shape=(len(nodes),) * 2).tocsc())
+        deformed = surface.interpolate(self.model.mesh.nodes + self.displacement)
+        along = self.model.jaws[side].face_coordinates(deformed - place[:, None])
+        found = []
+        for low_y, high_y in layout.borders("y"):
+            for low_x, high_x in layout.borders("x"):
+                on = (along[0] >= low_x) & (along[0] < high_x) & (along[1] >= low_y) & (along[1] < high_y)
+                loads = (surface.weights * on)[:, None] * surface.values
+                found.append(mass.solve(np.bincount(number.ravel(), loads.ravel(), len(nodes))))
+        return found
+
+    def gradient(self, side: str, border: Array) -> Array:
+        """Gradient (3, 3, E, Q) in 1/m of the virtual displacement that moves the face of a jaw by ``border`` into the tissue."""
+        model = self.model
+        field = np.zeros(model.space.size)
+        field[self.nodes[side] * 3 + 2] = CLOSING[side][2] * border
+        field[self.free] = self.solver.solve(-(self.coupling @ field))
+        moved = model.space.split(field)[0][model.space.elements]
+        return np.einsum("eqak,eai->ikeq", model.body.points.gradients, moved)

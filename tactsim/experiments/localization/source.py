@@ -1,0 +1,168 @@
+"""Readings of a grasp that was run before, from its folder, and where its inclusions truly lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from tactsim.errors import InputError
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.interface import Readings
+from tactsim.localization.readings import JAWS as SIDES
+from tactsim.mesh.any_inclusion import AnyInclusion, shapes_unlike_tissue
+from tactsim.mesh.inclusions.tube import Tube, extended
+from tactsim.mesh.solid import Inclusion
+from tactsim.results.reading import read_result
+from tactsim.results.result import Result
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+Source = Literal["taxel_force", "read_force"]
+"""Forces of the solution, or those read through film, electronics and calibration."""
+SAME_CLOSING = 1e-3
+"""Largest relative difference of the closing of the reference."""
+ALONG_LINE = 400
+"""Points on the centre line of an artery among which the nearest is sought."""
+
+
+def stored_grasp(folder: str) -> Result:
+    """The result of a grasp in a folder, without its fields.
+
+    Raises
+    ------
+    StorageError
+        If there is no result.
+    InputError
+        If it is not that of a grasp with taxels.
+    """
+    found = read_result(folder, fields=False).result
+    if found.kind not in ("grasp", "matrix_readout") or "taxel_force_upper" not in found.quantities:
+        raise InputError(
+            f"{folder} holds the result of {found.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
+        )
+    return found
+
+
+def readings_of(result: Result, source: Source = "taxel_force", *, noise: float, dead: Array | None = None) -> Readings:
+    """What the matrices of a stored grasp read at its last accepted step.
+
+    ``dead`` (jaw, row, column) marks taxels that are not to be trusted; of ``read_force`` a taxel whose voltage is outside the
+    range of the converter at that step is not trusted either.
+
+    Raises
+    ------
+    InputError
+        If the result was not read through sensors, or its matrices do not face each other.
+    """
+    if f"{source}_upper" not in result.quantities:
+        raise InputError(f"the result has no {source}; give the grasp a readout, run matrix_readout on it, or take taxel_force")
+    layout = TaxelLayout.model_validate(result.details["matrix"])
+    valid = np.ones((2, layout.rows, layout.columns), bool) if dead is None else ~dead
+    if source == "read_force":
+        valid = valid & ~saturated_taxels(result)[-1]
+    closing = result.quantities.get("displacement")
+    return Readings(
+        _taxels(result, source),
+        layout,
+        np.asarray(result.details["block_size"], dtype=float),
+        noise=noise,
+        valid=None if valid.all() else valid,
+        middle=_middle(result.details, layout),
+        closing=None if closing is None else float(closing.value),
+    )
+
+
+def with_reference(readings: Readings, reference: Readings) -> Readings:
+    """The readings with those of a grasp without a lump.
+
+    Raises
+    ------
+    InputError
+        If block, matrix or closing differ.
+    """
+    if readings.layout != reference.layout or not np.allclose(readings.block_size, reference.block_size, rtol=1e-9):
+        raise InputError("the reference has another block or another matrix; needed: the same grasp without the lump")
+    if readings.closing is not None and reference.closing is not None:
+        away = abs(readings.closing - reference.closing)
+        if away > SAME_CLOSING * abs(readings.closing):
+            here, there = (format_quantity(value, "m") for value in (readings.closing, reference.closing))
+            raise InputError(f"the jaws have closed by {here}, those of the reference by {there}; needed: the same closing")
+    valid = [part.valid for part in (readings, reference) if part.valid is not None]
+    mask = np.logical_and.reduce(valid) if valid else None
+    return replace(readings, reference=reference.forces, valid=mask)
+
+
+def saturated_taxels(result: Result) -> Array:
+    """Which readings (time or 1, jaw, row, column) of a result are saturated; one whose times are not told is so all the time."""
+    over_time = [f"saturated_{side}_history" for side in SIDES]
+    if all(name in result.quantities for name in over_time):
+        return np.stack([np.asarray(result.quantities[name].value, dtype=float) for name in over_time], axis=1) > 0
+    return _taxels(result, "saturated")[None] > 0
+
+
+def true_inclusions(details: dict[str, Any]) -> tuple[Inclusion, ...]:
+    """The inclusions that a result was computed with, but those that are nothing but tissue."""
+    adapter = TypeAdapter(AnyInclusion)
+    return tuple(adapter.validate_python(shape) for shape in shapes_unlike_tissue(details))
+
+
+def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
+    """What the user must know of a reference that was computed with these inclusions."""
+    if not inclusions:
+        return ()
+    what = "an inclusion" if len(inclusions) == 1 else f"{len(inclusions)} inclusions"
+    return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
+
+
+def true_places(inclusion: Inclusion, size: Array) -> Array:
+    """Points (n, 3) in m that stand for an inclusion: its centre, or many along the centre line of an artery in the block."""
+    if isinstance(inclusion, Tube):
+        line = extended(inclusion.centre_line, inclusion.outer_radius, tuple(size))
+        points = line.derivatives(np.linspace(*line.limits, ALONG_LINE))[0]
+        return points[((points >= 0) & (points <= size)).all(axis=1)]
+    center = getattr(inclusion, "center", None)
+    return np.array([inclusion.solids(size)[0].bounds().mean(axis=0) if center is None else center], dtype=float)
+
+
+def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:
+    """The true place (3,) nearest in plan among ``places`` (n, 3), and the distances of a centre (3,) from it, all in m.
+
+    The distances are that in plan, and that in height, positive if the centre is nearer to the upper jaw.
+    """
+    away = center - places
+    nearest = int(np.hypot(*away[:, :2].T).argmin())
+    return places[nearest], float(np.hypot(*away[nearest, :2])), float(away[nearest, 2])
+
+
+def _taxels(result: Result, name: str) -> Array:
+    try:
+        return np.array([result.quantities[f"{name}_{side}"].value for side in SIDES], dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} of the two jaws of the result are not numbers in matrices of one shape; run the grasp again"
+        ) from None
+
+
+def _middle(details: dict[str, Any], layout: TaxelLayout) -> Array | None:
+    """Middle (2,) of both matrices in m, None if the result does not tell."""
+    told = details.get("jaw_places")
+    if told is None:
+        return None
+    upper, lower = (np.asarray(told[side], dtype=float)[:2] for side in SIDES)
+    away = float(np.abs(upper - lower).max())
+    if away > layout.pitch / 2:
+        raise InputError(
+            f"the matrices of both jaws are {format_quantity(away, 'm')} apart sideways; the views need taxels that face each "
+            f"other: at most half the pitch, {format_quantity(layout.pitch / 2, 'm')}"
+        )
+    return (upper + lower) / 2
+
+
+def folder_words(folder: str) -> str:
+    """Name of a folder for a message, without where it lies on this machine."""
+    return Path(folder).name

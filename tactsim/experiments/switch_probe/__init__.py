@@ -1,0 +1,1 @@
+"""A probe with an array of switches drawn over tissue."""

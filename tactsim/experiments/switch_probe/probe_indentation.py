@@ -1,0 +1,99 @@
+"""The probe with leaning sides pressed into tissue in plane strain: force, contact on its sides, and what its switches carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from tactsim.contact.trapezoid import Trapezoid
+from tactsim.experiments.indentation.contact_record import contact_values
+from tactsim.experiments.indentation.timed_path import TimedIndentationPath
+from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
+from tactsim.fem.space import Measure
+from tactsim.mechanics.contact_quality import ContactQuality
+from tactsim.mechanics.history_path import TimedState
+from tactsim.mechanics.section_model import IndentationModel
+from tactsim.results.result import StepRecord
+from tactsim.sensors.switch_array import SwitchArray
+
+Array = np.ndarray
+
+SAMPLES = 20_000
+"""Points between which the contact along the surface is interpolated, so that a strip's ends fall between them."""
+REACH = 1.0
+"""How far around a corner of the face elements are finest, in half widths of the face: this tissue comes to lie on the side."""
+TOUCHED = 1e-3
+"""Part of the largest pressure above which a point counts as touched."""
+
+
+class ProbeIndentation(TimedIndentationSetup):
+    """A prism pressed into a block as deep as itself, both much longer than wide; the specimen's radius is half its width."""
+
+    measure: ClassVar[Measure] = "plane_strain"
+
+    def _focus(self) -> tuple[tuple[float, ...], float, float]:
+        rims, _, finest = super()._focus()
+        return rims, REACH * self.contact_radius, finest
+
+
+@dataclass(frozen=True)
+class ProbeState:
+    """An accepted state of the probe: time in s, depth in m, force on the whole probe in N, contact height in m on its sides,
+    forces in N on the switches (count,), and the ``record`` of the step by which success is judged."""
+
+    time: float
+    depth: float
+    force: float
+    contact_height: float
+    switch_forces: Array
+    record: StepRecord
+
+
+def probe_states(
+    setup: ProbeIndentation, array: SwitchArray, *, width: float, quality: ContactQuality | None = None
+) -> Iterator[ProbeState]:
+    """The accepted states of a prescribed history, the probe ``width`` in m out of the plane, followed by ``quality``.
+
+    Raises
+    ------
+    ConvergenceError
+        If the path cannot be followed to its end.
+    """
+    model, quality = setup.model(), quality or ContactQuality()
+    path = TimedIndentationPath(setup, model)
+    for number, (state, _) in enumerate(path.states(), 1):
+        values = contact_values(model, state.contact, state.past)[0] | quality.values(model.body, state.contact)
+        record = StepRecord(number, state.iterations, state.contact.residual, values)
+        yield _probe_state(model, state, array, width=width, record=record)
+
+
+def _probe_state(
+    model: IndentationModel, state: TimedState, array: SwitchArray, *, width: float, record: StepRecord
+) -> ProbeState:
+    contact = state.contact.contacts[0]
+    traction = contact.at(model.displacement(state.contact.unknowns))
+    order = np.argsort(contact.reference[0])
+    along = contact.reference[0, order]
+    body = contact.pair.body
+    corner = body.fillet_height if isinstance(body, Trapezoid) else 0.0
+    height, carried = side_forces(along, traction.points[1, order], traction.pressure[order], array)
+    force = -2 * width * float(model.surface.total(traction.traction)[1])
+    contact_height = height if height > corner else 0.0
+    return ProbeState(state.time, state.contact.load, force, contact_height, width * carried, record)
+
+
+def side_forces(along: Array, height: Array, pressure: Array, array: SwitchArray) -> tuple[float, Array]:
+    """Largest height in m above the face that is touched, and force in N per m of width on each switch (count,).
+
+    Points of the surface by the undeformed place ``along`` (n,) in m, increasing, with their ``height`` in m above the face and
+    the ``pressure`` in Pa per undeformed area; the pressure is integrated over the strip of each switch, linear between points.
+    """
+    fine = np.linspace(along[0], along[-1], SAMPLES)
+    z, p = np.interp(fine, along, height), np.interp(fine, along, pressure)
+    touched = p > TOUCHED * p.max()
+    highest = float(z[touched].max()) if touched.any() else 0.0
+    inside = np.abs(z[None] - array.heights[:, None]) <= array.strip / 2
+    return max(highest, 0.0), (inside * p).sum(axis=1) * (fine[1] - fine[0])

@@ -1,0 +1,200 @@
+"""What an indentation by the switch probe reports: the touches, what was read from them, and how tissues rank."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
+from tactsim.experiments.switch_probe.setup import COUNT, SwitchProbeSetup
+from tactsim.mechanics.plausibility import oddities
+from tactsim.mechanics.success import judged
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.sensors.switch_reading import Touch
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+HISTORY_UNITS = {
+    "tissue": "1",
+    "rate": "m/s",
+    "time": "s",
+    "depth": "m",
+    "force": "N",
+    "contact_height": "m",
+    "read_force": "N",
+    **{f"switch_force_{number}": "N" for number in range(1, COUNT + 1)},
+    **{f"read_switch_force_{number}": "N" for number in range(1, COUNT + 1)},
+}
+POINTS = 100
+"""Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the details hold every closing."""
+
+
+SUNK = 0.05
+"""Part of the depth by which the contact on the sides may stay behind it without a warning."""
+
+
+class SwitchProbeReport:
+    """Collects touches and turns them into a result."""
+
+    def __init__(self, setup: SwitchProbeSetup, kind: str):
+        self._setup, self._kind, self._begin = setup, kind, time.perf_counter()
+        self._touches: list[ProbeTouch] = []
+        self.steps: list[StepRecord] = []
+
+    def add(self, touch: ProbeTouch) -> tuple[StepRecord, ...]:
+        """Record a touch; the steps of its history."""
+        self._touches.append(touch)
+        number = 1 + [tissue.name for tissue in self._setup.tissues].index(touch.tissue)
+        even = np.linspace(0, len(touch.time) - 1, POINTS).astype(int)
+        kept = np.union1d(even, int(np.argmax(touch.depth)))
+        iterations, residual = touch.newton
+        new = tuple(
+            StepRecord(len(self.steps) + k, iterations, residual, _values(touch, number, int(sample)))
+            for k, sample in enumerate(kept, 1)
+        )
+        self.steps.extend(new)
+        return new
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with every touch that was made; no success if the last state of one is none."""
+        for touch in self._touches:
+            status, reason = judged(status, reason, touch.states[-1:], self._setup.penetration)
+        return Result(
+            kind=self._kind,
+            status=status,
+            reason=reason,
+            quantities=self._quantities(),
+            assumptions=self._assumptions(),
+            warnings=tuple(self._warnings()),
+            timing={"total": time.perf_counter() - self._begin},
+            steps=tuple(self.steps),
+            units=HISTORY_UNITS,
+            details=self._details(),
+        )
+
+    def _quantities(self) -> dict[str, Quantity]:
+        """Those of each touch, numbered in the order of the touches: every rate of the first tissue, then of the next."""
+        told: dict[str, Quantity] = {}
+        for number, touch in enumerate(self._touches, 1):
+            where = _where(touch)
+            forces = touch.force_at(self._depths())
+            told[f"forces_{number}"] = Quantity(forces, "N", f"force on the probe at each pitch of depth, {where}")
+            told[f"largest_force_{number}"] = Quantity(float(touch.true.force.max()), "N", f"largest force on the probe, {where}")
+            height = float(touch.true.contact_height.max())
+            told[f"contact_height_{number}"] = Quantity(
+                height, "m", f"largest height that the tissue touches on the sides, {where}"
+            )
+            told |= self._read(number, where, main_touch(touch))
+            if touch.quality is not None:
+                found = touch.quality.quantities(touch.states)
+                told |= {f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in found.items()}
+        return told
+
+    def _read(self, number: int, where: str, found: Touch | None) -> dict[str, Quantity]:
+        if found is None:
+            return {}
+        array = self._setup.array
+        told = {
+            f"switching_times_{number}": Quantity(found.times(), "s", f"times since the touch at which switches closed, {where}"),
+            f"switching_intervals_{number}": Quantity(found.intervals(), "s", f"intervals between them, {where}"),
+            f"switching_forces_{number}": Quantity(
+                np.array([closing.force for closing in found.closings]), "N", f"force read when each switch closed, {where}"
+            ),
+            f"closed_switches_{number}": Quantity(len(found.closings), "1", f"switches that closed, {where}"),
+        }
+        rate = found.mean_rate(array)
+        if rate is not None:
+            words = f"mean rate by eq. 5.2.2, {array.formula.replace('_', ' ')}, {where}"
+            told[f"mean_rate_{number}"] = Quantity(rate, "m/s", words)
+        return told
+
+    def _depths(self) -> Array:
+        """Depths in m at every pitch up to the largest."""
+        pitch = self._setup.array.pitch
+        return pitch * np.arange(1, int(self._setup.depth / pitch * (1 + 1e-9)) + 1)
+
+    def _assumptions(self) -> tuple[str, ...]:
+        setup = self._setup
+        width, height = (format_quantity(value, "m") for value in (setup.block.width, setup.block.height))
+        told = [
+            f"probe with a face of {format_quantity(setup.probe.face, 'm')} and {format_quantity(setup.width, 'm')} deep, fillet "
+            f"{format_quantity(setup.probe.fillet, 'm')}; block {width} wide and {height} high, "
+            f"friction {setup.contact.friction:g}, plane strain (the thesis prints none of these)",
+            "tissues with declared Prony series: the thesis does not name them",
+            f"strips of {format_quantity(setup.array.strip, 'm')}, centred on the heights of the switches (not printed)",
+        ]
+        if setup.model == "fast":
+            told.append(
+                "fast model: elastic curve of one finite element run, scaled by the shear modulus, quasi-linear superposition"
+            )
+        if setup.sides == "followed":
+            told.append(
+                "the tissue follows the sides up to its undeformed surface, as the thesis takes it; finite elements find less"
+            )
+        return tuple(told)
+
+    def _warnings(self) -> list[str]:
+        told, setup = [], self._setup
+        for touch in self._touches:
+            found, where = main_touch(touch), _where(touch)
+            closed = 0 if found is None else len(found.closings)
+            if closed < COUNT:
+                told.append(f"{where}: {closed} of {COUNT} switches closed, so there is no mean rate")
+            if touch.true.contact_height.max() < (1 - SUNK) * setup.depth:
+                height = format_quantity(float(touch.true.contact_height.max()), "m")
+                told.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
+            if touch.quality is not None:
+                told += [f"{where}: {warning}" for warning in touch.quality.warnings()]
+            if touch.saturated:
+                told.append(f"{where}: {touch.saturated} samples were outside of the converter's range")
+        materials = {f"tissue {tissue.name}": tissue.material for tissue in setup.tissues}
+        tissue = {"block.width": setup.block.width, "block.height": setup.block.height}
+        return told + oddities(materials, tissue=tissue, bodies={"probe.face": setup.probe.face, "width": setup.width})
+
+    def _details(self) -> dict[str, Any]:
+        """What the figures draw."""
+        setup = self._setup
+        array = thresholds(setup)
+        return {
+            "model": setup.model,
+            "sides": setup.sides,
+            "tissues": [tissue.name for tissue in setup.tissues],
+            "rates": list(setup.rates),
+            "depth": setup.depth,
+            "heights": array.heights,
+            "switch_sides": list(array.sides),
+            "noise": force_noise(setup),
+            "touch_threshold": array.touch_threshold,
+            "switch_threshold": array.switch_threshold,
+            "formula": array.formula,
+            "touches": [_told(touch, setup) for touch in self._touches],
+        }
+
+
+def _where(touch: ProbeTouch) -> str:
+    return f"{touch.tissue} at {1e3 * touch.rate:.4g} mm/s"
+
+
+def main_touch(touch: ProbeTouch) -> Touch | None:
+    """The touch with the most closings of those that were read, None if there is none."""
+    return max(touch.touches, key=lambda found: len(found.closings), default=None)
+
+
+def _values(touch: ProbeTouch, number: int, sample: int) -> dict[str, float]:
+    true = touch.true
+    told = [number, touch.rate, touch.time[sample], touch.depth[sample], true.force[sample], true.contact_height[sample]]
+    told += [touch.force[sample], *true.switches[sample], *touch.switches[sample]]
+    return dict(zip(HISTORY_UNITS, map(float, told), strict=True))
+
+
+def _told(touch: ProbeTouch, setup: SwitchProbeSetup) -> dict[str, Any]:
+    found = main_touch(touch)
+    told: dict[str, Any] = {"tissue": touch.tissue, "rate": touch.rate, "count": len(touch.touches), "closings": []}
+    if found is not None:
+        told |= {"start": found.start, "end": found.end, "mean_rate": found.mean_rate(setup.array)}
+        told["closings"] = [{"switch": c.switch, "time": c.time, "force": c.force} for c in found.closings]
+    return told

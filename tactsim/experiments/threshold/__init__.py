@@ -1,0 +1,1 @@
+"""Threshold sensors on tissue: trials with scatter, and the tip of a catheter."""

@@ -1,0 +1,221 @@
+"""What the sensors of a tip report: thresholds, the hardest one found, and how often it is the wrong one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from tactsim.experiments.threshold.report import RESOLUTION
+from tactsim.experiments.threshold.sampling import Trials
+from tactsim.experiments.threshold.valve_tissue import SensorContact
+from tactsim.interfaces import Array
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.experiments.threshold.catheter_tip import CatheterTip
+
+SENSOR_UNITS = {
+    "sensor": "1",
+    "angle": "rad",
+    "x": "m",
+    "y": "m",
+    "lag": "m",
+    "threshold_force": "N",
+    "threshold_pressure": "Pa",
+    "reported_force": "N",
+    "reported_pressure": "Pa",
+    "reported_deviation": "Pa",
+    "valid_rate": "1",
+}
+SAME = 1e-9
+"""Relative difference below which two tissues are equally hard."""
+SMALL_DISPLACEMENT = 0.1
+"""Displacement over the outer radius up to which linear theory is meant."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What one sensor reported in every trial, arrays (trials,)."""
+
+    lag: float
+    """Displacement of the tip in m at which its face touches."""
+    state: str
+    """``no contact``, ``threshold not reached`` or ``measured``."""
+    force: Array
+    """Reported threshold force in N; meaningless where not valid."""
+    valid: Array
+
+    @classmethod
+    def nothing(cls, lag: float, trials: int) -> Self:
+        """A sensor that does not touch."""
+        return cls(lag, "no contact", np.zeros(trials), np.zeros(trials, bool))
+
+    @classmethod
+    def of_trials(cls, lag: float, found: Trials, *, reached: bool, trials: int) -> Self:
+        """From its trials; without noise those of the sampling phases are repeated."""
+        force = np.resize(found.true_force + found.error, trials)
+        state = "measured" if reached else "threshold not reached"
+        return cls(lag, state, force, np.resize(found.valid, trials))
+
+    @property
+    def mean(self) -> float | None:
+        """Mean reported force in N."""
+        return float(self.force[self.valid].mean()) if self.valid.any() else None
+
+    @property
+    def deviation(self) -> float | None:
+        """Standard deviation of the reported force in N."""
+        return float(self.force[self.valid].std(ddof=1)) if self.valid.sum() > 1 else None
+
+
+class CatheterReport:
+    """Collects the sensors in their order around the tip."""
+
+    def __init__(self, experiment: CatheterTip, begin: float):
+        self._experiment, self._begin = experiment, begin
+        ring = experiment.ring
+        self._area = float(np.pi * (ring.outer_radius**2 - ring.inner_radius**2))
+        self._shares = experiment.surface.shares(ring, experiment.place)
+        self._readings: list[Reading] = []
+        self._contacts: list[SensorContact] = []
+        self._steps: list[StepRecord] = []
+
+    def add(self, reading: Reading, contact: SensorContact) -> StepRecord:
+        """The next sensor, with what it would measure without errors."""
+        index = len(self._readings)
+        self._readings.append(reading)
+        self._contacts.append(contact)
+        ring, mean, deviation = self._experiment.ring, reading.mean, reading.deviation
+        x, y = ring.positions[index] + np.array(self._experiment.place)
+        values = {
+            "sensor": float(index + 1),
+            "angle": float(ring.angles[index]),
+            "x": float(x),
+            "y": float(y),
+            "lag": reading.lag,
+            "threshold_force": contact.force,
+            "threshold_pressure": contact.force / self._area,
+            "valid_rate": float(reading.valid.mean()),
+        }
+        if mean is not None:
+            values |= {"reported_force": mean, "reported_pressure": mean / self._area}
+        if deviation is not None:
+            values["reported_deviation"] = deviation / self._area
+        self._steps.append(StepRecord(index + 1, 0, 0.0, values))
+        return self._steps[-1]
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with the sensors read so far; the hardest only if all are."""
+        complete = len(self._readings) == self._experiment.ring.count
+        return Result(
+            kind=self._experiment.kind,
+            status=status,
+            reason=reason,
+            quantities={**self._sensors(), **(self._hardest() if complete else {})},
+            assumptions=tuple(self._assumptions()),
+            warnings=tuple(self._warnings()),
+            timing={"total": time.perf_counter() - self._begin},
+            steps=tuple(self._steps),
+            units=SENSOR_UNITS,
+            details=self._details(),
+        )
+
+    def _sensors(self) -> dict[str, Quantity]:
+        """Arrays over the sensors."""
+        told = {
+            "threshold_force": ("N", "true threshold force of the tissue below [sensor]"),
+            "threshold_pressure": ("Pa", "true threshold pressure of the tissue below [sensor]"),
+            "reported_force": ("N", "mean reported threshold force [sensor]; null where none"),
+            "reported_pressure": ("Pa", "mean reported threshold pressure [sensor]; null where none"),
+            "reported_deviation": ("Pa", "standard deviation of the reported threshold pressure [sensor]"),
+            "valid_rate": ("1", "part of the trials with a valid threshold [sensor]"),
+            "angle": ("rad", "angle of the sensor around the tip [sensor]"),
+        }
+        found = {
+            name: Quantity([step.values.get(name) for step in self._steps], unit, words) for name, (unit, words) in told.items()
+        }
+        shares = self._shares.tolist()
+        return found | {"tissue_share": Quantity(shares, "1", "part of the disc below that each tissue has [sensor, tissue]")}
+
+    def _hardest(self) -> dict[str, Quantity]:
+        """The sensor found by the mean reports, its margin, and the chances over the trials."""
+        means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+        wrong, elsewhere, undecided = self._chances()
+        found = {
+            "chance_of_wrong": Quantity(wrong, "1", "part of the trials in which another sensor than the hardest is found"),
+            "chance_of_wrong_tissue": Quantity(elsewhere, "1", "part of the trials in which it lies mostly on another tissue"),
+            "chance_of_no_answer": Quantity(undecided, "1", "part of the trials without any threshold"),
+        }
+        if not np.isfinite(means).any():
+            return found
+        best = int(means.argmax())
+        others = np.delete(means, best)
+        second = float(others.max())
+        angle = float(self._experiment.ring.angles[best])
+        found["hardest_sensor"] = Quantity(best + 1, "1", "sensor with the highest mean reported threshold, counted from 1")
+        found["hardest_angle"] = Quantity(angle, "rad", "its angle around the tip")
+        if np.isfinite(second):
+            margin = float(means[best]) - second
+            found["margin"] = Quantity(margin, "Pa", "its threshold pressure above that of the second")
+            found["margin_relative"] = Quantity(margin / float(means[best]), "1", "margin over its threshold pressure")
+        return found
+
+    def _chances(self) -> tuple[float, float, float]:
+        """Part of the trials with a wrong sensor, with one mostly on a wrong tissue, and with no answer."""
+        true = np.array([contact.force for contact in self._contacts])
+        right = true >= true.max() * (1 - SAME)
+        force = np.array([np.where(r.valid, r.force, -np.inf) for r in self._readings])
+        answered = np.isfinite(force).any(axis=0)
+        found, tissue = force.argmax(axis=0), self._shares.argmax(axis=1)
+        wrong = answered & ~right[found]
+        elsewhere = answered & ~np.isin(tissue[found], tissue[right])
+        return float(wrong.mean()), float(elsewhere.mean()), float((~answered).mean())
+
+    def _details(self) -> dict[str, Any]:
+        experiment = self._experiment
+        return {
+            **experiment.model_dump(
+                mode="json", include={"surface", "ring", "place", "tilt", "tilt_direction", "press", "speed"}
+            ),
+            "state": [reading.state for reading in self._readings],
+            "straddles": [bool(share.max() < 1) for share in self._shares],
+            "area": self._area,
+        }
+
+    def _assumptions(self) -> Iterator[str]:
+        told = (
+            f"{t.name}: {format_quantity(t.shear_modulus, 'Pa')} in shear, {format_quantity(t.thickness, 'm')} thick, {t.base}"
+            for t in self._experiment.surface.tissues
+        )
+        yield f"tissues declared in the case, not in the thesis: {'; '.join(told)}"
+        yield "sizes of tip and sensors declared; 7.3 prints none"
+        yield "linear, elastic, incompressible tissue; sensors do not feel each other"
+        yield "the face of a tilted sensor is taken as flat on the tissue: the tilt only delays its touch"
+        yield "over two tissues a sensor meets their mean weighted by area"
+
+    def _warnings(self) -> Iterator[str]:
+        for index, reading in enumerate(self._readings, 1):
+            if reading.state != "measured":
+                yield f"sensor {index}: {reading.state}"
+            elif not reading.valid.all():
+                count = np.count_nonzero(~reading.valid)
+                yield (
+                    f"sensor {index}: {count} of {reading.valid.size} touches report no usable threshold: "
+                    "no trigger, one before the touch, or a saturated converter; change trigger, noise or range"
+                )
+        straddling = [str(index + 1) for index, share in enumerate(self._shares) if share.max() < 1]
+        if straddling:
+            yield f"sensors over two tissues: {', '.join(straddling)}; their thresholds are mixed"
+        low = [contact.force for contact in self._contacts if contact.force < RESOLUTION]
+        if low:
+            least, resolved = format_quantity(min(low), "N"), format_quantity(RESOLUTION, "N")
+            yield f"{len(low)} thresholds, {least} at least, are below the resolution of {resolved} of 3.1.2 (erratum E27)"
+        deepest = max((c.displacement for c in self._contacts), default=0.0) / self._experiment.ring.outer_radius
+        if deepest > SMALL_DISPLACEMENT:
+            limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"
+            yield f"a threshold lies at a displacement of up to {deepest:.3g} of the outer radius; {limit}"

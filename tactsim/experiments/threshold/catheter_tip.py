@@ -1,0 +1,117 @@
+"""Threshold sensors around the tip of a catheter search the hardest tissue below them."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.errors import Unfinished
+from tactsim.experiments.collecting import failure
+from tactsim.experiments.threshold.catheter_report import SENSOR_UNITS, CatheterReport, Reading
+from tactsim.experiments.threshold.sampling import ApproachSampling
+from tactsim.experiments.threshold.valve_tissue import BandTissue, SensorContact, ValveSurface
+from tactsim.interfaces import Experiment, Progress
+from tactsim.results.result import Result, Status
+from tactsim.sensors.low_pass import LowPass
+from tactsim.sensors.noise import Noise
+from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.units import Angle, Length, Speed, Time
+
+STEEPEST = np.pi / 6 * (1 + 1e-12)
+"""Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
+MOST_SAMPLES = 500_000
+"""Longest recording of one touch, in samples."""
+
+
+class CatheterTip(Experiment):
+    """A tip with sensors pressed on a surface of several tissues; the sensor with the highest threshold pressure is found.
+
+    Source: thesis, 7.3 and Fig. 7.1.
+    """
+
+    kind: Literal["catheter_tip"] = "catheter_tip"
+    surface: ValveSurface
+    """The tissues."""
+    ring: SensorRing = SensorRing()
+    """The sensors."""
+    place: tuple[Length, Length]
+    """Where the middle of the tip stands, x and y from the middle of the valve."""
+    tilt: Annotated[Angle, Field(ge=0, le=STEEPEST)] = 0.0
+    """Angle between tip and surface."""
+    tilt_direction: Angle = 0.0
+    """Where the tilted tip is lowest, from the x axis."""
+    press: Annotated[Length, Field(gt=0)] = 1e-3
+    """Displacement of the tip after its first sensor has touched."""
+    speed: Annotated[Speed, Field(gt=0)] = 1e-3
+    """Speed of the tip."""
+    sensor: ThresholdSensor = ThresholdSensor()
+    """Electronics of each sensor."""
+    trials: Annotated[int, Field(ge=1, le=100_000)] = 200
+    """Repeated touches at the same place."""
+    lead: Annotated[Time, Field(gt=0)] = 0.5
+    """Recording before the first touch."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Seed of the noise."""
+
+    history_units: ClassVar[dict[str, str]] = SENSOR_UNITS
+
+    @model_validator(mode="after")
+    def _deep_enough(self) -> Self:
+        for tissue in self.surface.tissues:
+            if self.press >= tissue.thickness:
+                raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
+            if self.ring.recess >= tissue.thickness:
+                raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
+        needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
+        if needed > MOST_SAMPLES:
+            raise ValueError(
+                f"lead and press / speed take {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
+                "press faster, shorten the lead or sample more slowly"
+            )
+        return self
+
+    @classmethod
+    def example(cls) -> Self:
+        """Four sensors at the border of an annulus."""
+        tissues = (
+            BandTissue(name="leaflet", shear_modulus=15e3, thickness=2e-3),
+            BandTissue(name="annulus", shear_modulus=60e3, thickness=3e-3),
+            BandTissue(name="atrium", shear_modulus=8e3, thickness=3e-3),
+        )
+        quiet = ThresholdSensor(chain=SignalChain(low_pass=LowPass(cutoff=10.0), noise=Noise(white=1e-3)))
+        surface = ValveSurface(tissues=tissues, borders=(13e-3, 16e-3))
+        return cls(surface=surface, place=(11.5e-3, 0.0), sensor=quiet, trials=10)
+
+    def run(self, progress: Progress) -> Result:
+        """Touch with every sensor; one step for each."""
+        report = CatheterReport(self, time.perf_counter())
+        low_pass, noise = self.sensor.chain.low_pass, self.sensor.chain.noise
+        try:
+            trigger = self.sensor.armed(low_pass, noise=noise, seed=[self.seed, 0])
+            lags = self.ring.lag(self.tilt, self.tilt_direction)
+            contacts = self.surface.mixed(self.ring, self.place)
+            for index, (contact, lag) in enumerate(zip(contacts, lags, strict=True)):
+                progress(report.add(self._reading(index, contact, float(lag), trigger), contact))
+        except Unfinished as error:
+            return report.result(Status.FAILED, failure(error))
+        except KeyboardInterrupt:
+            return report.result(Status.INTERRUPTED, "interrupted; the sensors read before are kept")
+        return report.result(Status.CONVERGED, f"touched {self.trials} times")
+
+    def _reading(self, index: int, contact: SensorContact, lag: float, trigger: ThresholdTrigger) -> Reading:
+        """What a sensor reports that touches after a displacement ``lag`` in m; nothing if the tip ends before."""
+        depth = self.press - lag
+        if depth <= 0:
+            return Reading.nothing(lag, self.trials)
+        area = np.pi * (self.ring.outer_radius**2 - self.ring.inner_radius**2)
+        approach = contact.approach(self.speed, depth)
+        noise, low_pass = self.sensor.chain.noise, self.sensor.chain.low_pass
+        sampling = ApproachSampling.settled(self.sensor, approach, float(area), self.lead + lag / self.speed, [low_pass])
+        (trials,) = sampling.trials(noise, [low_pass], [trigger], trials=self.trials, seed=(self.seed, 1, index))
+        return Reading.of_trials(lag, trials, reached=bool(np.isfinite(approach.touch)), trials=self.trials)

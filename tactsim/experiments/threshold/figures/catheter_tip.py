@@ -1,0 +1,150 @@
+"""The tip of a catheter over its tissues, each sensor coloured by the hardness it found, and the hardest one marked."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Patch, Rectangle, Wedge
+
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.result_figures import Drawing, ResultFigures
+from tactsim.results import Result, Status
+
+Array = np.ndarray
+TINTS = ("#ffffff", "#d9d9d9", "#f0f0f0", "#c4c4c4", "#e4e4e4")
+HATCHES = ("", "///", "..", "xx", "--")
+HARDEST_COLOUR, TRUE_COLOUR, FAILED_COLOUR = "#d62728", "#000000", "#b00020"
+MILLIMETRES, KILOPASCALS = 1e3, 1e-3
+MARGIN = 1.6
+"""Half of the picture's width over the radius of the tip."""
+
+
+class CatheterTipFigures(ResultFigures):
+    """One figure: the map beside the thresholds around the tip."""
+
+    kind: Literal["catheter_tip"] = "catheter_tip"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``catheter_tip.png``, unless no sensor was read."""
+        return {"catheter_tip.png": lambda: png(catheter_tip_figure(result))} if result.steps else {}
+
+
+def catheter_tip_figure(result: Result) -> Figure:
+    """The tip on the surface (Fig. 7.1), and the thresholds over the angle."""
+    with styled():
+        figure = new_figure(11.0, 4.9)
+        left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
+        found = KILOPASCALS * _history(result, "reported_pressure")
+        largest = float(np.nanmax(found)) if np.isfinite(found).any() else 1.0
+        colours = ScalarMappable(Normalize(0.0, largest), "viridis")
+        _draw_surface(left, result)
+        _draw_sensors(left, result, found, colours)
+        bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)
+        bar.set_label("reported threshold pressure in kPa")
+        _draw_thresholds(right, result, found)
+        title = str(result.details.get("title") or "Threshold sensors around the tip of a catheter")
+        entitle(figure, f"{title}\n{_answer(result)}")
+        if result.status is not Status.CONVERGED:
+            words = f"{str(result.status).upper()}: {result.reason}"[:150]
+            figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
+            figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+    return figure
+
+
+def _answer(result: Result) -> str:
+    """What was found, in words."""
+    quantities = result.quantities
+    if "hardest_sensor" not in quantities:
+        return "no sensor found a threshold"
+    angle = np.degrees(quantities["hardest_angle"].value)
+    words = f"hardest at sensor {quantities['hardest_sensor'].value}, {angle:.0f}°"
+    if "margin_relative" in quantities:
+        words += f", {100 * quantities['margin_relative'].value:.2g} % above the second"
+    return f"{words}; wrong in {100 * quantities['chance_of_wrong'].value:.2g} % of the touches"
+
+
+def _draw_surface(axis: Axes, result: Result) -> None:
+    """Bands of tissue, the tip's outline and the middle it keeps free."""
+    surface, ring = result.details["surface"], result.details["ring"]
+    middle = MILLIMETRES * np.array(result.details["place"])
+    tip = MILLIMETRES * (ring["radius"] + ring["outer_radius"])
+    reach = MARGIN * tip
+    names = [tissue["name"] for tissue in surface["tissues"]]
+    looks: list[dict[str, Any]] = [
+        {"facecolor": TINTS[k % len(TINTS)], "hatch": HATCHES[k % len(HATCHES)], "edgecolor": "0.6", "linewidth": 0.6}
+        for k in range(len(names))
+    ]
+    axis.add_patch(Rectangle(middle - reach, 2 * reach, 2 * reach, zorder=0, **looks[-1]))
+    for k in reversed(range(len(surface["borders"]))):
+        axis.add_patch(Circle((0.0, 0.0), MILLIMETRES * surface["borders"][k], zorder=1, **looks[k]))
+    axis.add_patch(Circle(tuple(middle), tip, fill=False, edgecolor="black", linewidth=1.2, zorder=3))
+    axis.set(xlim=middle[0] + np.array([-reach, reach]), ylim=middle[1] + np.array([-reach, reach]), aspect="equal")
+    axis.set(xlabel="x from the middle of the valve in mm", ylabel="y in mm")
+    handles = [Patch(label=name, **look) for name, look in zip(names, looks, strict=True)]
+    axis.legend(handles=handles, loc="lower left", fontsize=8, frameon=True, framealpha=0.9)
+
+
+def _draw_sensors(axis: Axes, result: Result, found: Array, colours: ScalarMappable) -> None:
+    """Rings coloured by the reported pressure; grey without one; the hardest outlined."""
+    ring, states = result.details["ring"], result.details["state"]
+    outer, inner = (MILLIMETRES * ring[name] for name in ("outer_radius", "inner_radius"))
+    hardest = result.quantities["hardest_sensor"].value if "hardest_sensor" in result.quantities else 0
+    for number, (step, pressure, state) in enumerate(zip(result.steps, found, states, strict=True), 1):
+        x, y = (MILLIMETRES * step.values[name] for name in "xy")
+        known = np.isfinite(pressure)
+        colour = colours.to_rgba(pressure) if known else "0.75"
+        axis.add_patch(
+            Wedge((x, y), outer, 0, 360, width=outer - inner, facecolor=colour, edgecolor="black", linewidth=0.7, zorder=4)
+        )
+        axis.add_patch(Circle((x, y), inner, facecolor="white", edgecolor="black", linewidth=0.5, zorder=4))
+        axis.text(x, y, str(number), ha="center", va="center", fontsize=8, zorder=6)
+        if number == hardest:
+            axis.add_patch(Circle((x, y), 1.25 * outer, fill=False, edgecolor=HARDEST_COLOUR, linewidth=2.5, zorder=5))
+        if not known:
+            axis.text(x, y - 1.15 * outer, state, ha="center", va="top", fontsize=7, zorder=6)
+    if hardest:
+        _name_hardest(axis, result, hardest)
+
+
+def _name_hardest(axis: Axes, result: Result, hardest: int) -> None:
+    """The word beside the hardest sensor, outside the tip."""
+    ring, values = result.details["ring"], result.steps[hardest - 1].values
+    outward = np.array([np.cos(values["angle"]), np.sin(values["angle"])])
+    reach = MILLIMETRES * (ring["radius"] + 1.35 * ring["outer_radius"])
+    x, y = MILLIMETRES * np.array(result.details["place"]) + reach * outward
+    side = "left" if outward[0] > 0.4 else "right" if outward[0] < -0.4 else "center"
+    level = "bottom" if outward[1] > 0.4 else "top" if outward[1] < -0.4 else "center"
+    box = {"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
+    axis.text(x, y, "hardest", ha=side, va=level, color=HARDEST_COLOUR, fontweight="bold", bbox=box, zorder=7)
+
+
+def _draw_thresholds(axis: Axes, result: Result, found: Array) -> None:
+    """Reported and true thresholds of every sensor, those over two tissues named."""
+    angle = np.degrees(_history(result, "angle"))
+    deviation = KILOPASCALS * _history(result, "reported_deviation")
+    true = KILOPASCALS * _history(result, "threshold_pressure")
+    bars = np.nan_to_num(deviation)
+    axis.errorbar(angle, found, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
+    axis.plot(angle, true, "_", color=TRUE_COLOUR, markersize=16, markeredgewidth=1.8, label="true threshold")
+    straddling = np.array(result.details["straddles"])[: len(angle)]
+    if straddling.any():
+        axis.plot(angle[straddling], true[straddling], "D", color="0.5", markersize=9, fillstyle="none", label="over two tissues")
+    if "hardest_sensor" in result.quantities:
+        best = result.quantities["hardest_sensor"].value - 1
+        ring: dict[str, Any] = {"markersize": 13, "fillstyle": "none", "markeredgewidth": 2}
+        axis.plot(angle[best], found[best], "o", color=HARDEST_COLOUR, label="hardest", **ring)
+    axis.set(xlabel="angle of the sensor around the tip in degrees", ylabel="threshold pressure in kPa", ylim=(0, None))
+    axis.set_xticks(angle)
+    axis.set_xticklabels([f"{value:.0f}" for value in angle], rotation=45 if len(angle) > 12 else 0)
+    axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, found + bars))))
+    axis.legend(fontsize=8, loc="upper right", ncols=2)
+    despined(axis)
+
+
+def _history(result: Result, name: str) -> Array:
+    return np.array([step.values.get(name, np.nan) for step in result.steps])

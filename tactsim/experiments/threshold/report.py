@@ -1,0 +1,220 @@
+"""What repeated indentations report: errors over speed, noise and cut-off, one recording, assumptions and warnings."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
+from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
+from tactsim.interfaces import Array
+from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.sensors.low_pass import LowPass
+from tactsim.sensors.noise import Noise
+from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
+
+RESOLUTION = 0.1
+"""Force in N that the sensor resolves; thesis, 3.1.2."""
+MOST_ROWS = 1500
+"""Rows of the recording that is kept, at most about."""
+SIGNAL_UNITS = {
+    "time": "s",
+    "displacement": "m",
+    "plate_force": "N",
+    "small_force": "N",
+    "large_reading": "N",
+    "small_reading": "N",
+    "large_reading_unfiltered": "N",
+    "small_reading_unfiltered": "N",
+}
+CELL_WORDS = {
+    "force_error": ("N", "mean error of the reported threshold force"),
+    "force_error_deviation": ("N", "standard deviation of the reported threshold force"),
+    "pressure_error": ("Pa", "mean error of the reported threshold pressure"),
+    "relative_error": ("1", "mean error over the true threshold"),
+    "relative_deviation": ("1", "standard deviation over the true threshold"),
+    "level_error": ("N", "part of the mean error: the small sensor must be pressed up to its level"),
+    "film_error": ("N", "part of the mean error: films that do not conduct what the calibration line says"),
+    "filter_error": ("N", "part of the mean error: lag of the filtered readings"),
+    "sampling_error": ("N", "part of the mean error: samples in time and rounding"),
+    "noise_error": ("N", "part of the mean error: noise"),
+    "trigger_level": ("N", "force above rest at which the small sensor triggers"),
+    "trigger_delay": ("s", "mean time from the touch to the trigger"),
+    "false_rate": ("1", "part of the trials with a trigger before the touch"),
+    "missed_rate": ("1", "part of the trials without a trigger"),
+    "saturated_rate": ("1", "part of the trials with a converter at its end"),
+}
+"""Name -> unit and words of what is reported for each speed, noise and cut-off."""
+
+
+class TrialReport:
+    """Collects the combinations, in the order speed, noise, cut-off, and turns them into a result."""
+
+    def __init__(self, experiment: ThresholdTrial, begin: float):
+        self._experiment, self._begin = experiment, begin
+        self.lengths = (len(experiment.speeds), len(experiment.noises), len(experiment.cutoffs))
+        self.shown = tuple(length // 2 for length in self.lengths)
+        """The combination whose recording is kept."""
+        self.shape: SensorShape | None = None
+        self.steps: tuple[StepRecord, ...] = ()
+        self._approaches: list[Approach] = []
+        self._cells: list[dict[str, float | None]] = []
+        self._capture: dict[str, Any] = {}
+
+    def begin(self, approach: Approach) -> None:
+        """A new speed."""
+        self._approaches.append(approach)
+
+    def add(self, found: Trials, silent: Trials, ideals: list[float | None], level: float) -> None:
+        """One combination: its trials, those without noise, and three errors of the ideal chain.
+
+        The three are those of the calibration lines, of the films, and of the films behind the low pass.
+        """
+        mean, quiet, deviation = found.mean_error(), silent.mean_error(), found.deviation()
+        assert self.shape is not None  # set before the first approach
+        self._cells.append(
+            {
+                "force_error": mean,
+                "force_error_deviation": deviation,
+                "pressure_error": None if mean is None else mean / self.shape.area,
+                "relative_error": None if mean is None else mean / found.true_force,
+                "relative_deviation": None if deviation is None else deviation / found.true_force,
+                "level_error": ideals[0],
+                "film_error": _difference(ideals[1], ideals[0]),
+                "filter_error": _difference(ideals[2], ideals[1]),
+                "sampling_error": _difference(quiet, ideals[2]),
+                "noise_error": _difference(mean, quiet),
+                "trigger_level": level,
+                "trigger_delay": found.mean_delay(),
+                "false_rate": float(found.false.mean()),
+                "missed_rate": float(found.missed.mean()),
+                "saturated_rate": float(found.saturated.mean()),
+            }
+        )
+
+    def show(self, sampling: ApproachSampling, noise: Noise, low_pass: LowPass, trigger: ThresholdTrigger) -> None:
+        """Keep one recording of this combination."""
+        sensor, approach = sampling.sensor, sampling.approach
+        generator = np.random.default_rng([self._experiment.seed, 2])
+        recording, touch = sampling.recorded(sensor, noise, generator, phase=0.5, copies=1)
+        large, small = (values[:, 0] for values in sensor.readings(recording, low_pass))
+        state, armed = sampling.captured(sensor, recording, low_pass, trigger)
+        plain = [values[:, 0] for values in sensor.readings(recording, None)]
+        begin = touch - approach.touch
+        plate, pressed = approach.at(recording.time - begin)
+        columns = (recording.time, approach.speed * (recording.time - begin), plate, pressed, large, small, *plain)
+        fired = int(state.index[0]) + len(large) - len(armed) if state.triggered[0] else -1
+        self.steps = tuple(_rows(columns, fired))
+        threshold = approach.threshold_force
+        self._capture = {
+            "touch_time": touch,
+            "threshold_force": threshold,
+            "armed_time": float(armed[0]),
+            "trigger_level": float(trigger.rest + trigger.level),
+            "speed": approach.speed,
+            "noise": noise.white,
+            "cutoff": low_pass.cutoff,
+            "large_bears": sensor.large_bears,
+            "capture": sensor.capture,
+        }
+        if fired >= 0:
+            self._capture |= {"trigger_time": float(recording.time[fired]), "captured_force": float(state.force[0])}
+
+    def result(self, status: Status, reason: str) -> Result:
+        """The result with everything that was sampled."""
+        complete = status is Status.CONVERGED
+        return Result(
+            kind=self._experiment.kind,
+            status=status,
+            reason=reason,
+            quantities=self._quantities() if self._cells else {},
+            assumptions=tuple(self._assumptions()),
+            warnings=tuple(self._warnings()),
+            timing={"total": time.perf_counter() - self._begin},
+            steps=self.steps,
+            units=SIGNAL_UNITS,
+            details={
+                "speeds": list(self._experiment.speeds),
+                "noises": list(self._experiment.noises),
+                "cutoffs": list(self._experiment.cutoffs),
+                "complete": complete,
+                "capture": self._capture,
+            },
+        )
+
+    def _quantities(self) -> dict[str, Quantity]:
+        assert self.shape is not None  # there are cells
+        area = self.shape.area
+        force = [approach.threshold_force for approach in self._approaches]
+        axes = "[speed, noise, cut-off]"
+        found = {
+            "threshold_force": Quantity(force, "N", "true threshold force [speed]"),
+            "threshold_pressure": Quantity([f / area for f in force], "Pa", "true threshold force over the annular area [speed]"),
+            "annular_area": Quantity(area, "m^2", "area of the face"),
+            "force_rate": Quantity([_rate(a) for a in self._approaches], "N/s", "growth of the force at the touch [speed]"),
+        }
+        return found | {name: Quantity(self.grid(name), unit, f"{words} {axes}") for name, (unit, words) in CELL_WORDS.items()}
+
+    def grid(self, name: str) -> list[list[list[float | None]]]:
+        """A value over speed, noise and cut-off, null where no trial was valid or nothing was sampled yet."""
+        values = np.full(self.lengths, None, dtype=object)
+        for place, cell in zip(np.ndindex(*self.lengths), self._cells, strict=False):
+            values[place] = cell[name]
+        return values.tolist()
+
+    def _assumptions(self) -> Iterator[str]:
+        yield from self._experiment.source.assumptions()
+        sensor = self._experiment.sensor
+        if sensor.large_bears == "plate_and_small":
+            yield "the small sensor lies on the large one (Fig. 3.2), which bears the forces on both"
+        if sensor.small.calibration == sensor.large.calibration:
+            yield "the small sensor is read by the line of the large one; the thesis prints one line"
+        told = (
+            format_quantity(sensor.trigger.force, "N") if sensor.trigger.force else f"{sensor.trigger.multiple:g} times the noise"
+        )
+        yield f"the small sensor triggers {told} above its value at rest; the thesis gives no number"
+        yield "constant speed from before the touch on"
+
+    def _warnings(self) -> Iterator[str]:
+        low = sorted({a.threshold_force for a in self._approaches if a.threshold_force < RESOLUTION})
+        if low:
+            least, resolved = format_quantity(low[0], "N"), format_quantity(RESOLUTION, "N")
+            yield f"the true threshold, {least} at least, is below the resolution of {resolved} that 3.1.2 states (erratum E27)"
+        for name, words in (
+            ("false_rate", "trigger before the touch: take a higher level or a lower cut-off"),
+            ("missed_rate", "never trigger: take a lower level or follow the displacement further"),
+            (
+                "saturated_rate",
+                "have a converter at its end: widen its range; for a film, which rests at 0 V, let it begin below",
+            ),
+        ):
+            rates = [float(cell[name] or 0.0) for cell in self._cells]
+            if any(rates):
+                yield f"up to {max(rates):.0%} of the trials of {np.count_nonzero(rates)} of {len(rates)} combinations {words}"
+
+
+def _rows(columns: tuple[Array, ...], trigger: int) -> Iterator[StepRecord]:
+    """Every so many-th sample, the one of the trigger included."""
+    count = len(columns[0])
+    kept = np.arange(0, count, max(1, -(-count // MOST_ROWS)))
+    kept = np.union1d(kept, [trigger]) if trigger >= 0 else kept
+    for number, row in enumerate(np.column_stack(columns)[kept], 1):
+        yield StepRecord(number, 0, 0.0, dict(zip(SIGNAL_UNITS, map(float, row), strict=True)))
+
+
+def _rate(approach: Approach) -> float:
+    """Growth in N/s of the force on the plate before the touch, over a thousandth of the time to it."""
+    step = 1e-3 * approach.touch
+    plate = approach.at(np.array([approach.touch - step, approach.touch]))[0]
+    return float(np.diff(plate)[0] / step)
+
+
+def _difference(one: float | None, other: float | None) -> float | None:
+    return None if one is None or other is None else one - other

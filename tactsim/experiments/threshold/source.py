@@ -1,0 +1,180 @@
+"""Where the forces on a threshold sensor come from: a closed form, a simulation made before or now, or a stored curve."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tactsim.analytic.histories import History, Segment
+from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.experiments.annulus.closed_form import check_closed_form
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.threshold.contact_curve import Approach, ContactCurve, SensorShape
+from tactsim.identification.columns import read_columns
+from tactsim.interfaces import Array, Progress
+from tactsim.materials import AnyMaterial
+from tactsim.materials.viscoelasticity import shear_compliance
+from tactsim.outside.input_path import InputPath
+from tactsim.results.reading import read_result
+from tactsim.results.result import Status
+from tactsim.units import FrozenModel, Length, format_quantity
+
+PositiveLength = Annotated[Length, Field(gt=0)]
+COLUMNS = {"displacement": "m", "plate force": "N", "tissue rise": "m", "small sensor force": "N"}
+
+
+class ClosedFormTissue:
+    """A flat annulus on linear viscoelastic tissue, and its small sensor as a solid punch of the hole's radius.
+
+    Source: thesis, 4.6.1; the punch is the annulus without a hole, which the tissue meets at the speed of its rise.
+    """
+
+    def __init__(self, shape: SensorShape, annulus: ViscoelasticAnnulus, punch: ViscoelasticAnnulus, beyond: float):
+        self.shape, self._annulus, self._punch, self._beyond = shape, annulus, punch, beyond
+
+    def approach(self, speed: float) -> Approach:
+        """The forces over time at a speed in m/s."""
+        rise = self._annulus.rise_factor
+        touch = self.shape.recess / rise / speed
+        duration = touch + self._beyond / speed
+        down, inward = (History((Segment(0.0, duration, 0.0, rate),)) for rate in (speed, rise * speed))
+
+        def forces(times: Array) -> tuple[Array, Array]:
+            return self._annulus.force(down, times), self._punch.force(inward, times - touch)
+
+        threshold = float(self._annulus.force(down, touch))
+        return Approach(speed, duration, touch, threshold, forces)
+
+
+class ClosedFormSource(FrozenModel):
+    """The annulus on linear viscoelastic tissue by its closed form: small displacements, frictionless."""
+
+    kind: Literal["closed_form"] = "closed_form"
+    material: AnyMaterial
+    """Tissue; its small-strain shear relaxation counts; incompressible."""
+    inner_radius: PositiveLength = 1.5e-3
+    """Radius of the hole, that of the small sensor."""
+    outer_radius: PositiveLength = 3e-3
+    """Radius of the face."""
+    recess: PositiveLength = 0.8e-3
+    """Depth L of the small sensor."""
+    thickness: PositiveLength | None = None
+    """Thickness of the tissue on a rigid base; null is a half-space."""
+    base: Literal["bonded", "slipping"] = "bonded"
+    """How the tissue rests on its base."""
+    beyond: PositiveLength = 0.5e-3
+    """Displacement past the touch that is followed; without a trigger up to there a touch counts as missed."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        check_closed_form(self.inner_radius, self.outer_radius, self.material)
+        if self.thickness is not None and self.recess >= self.thickness:
+            raise ValueError("the recess must be smaller than the thickness of the tissue (thesis, end of 3.1.1)")
+        return self
+
+    def tissue(self, progress: Progress) -> ClosedFormTissue:
+        """The contact in closed form."""
+        compliance = shear_compliance(self.material)
+
+        def punch(radius: float, ratio: float) -> ViscoelasticAnnulus:
+            slenderness = radius / self.thickness if self.thickness else 0.0
+            return ViscoelasticAnnulus(radius, ratio, compliance, radius_over_thickness=slenderness, base=self.base)
+
+        shape = SensorShape(self.inner_radius, self.outer_radius, self.recess)
+        annulus = punch(self.outer_radius, self.inner_radius / self.outer_radius)
+        return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
+
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
+        return [
+            "closed form: linear, incompressible tissue, frictionless contact, small displacements",
+            "past the touch the small sensor is a solid punch of the hole's radius that the tissue meets as fast as it rises",
+        ]
+
+
+class RunSource(FrozenModel):
+    """The history of an indentation that was run before."""
+
+    kind: Literal["run"] = "run"
+    path: InputPath
+    """Folder of the result, beside the case or in the working folder."""
+    beyond: PositiveLength = 0.2e-3
+    """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
+
+    def tissue(self, progress: Progress) -> ContactCurve:
+        """The curve in the folder."""
+        return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
+
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
+        return _curve_assumptions()
+
+
+class IndentationSource(FrozenModel):
+    """An indentation that is simulated first; to know what the small sensor feels, let it stop at a displacement."""
+
+    kind: Literal["indentation"] = "indentation"
+    experiment: Indentation
+    """The indentation, by an annulus with a recess."""
+    beyond: PositiveLength = 0.2e-3
+    """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
+
+    def tissue(self, progress: Progress) -> ContactCurve:
+        """The curve of the simulation."""
+        result = self.experiment.run(progress)
+        if result.status is Status.FAILED:
+            raise ConvergenceError(f"the indentation {result.reason}")
+        if result.status is Status.INTERRUPTED:
+            raise KeyboardInterrupt
+        return ContactCurve.of_result(result, beyond=self.beyond)
+
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
+        return _curve_assumptions()
+
+
+class CurveSource(FrozenModel):
+    """A stored curve."""
+
+    kind: Literal["curve"] = "curve"
+    path: InputPath
+    """CSV file, beside the case or in the working folder; header such as
+    ``displacement [mm], plate force [N], tissue rise [mm], small sensor force [N]``; one row stands at the touch."""
+    inner_radius: PositiveLength = 1.5e-3
+    """Radius of the hole."""
+    outer_radius: PositiveLength = 3e-3
+    """Radius of the face."""
+    recess: PositiveLength = 0.8e-3
+    """Depth L of the small sensor."""
+
+    @model_validator(mode="after")
+    def _ring(self) -> Self:
+        if self.inner_radius >= self.outer_radius:
+            inner, outer = format_quantity(self.inner_radius, "m"), format_quantity(self.outer_radius, "m")
+            raise ValueError(f"inner_radius {inner} must be below the outer_radius {outer}")
+        return self
+
+    def tissue(self, progress: Progress) -> ContactCurve:
+        """The curve in the file."""
+        columns = read_columns(self.path, COLUMNS)
+        missing = [name for name in COLUMNS if name not in columns]
+        if missing:
+            raise InvalidQuantity(f"{self.path}: no column {missing[0]!r}; needed: {', '.join(COLUMNS)}")
+        return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
+
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
+        return _curve_assumptions()
+
+
+AnySource = Annotated[ClosedFormSource | RunSource | IndentationSource | CurveSource, Field(discriminator="kind")]
+
+
+def _curve_assumptions() -> list[str]:
+    return [
+        "the tissue's force depends on the displacement alone, not on the speed: elastic tissue",
+        "past the touch the small sensor bears what the simulation found; where it ended at the touch, a solid punch of the "
+        "hole's radius on tissue of the plate's last tangent stiffness",
+    ]

@@ -1,0 +1,198 @@
+"""The finite element model of a grasp: a block of tissue with inclusions between two jaws that close along z."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tactsim.contact.jaw import Jaw
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.traction import ContactPair
+from tactsim.errors import InputError
+from tactsim.fem.body import Body, PastStress
+from tactsim.fem.external_forces import FollowerLoad
+from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.solver_choice import solver_for
+from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
+from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.weak_hold import WeakHold
+from tactsim.interfaces import ContactLaw, Material
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.solid import FACES
+
+Array = np.ndarray
+
+SIDES = ("upper", "lower")
+CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0])}
+"""Directions in which the jaws close."""
+TOUCH = 1e-15
+"""Gap at touch over the size of the block."""
+START_PATIENCE = 6
+"""Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""
+LEAST_STRETCH = 0.5
+"""Of a first guess."""
+MOST_APPROACHES = 1000
+"""Steps of the approach; each is as long as the gap, which shrinks fast unless the jaw misses the block."""
+
+
+class GraspModel:
+    """A block from (0, 0, 0) to its size, a jaw above and one below it.
+
+    Parameters
+    ----------
+    mesh : tetrahedra
+    materials : one per region of the mesh
+    facets : facets (F, 6) by name; a jaw may touch those of "upper" or "lower", and those of the other faces, as far as they are
+        given, in its half of the block: free faces bulge out beside the jaws and roll onto them
+    jaws : the upper and the lower jaw
+    offsets : (2, 2) places of the middles of their faces in x and y, in m
+    """
+
+    def __init__(
+        self,
+        mesh: QuadraticMesh,
+        materials: Sequence[Material],
+        facets: Mapping[str, Array],
+        *,
+        jaws: Sequence[Jaw],
+        offsets: Array,
+    ):
+        self.mesh, self.jaws, self.facets = mesh, dict(zip(SIDES, jaws, strict=True)), facets
+        self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
+        self.body = Body(self.space, materials, mesh.regions)
+        self.touchable = touchable_facets(mesh.nodes, facets)
+        points = {side: self.space.surface_points(self.touchable[side]) for side in SIDES}
+        self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}
+        self.references = {side: points[side].interpolate(mesh.nodes) for side in SIDES}
+        self.offsets = {side: np.asarray(offset, float) for side, offset in zip(SIDES, offsets, strict=True)}
+        options = NewtonOptions(start_patience=START_PATIENCE)
+        self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
+        self.hold = WeakHold(self.body)
+
+    def touching_place(self, side: str) -> Array:
+        """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.
+
+        Raises
+        ------
+        InputError
+            If it passes beside the block.
+        """
+        direction, size = CLOSING[side], float(np.ptp(self.mesh.nodes, axis=0).max())
+        samples = np.hstack([self.mesh.nodes[np.unique(self.touchable[side])].T, self.references[side]])
+        begin = np.array([*self.offsets[side], self.mesh.nodes[:, 2].mean()]) - 2 * size * direction
+        travel = 0.0
+        for _ in range(MOST_APPROACHES):
+            place = begin + travel * direction
+            gap = float(self.jaws[side].signed_distance(samples - place[:, None])[0].min())
+            if gap <= TOUCH * size:
+                return place
+            travel += gap
+        raise InputError(f"the {side} jaw does not meet the block; its middle is at {self.offsets[side].tolist()} m in x and y")
+
+    def start(self, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
+        """The undeformed block between jaws that just touch it."""
+        contacts = tuple(
+            PosedContact.apart(
+                self.surfaces[side],
+                self.references[side],
+                ContactPair(self.jaws[side], law, grip=self._grip(side)),
+                self.touching_place(side),
+            )
+            for side in SIDES
+        )
+        unknowns = np.zeros(self.space.size)
+        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+
+    def compressed(self, closing: float) -> Array:
+        """Unknowns (size,) of the block under uniform compression at constant volume, each jaw's face closed by ``closing`` in m.
+
+        Newton starts there: from the undeformed block, its first step would turn thin cells at the free edges inside out.
+        """
+        low, high = self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)
+        height = (high - low)[2]
+        stretch = max(1 - 2 * closing / height, LEAST_STRETCH)
+        unknowns = np.zeros(self.space.size)
+        wider = stretch**-0.5 - 1
+        self.space.split(unknowns)[0][:] = (self.mesh.nodes - (low + high) / 2) * [wider, wider, stretch - 1]
+        return unknowns
+
+    def _grip(self, side: str) -> Array:
+        """One at the surface points (n,) of the face under a jaw, zero at those beside it, which roll onto it."""
+        count = len(FACET_POINTS)
+        grip = np.zeros(len(self.touchable[side]) * count)
+        grip[: len(self.facets[side]) * count] = 1.0
+        return grip
+
+    def equilibrium(
+        self,
+        state: ContactEquilibrium,
+        closing: float,
+        guess: Array,
+        *,
+        force: float | None = None,
+        past: PastStress | None = None,
+        loads: Sequence[FollowerLoad] = (),
+    ) -> ContactEquilibrium:
+        """The grasp with each jaw closed by ``closing`` in m, or on from there until each presses with a ``force`` in N.
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton fails, or no penalty keeps the tissue out of the jaws.
+        """
+        return contact_equilibrium(
+            self.problem,
+            state,
+            closing,
+            guess,
+            directions=[CLOSING[side] for side in SIDES],
+            force=None if force is None else 2 * force,
+            past=past,
+            loads=[self.hold, *loads],
+        )
+
+    def jaw_force(self, state: ContactEquilibrium, side: str) -> Array:
+        """Force (3,) in N of the tissue on a jaw."""
+        return -self.surfaces[side].total(self._traction(state, side))
+
+    def taxels(self, state: ContactEquilibrium, side: str, layout: TaxelLayout) -> TaxelForces:
+        """Forces in N of the tissue on the taxels of a jaw, in the jaw's own axes: z presses into its face."""
+        jaw, surface = self.jaws[side], self.surfaces[side]
+        traction = -jaw.rotation.T @ self._traction(state, side)
+        count = len(FACET_POINTS)
+        forces = (traction * surface.points.weights).reshape(3, -1, count)
+        deformed = self.mesh.nodes + self.space.split(state.unknowns)[0]
+        facets = self.touchable[side]
+        place = state.contacts[SIDES.index(side)].place
+        faces = jaw.face_coordinates(deformed[facets.ravel()].T - place[:, None])
+        return taxel_forces(layout, faces.T.reshape(-1, 6, 2), forces, FACET_POINTS)
+
+    def _traction(self, state: ContactEquilibrium, side: str) -> Array:
+        """Traction (3, n) in Pa on the tissue at the surface points, that of the accepted state."""
+        contact = state.contacts[SIDES.index(side)].state
+        return contact.pressure * contact.normals + contact.tangential
+
+
+def touchable_facets(nodes: Array, facets: Mapping[str, Array]) -> dict[str, Array]:
+    """Facets (F, 6) of a block that each jaw may touch, given nodes (n, 3) in m and facets by the names of their faces."""
+    beside = np.concatenate([facets["upper"][:0], *(facets[name] for name, axis, _ in FACES if axis != 2 and name in facets)])
+    higher = nodes[beside[:, :3], 2].mean(axis=1) > nodes[:, 2].mean()
+    return {
+        "upper": np.concatenate([facets["upper"], beside[higher]]),
+        "lower": np.concatenate([facets["lower"], beside[~higher]]),
+    }
+
+
+def _facet_points() -> Array:
+    """Quadrature points (Q, 2) of a facet on the reference triangle."""
+    from skfem.quadrature import get_quadrature
+
+    return get_quadrature(FACET_ELEMENTS[3], SURFACE_ORDER[3])[0].T
+
+
+FACET_POINTS = _facet_points()

@@ -1,0 +1,61 @@
+"""Where elements change their volume by far more or less than the pressure in them asks for: the mesh is too coarse there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.fem.body import Body
+from tactsim.fem.diagnosis import element_in_words
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+
+Array = np.ndarray
+
+POOR_RATIO = 0.1
+"""Difference of a volume ratio from what the pressure asks for that counts as poor: a tenth, far beyond the few per cent that
+P2/P1 elements leave at the corners of bodies in meshes that resolve them."""
+POOR_SHARE = 1e-3
+"""Part of the volume with poor ratios of which a user is told: a few points at sharp corners are less and do no harm."""
+
+
+def volume_error(body: Body, state: ContactEquilibrium) -> Array:
+    """Volume ratio less the one that the pressure asks for, at the quadrature points (E, Q).
+
+    .. math:: g(F) - p / K
+
+    It is J - 1 for exactly incompressible tissue; compressible tissue may change its volume as its pressure asks.
+    """
+    kinematics = state.kinematics
+    change = np.where(body.linear[:, None], np.trace(kinematics.F) - 3, kinematics.J - 1)
+    return change - body.compliance[:, None] * body.pressure(state.unknowns)
+
+
+class VolumeRatios:
+    """The worst of the accepted states of one run."""
+
+    def __init__(self) -> None:
+        self.worst, self._told = 0.0, ""
+
+    def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
+        """Part of the volume with poor ratios in a state."""
+        error, weights = volume_error(body, state), body.points.weights
+        poor = np.abs(error) > POOR_RATIO
+        share = float(weights[poor].sum() / weights.sum())
+        if share > self.worst:
+            self.worst, ratios = share, state.kinematics.J[poor]
+            self._told = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst near {_place(body, error)}"
+        return share
+
+    def warnings(self) -> list[str]:
+        """What a user is told of the worst state."""
+        if self.worst <= POOR_SHARE:
+            return []
+        return [
+            f"{self.worst:.2%} of the volume misses the volume that its pressure asks for by more than {POOR_RATIO:.0%} (local "
+            f"volume ratios of {self._told}): the mesh is too coarse there; take smaller elements"
+        ]
+
+
+def _place(body: Body, error: Array) -> str:
+    """Centroid of the element with the largest error, undeformed, and its region."""
+    element = int(np.abs(error).max(axis=1).argmax())
+    return element_in_words(body, element)

@@ -1,0 +1,145 @@
+"""The experiment: what it reports, from synthetic data and from a file, and how it ends when it is stopped."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from pydantic import ValidationError
+
+from tactsim.analytic.atrial import table_4_1
+from tactsim.case import load_case
+from tactsim.errors import ConvergenceError, StorageError
+from tactsim.experiments.dma import dma_identification
+from tactsim.experiments.dma.dma_identification import DmaIdentification
+from tactsim.experiments.dma.figures import dma_identification_figure
+from tactsim.experiments.dma.source import MeasuredDma, SignalsDma, SignalsTest, SyntheticDma
+from tactsim.identification.dma_data import synthetic_dma
+from tactsim.plotting import figures_for
+from tactsim.results import Status
+from tactsim.results.document import document_text
+from tactsim.results.writing import history_table
+
+QUICK = {"population": 40, "generations": 30}
+
+
+@pytest.fixture(scope="module")
+def result():
+    steps = []
+    found = DmaIdentification(**QUICK).run(steps.append)
+    assert tuple(steps) == found.steps
+    return found
+
+
+def test_constants_errors_and_the_statement_are_reported(result):
+    assert result.status is Status.CONVERGED
+    quantities = result.quantities
+    assert quantities["moduli"].value.shape == quantities["genetic_retardation_times"].value.shape == (8,)
+    assert quantities["least_squares_band_width"].value < 0.08
+    assert quantities["least_objective"].value <= quantities["genetic_objective"].value
+    assert quantities["least_squares_weighted_squares"].value < quantities["genetic_weighted_squares"].value
+    assert any("trust the curves" in warning for warning in result.warnings)
+    assert any("search longer" in warning for warning in result.warnings)
+    assert any("not printed" in assumption for assumption in result.assumptions)
+    assert result.details["least_squares"]["true_curves_inside_band"] is True
+    assert set(result.details["least_squares"]["told"]) >= {"e_0", "e_8", "tau_8"}
+
+
+def test_history_holds_the_curves_and_the_data_at_their_frequencies(result):
+    measured = [step for step in result.steps if "measured_elastic_compliance" in step.values]
+    assert [step.values["frequency"] for step in measured] == [1, 6, 11, 16, 21, 26, 31, 36]
+    for step in result.steps:
+        assert set(step.values) <= set(DmaIdentification.history_units)
+        values = step.values
+        for name in ("least_squares_elastic_compliance", "genetic_viscous_compliance"):
+            assert values[f"{name}_lower"] < values[name] < values[f"{name}_upper"]
+    assert "least_squares_elastic_compliance_lower [1/Pa]" in history_table(result)
+    assert "null" not in document_text(result, "case")
+
+
+def test_figure(result):
+    drawings = figures_for(result)
+    assert list(drawings) == ["dma_identification.png"]
+    assert drawings["dma_identification.png"]().startswith(b"\x89PNG")
+    told = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
+    for words in ("elastic compliance", "95 % band, simultaneous", "genetic algorithm", "combinations of the 17 constants"):
+        assert words in told
+
+
+def test_the_same_seeds_give_the_same_result(result):
+    again = DmaIdentification(**QUICK).run(lambda step: None)
+    assert again.steps == result.steps
+
+
+def test_data_from_a_file_with_unknown_noise(tmp_path):
+    data = synthetic_dma(SyntheticDma().model, noise=0.02, seed=1)
+    path = tmp_path / "dma.csv"
+    rows = np.column_stack([data.frequencies, data.modulus.real, data.modulus.imag])
+    header = "frequency [Hz], storage modulus [Pa], loss modulus [Pa]"
+    np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.17g")
+    found = DmaIdentification(data=MeasuredDma(path=str(path)), methods=("least_squares",), replicates=100).run(lambda step: None)
+    assert found.status is Status.CONVERGED
+    assert 0.008 < found.quantities["relative_noise"].value < 0.035
+    assert "least_squares_curve_error" not in found.quantities
+    assert not any("synthetic" in assumption for assumption in found.assumptions)
+    with pytest.raises(StorageError):
+        DmaIdentification(data=MeasuredDma(path=str(tmp_path / "none.csv"))).run(lambda step: None)
+
+
+@pytest.mark.parametrize(
+    ("error", "status"), [(KeyboardInterrupt(), Status.INTERRUPTED), (ConvergenceError("no luck"), Status.FAILED)]
+)
+def test_the_fits_made_before_a_stop_are_kept(monkeypatch, error, status):
+    def stopped(*args, **kwargs):
+        raise error
+
+    monkeypatch.setattr(dma_identification, "fit_genetic", stopped)
+    found = DmaIdentification(**QUICK).run(lambda step: None)
+    assert found.status is status
+    assert "moduli" in found.quantities
+    assert "genetic_moduli" not in found.quantities
+    assert str(status).upper() in " ".join(t.get_text() for t in dma_identification_figure(found).findobj(Text))
+    nothing = DmaIdentification(methods=("genetic",), **QUICK).run(lambda step: None)
+    assert nothing.status is status
+    assert nothing.steps == ()
+    assert figures_for(nothing) == {}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"methods": ()},
+        {"methods": ("genetic", "genetic")},
+        {"methods": ("guess",)},
+        {"units": 0},
+        {"data": {"kind": "synthetic", "frequencies": (1.0, 3.0, 2.0)}},
+        {"data": {"kind": "synthetic", "frequencies": (1.0, 3.0)}},
+        {"data": {"kind": "synthetic", "noise": -0.1}},
+        {"data": {"kind": "guess"}},
+        {"confidence": 1.0},
+    ],
+)
+def test_bad_settings_are_refused(changes):
+    with pytest.raises(ValidationError):
+        DmaIdentification(**changes)
+
+
+def test_the_case_is_valid(request):
+    experiment = load_case(request.config.rootpath / "cases/dma_atrial.yaml").experiment
+    assert experiment == DmaIdentification()
+
+
+def test_raw_signals_give_the_same_fit_as_their_moduli(tmp_path):
+    tests, area, height, swing = [], 80e-6, 5e-3, 0.05e-3
+    for frequency in (1.0, 6.0, 16.0, 36.0):
+        angle = 2 * np.pi * frequency * (time := np.arange(0, 5 / frequency, 1 / (50 * frequency)))
+        modulus = 1 / table_4_1().complex_compliance(np.array([2 * np.pi * frequency]))[0]
+        load = abs(modulus) * swing / height * area * np.sin(angle + np.angle(modulus)) + 0.01 + 0.001 * time
+        columns = np.column_stack([time, load, 1e3 * swing * np.sin(angle) + 0.1])
+        path = tmp_path / f"{frequency:g}.csv"
+        np.savetxt(path, columns, delimiter=",", header="time [s],load [N],displacement [mm]", comments="", fmt="%.16g")
+        tests.append(SignalsTest(path=str(path), frequency=frequency))
+    measured = SignalsDma(tests=tuple(tests), area=area, height=height).measured()
+    expected = table_4_1().complex_compliance(2 * np.pi * measured.frequencies)
+    np.testing.assert_allclose(measured.compliance, expected, rtol=1e-9, err_msg="exact sines, offset and drift")
+    assert not np.allclose(SignalsDma(tests=tuple(tests), area=2 * area, height=height).measured().compliance, expected, rtol=0.1)

@@ -1,0 +1,145 @@
+"""The durometer: balance of tissue and spring, its interval, the ends of the scale, scaling with the modulus, bad input."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.analytic.durometer import DurometerScale
+from tactsim.case import load_case
+from tactsim.contact.rod import Rod
+from tactsim.experiments.durometer.durometer import Durometer
+from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.materials.library import named_material
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.specimen import Specimen
+from tactsim.plotting.result_figures import figures_for
+
+COARSE = MeshSettings(finest=0.5e-3, growth=1.5, adaptive=False)
+HARD = NeoHookean(c10=135e3 / 6)
+
+
+def measured(material=HARD, progress=lambda step: None, **changes):
+    specimen = Specimen(material=material, **changes.pop("specimen", {}))
+    return Durometer(specimen=specimen, **({"mesh": COARSE} | changes)).run(progress)
+
+
+def values(result):
+    return {name: quantity.value for name, quantity in result.quantities.items()}
+
+
+@pytest.fixture(scope="module")
+def hard():
+    return measured(stop="travel")
+
+
+def test_tissue_and_spring_balance_at_the_reading(hard):
+    found = values(hard)
+    assert hard.status == "converged"
+    spring = 0.203 + 0.00908 * found["reading"]
+    assert found["spring_force"] == pytest.approx(spring, rel=1e-4)  # depth located to 1e-5 of the travel
+    assert found["spring_force"] != pytest.approx(spring * (1 + 3e-4), rel=1e-4)
+    assert found["depth"] == pytest.approx(2.5e-3 * (1 - found["reading"] / 100), rel=1e-12)
+    assert found["bottoms_out"] == 0
+    assert hard.steps[-1].values["displacement"] == pytest.approx(2.5e-3)
+    assert {name for step in hard.steps for name in step.values} <= set(hard.units)
+
+
+def test_the_interval_is_that_of_another_spring(hard):
+    found = values(hard)
+    stronger = values(measured(scale={"force_at_zero": 0.203 + 0.00908}))
+    assert stronger["reading"] == pytest.approx(found["reading_low"], abs=0.05)  # a tenth of the interval: its curvature
+    assert stronger["reading"] != pytest.approx(found["reading"], abs=0.05)
+    assert found["reading_low"] < found["reading"] < found["reading_high"]
+
+
+def test_the_run_ends_at_the_reading(hard):
+    result = measured()  # the same steps as those of the whole travel
+    assert values(result)["reading"] == pytest.approx(values(hard)["reading"], abs=1e-6)
+    assert result.steps[-1].values["displacement"] == values(result)["depth"]
+
+
+def test_soft_tissue_bottoms_out():
+    result = measured(NeoHookean(c10=1e3), scale={"travel": 0.5e-3})
+    assert result.status == "converged"
+    assert (values(result)["reading"], values(result)["bottoms_out"]) == (0, 1)
+    assert "bottoms out" in result.reason
+    assert "depth" not in result.quantities
+    assert any("off the scale" in warning for warning in result.warnings)
+    assert figures_for(result)["durometer.png"]().startswith(b"\x89PNG")
+
+
+def test_force_scales_with_the_modulus(hard):
+    """To 1e-6 over the same steps: the same deformation whatever the modulus, up to the residual of Newton."""
+    scale = {"force_at_zero": 2 * 0.203, "force_per_unit": 2 * 0.00908}
+    double = measured(NeoHookean(c10=135e3 / 3), scale=scale, stop="travel")
+    for mine, its in zip(double.steps, hard.steps, strict=True):
+        assert mine.values["displacement"] == pytest.approx(its.values["displacement"], rel=1e-6)
+        assert mine.values["reaction_force"] == pytest.approx(2 * its.values["reaction_force"], rel=1e-6)
+    assert mine.values["reaction_force"] != pytest.approx(2 * its.values["reaction_force"] * (1 + 3e-6), rel=1e-6)
+
+
+def test_a_scaled_curve_reads_what_a_direct_run_reads(hard):
+    """To 0.05 units: friction remembers the steps, which end elsewhere, and the curve is interpolated between them."""
+    direct = values(measured(NeoHookean(c10=200e3 / 6)))["reading"]
+    scaled = ForceDepthCurve.of(hard, 135e3).reading(200e3, DurometerScale())
+    assert scaled == pytest.approx(direct, abs=0.05)
+    assert scaled != pytest.approx(direct + 0.15, abs=0.05)
+
+
+def test_an_interrupted_run_keeps_its_steps():
+    def stop(step):
+        if step.step == 3:
+            raise KeyboardInterrupt
+
+    result = measured(progress=stop)
+    assert (result.status, len(result.steps)) == ("interrupted", 3)
+    assert "reading" not in result.quantities
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"specimen": {"thickness": 5e-3}}, "at least 6 mm"),
+        ({"material": named_material("atrial").material}, "no relaxation"),
+        ({"scale": {"travel": 20e-3}}, "smaller than the specimen's thickness"),
+        ({"indentor": Rod(radius=16e-3)}, "needs a wider specimen"),
+        ({"spring_tolerance": -1.0}, "spring_tolerance"),
+        ({"penetration_tolerance": 0.0}, "penetration_tolerance"),
+        ({"stop": "threshold"}, "travel"),
+    ],
+)
+def test_impossible_durometers_are_refused(changes, words):
+    with pytest.raises(ValidationError, match=words):
+        measured(**changes)
+
+
+def test_a_narrow_specimen_is_warned_of():
+    def interrupt(step):
+        raise KeyboardInterrupt
+
+    assert any(
+        "edge of the specimen is 8 mm away" in told for told in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
+    )
+
+
+@pytest.mark.slow
+def test_the_shipped_case(request):
+    result = load_case(request.config.rootpath / "cases" / "durometer_oo.yaml").experiment.run(lambda step: None)
+    assert result.status == "converged"
+    assert values(result)["reading"] == pytest.approx(63.05, abs=0.1)  # mesh error 0.01 units, table_3_3_simulated
+    assert np.diff([step.values["reaction_force"] for step in result.steps]).min() > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("material", [HARD, "b1a_stable", "icf_stable"])
+def test_the_whole_travel_is_reached(material, friction):
+    """2.5 mm are 2.1 radii of the indentor."""
+    result = measured(
+        material, contact={"kind": "coulomb", "friction": friction}, stop="travel", mesh=MeshSettings(growth=0.8, adaptive=False)
+    )
+    assert result.status == "converged", result.reason
+    assert result.quantities["unstable_volume_fraction"].value == 0

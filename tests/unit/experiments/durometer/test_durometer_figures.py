@@ -1,0 +1,54 @@
+"""The figure of a durometer for every way a run can end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from matplotlib.text import Text
+
+from tactsim.experiments.durometer.figures.durometer import durometer_figure
+from tactsim.plotting import figures_for
+from tactsim.results import Quantity, Result, Status, StepRecord
+
+READ = {"reading": 63.05, "reading_low": 62.86, "reading_high": 63.25, "depth": 0.92e-3, "spring_force": 0.775}
+
+
+def made_up(**quantities):
+    steps = tuple(
+        StepRecord(k, 5, 1e-12, {"displacement": 5e-4 * k, "reaction_force": 0.2 * k**1.5, "hertz_force": 0.15 * k**1.5})
+        for k in range(1, 6)
+    )
+    details = {"scale": {"travel": 2.5e-3, "force_at_zero": 0.203, "force_per_unit": 0.00908}, "title": "A title"}
+    told = {name: Quantity(value, "1", "") for name, value in quantities.items()}
+    return Result("durometer", Status.CONVERGED, "because", told, steps=steps, details=details)
+
+
+def texts(figure):
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_the_reading_is_told_with_its_interval():
+    told = texts(durometer_figure(made_up(**READ)))
+    for words in ("A title", "63.0", "(62.9 to 63.2)", "spring", "Hertz", "reading", "depth of the indentor in mm"):
+        assert words in told
+    assert "bottoms out" not in told
+    assert "FAILED" not in told
+
+
+def test_off_the_scale_is_told():
+    assert "bottoms out: below 0" in texts(durometer_figure(made_up(reading=0.0)))
+    assert "no reading" in texts(durometer_figure(made_up()))
+
+
+@pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
+def test_a_run_that_did_not_end_well_is_marked(status):
+    told = texts(durometer_figure(replace(made_up(), status=status)))
+    assert f"{status.upper()} after a displacement of 2.5 mm: because" in told
+
+
+def test_png_by_name_and_nothing_without_steps():
+    (name, draw), *rest = figures_for(made_up(**READ)).items()
+    assert (name, rest) == ("durometer.png", [])
+    assert draw().startswith(b"\x89PNG")
+    assert figures_for(replace(made_up(), steps=())) == {}

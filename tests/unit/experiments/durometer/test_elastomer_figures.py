@@ -1,0 +1,63 @@
+"""The figure of a ranking: markers where the numbers are, ties told, and a run that did not end well."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.text import Text
+
+from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3
+from tactsim.experiments.durometer.figures.elastomer_ranking import elastomer_ranking_figure
+from tactsim.plotting import figures_for
+from tactsim.results import Result, Status, StepRecord
+
+PREDICTED = ((28.0, 17.0, 12.0, 2.0, 0.0, 0.0, 0.0), (11.0, 0.8, 0.0, 0.0, 0.0, 0.0, 0.0))
+
+
+def made_up():
+    steps = [
+        StepRecord(1, 0, 0.0, {"predicted_reading": value, "modulus_of_threshold": 1e3 * k, "modulus_of_reading": 9e3 * k})
+        for row in PREDICTED
+        for k, value in enumerate(row, 1)
+    ]
+    details = {
+        "elastomers": [one.model_dump(mode="json") for one in TABLE_3_3],
+        "shapes": [one.model_dump(mode="json") for one in STABLE_SHAPES[:2]],
+    }
+    return Result("elastomer_ranking", Status.CONVERGED, "done", steps=tuple(steps), details=details)
+
+
+def texts(figure):
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_elastomers_shapes_and_ties_are_named():
+    told = texts(elastomer_ranking_figure(made_up()))
+    for words in (*(one.name for one in TABLE_3_3), "B1-A stable", "durometer", "hand", "sensor", "3 tied", "5 tied"):
+        assert words in told
+    assert "FAILED" not in told
+
+
+def test_markers_and_ranks_stand_where_the_numbers_are():
+    readings, _, ranks = elastomer_ranking_figure(made_up()).axes
+    offsets = np.asarray(readings.collections[0].get_offsets())
+    np.testing.assert_allclose(offsets, np.stack([[48, 45, 42, 36, 13, 4, 1], PREDICTED[0]], axis=1))
+    hardest, softest = ranks.lines[0].get_ydata(), ranks.lines[6].get_ydata()
+    np.testing.assert_allclose(hardest, 7)
+    np.testing.assert_allclose(softest, [1, 1, 1, 2, 3])  # shared with three and with five
+
+
+def test_what_is_missing_leaves_a_gap():
+    cut = [
+        replace(step, values={k: v for k, v in step.values.items() if k != "predicted_reading"}) for step in made_up().steps[:7]
+    ]
+    result = replace(made_up(), steps=(*cut, *made_up().steps[7:10]), status=Status.INTERRUPTED, reason="stopped")
+    assert "INTERRUPTED: stopped" in texts(elastomer_ranking_figure(result))
+
+
+def test_png_by_name_and_nothing_without_a_shape():
+    (name, draw), *rest = figures_for(made_up()).items()
+    assert (name, rest) == ("elastomer_ranking.png", [])
+    assert draw().startswith(b"\x89PNG")
+    assert figures_for(replace(made_up(), steps=made_up().steps[:6])) == {}

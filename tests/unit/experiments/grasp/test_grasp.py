@@ -1,0 +1,313 @@
+"""What a grasp accepts, how its forces add up, and how it follows closing, force, relaxation and the pressure in a lumen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import meshio
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.analytic.histories import History, Segment
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
+from tactsim.experiments.grasp.readings import JawReading, check_sums
+from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.history_path import stretches
+from tactsim.mechanics.surface_forces import TaxelForces
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.structured_block import structured_block
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+SIZE = (40e-3, 40e-3, 20e-3)
+FEW = {"kind": "structured", "cells": (2, 2, 2)}
+C10 = 1000.0
+SOFT = {"kind": "neo_hookean", "c10": C10}
+FADING = {"fractions": [0.5], "times": [1.0]}
+CLOSING = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
+ONE_STEP = {"steps": 1}
+RAMP = {"kind": "ramp", "to": 1e-4, "duration": 1.0}
+TUBE = {"kind": "tube", "centre_line": [(0.0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)], "inner_radius": 4e-3, "wall": 3e-3}
+BALL = {"kind": "sphere", "center": (20e-3, 20e-3, 10e-3), "radius": 5e-3}
+PULSE = {"kind": "pulse", "beats": 1}
+
+
+def grasp(**changes):
+    given = {
+        "block": {"size": SIZE, "tissue": SOFT},
+        "loading": CLOSING,
+        "mesh": FEW,
+        "time": ONE_STEP,
+    }
+    return Grasp.model_validate(given | changes)
+
+
+def run(**changes):
+    return grasp(**changes).run(lambda step: None)
+
+
+def values(result):
+    assert result.status == "converged", result.reason
+    return {name: quantity.value for name, quantity in result.quantities.items()}
+
+
+def pressed(*pieces, control="displacement"):
+    return {"control": control, "pieces": list(pieces)}
+
+
+@pytest.fixture
+def tube_file(tmp_path):
+    """A block with a ragged tube along x, as another program would write it."""
+    block = structured_block(SIZE, (1, 8, 4), [Tube.model_validate(TUBE)])
+    mesh, count = block.mesh, block.mesh.corner_count
+    cells = meshio.CellBlock("tetra", mesh.elements[:, :4])
+    path = tmp_path / "tube.vtu"
+    meshio.Mesh(1e3 * mesh.nodes[:count], [cells], cell_data={"region": [mesh.regions + 5]}).write(path)
+    return {"kind": "file", "path": str(path), "unit": "mm", "regions": {"5": 0, "6": 1}}
+
+
+def with_tube(file, lumen, **changes):
+    inclusion = {"shape": TUBE, "material": "artery_wall", "lumen": lumen}
+    return run(mesh=file, inclusions=[inclusion], **changes)
+
+
+def test_taxels_read_the_cauchy_pressure_of_a_frictionless_block():
+    found = values(run(contact={"kind": "coulomb", "friction": 0.0}, penetration_tolerance=1e-7))
+    stretch = 1 - 2e-3 / SIZE[2]
+    cauchy = 2 * C10 * (1 / stretch - stretch**2)
+    for side in SIDES:
+        pressure = np.array(found[f"taxel_pressure_{side}"])
+        assert pressure == pytest.approx(np.full((3, 3), cauchy), rel=3e-4), "twice the penetration over the closing is 2e-4"
+        assert pressure != pytest.approx(np.full((3, 3), cauchy * (1 + 1e-3)), rel=3e-4)
+        assert np.abs(found[f"taxel_shear_{side}"]).max() < 1e-6 * cauchy * 81e-6
+        parts = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
+        assert parts == pytest.approx(found["reaction_force"], rel=1e-7)
+    assert found["max_penetration"] <= 1e-7
+    assert found["jaw_force_upper"] == pytest.approx(-np.array(found["jaw_force_lower"]), abs=1e-6 * found["reaction_force"])
+
+
+def test_what_a_run_records():
+    result = run(
+        time={"steps": 2}, inclusions=[{"shape": BALL, "material": "lump"}], mesh={"kind": "structured", "cells": (4, 4, 4)}
+    )
+    found = values(result)
+    assert [step.values["time"] for step in result.steps] == [0.5, 1.0]
+    assert [step.values["displacement"] for step in result.steps] == pytest.approx([0.5e-3, 1e-3])
+    assert np.shape(found["taxel_force_upper_history"]) == (2, 3, 3)
+    assert found["taxel_force_lower_history"][-1] == found["taxel_force_lower"]
+    assert result.steps[-1].values["taxel_force_upper_1_3"] == found["taxel_force_upper"][0][2]
+    assert {name for step in result.steps for name in step.values} <= set(result.units)
+    assert any(result.details["mesh"]["content"] in told for told in result.assumptions)
+    assert [result.details["jaw_places"][side][2] for side in SIDES] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
+    assert len(result.frames) == 2
+    frame = result.frames[-1]
+    assert set(np.unique(frame.cell_data["region [1]"])) == {0.0, 1.0}
+    squeezed = frame.point_data["displacement [m]"][:, 2].max() - frame.point_data["displacement [m]"][:, 2].min()
+    assert squeezed == pytest.approx(2e-3, rel=0.02)
+    assert frame.point_data["pressure [Pa]"].mean() > 0
+
+
+def test_a_force_is_reached_by_the_closing_that_needs_it():
+    closed = values(run(time={"steps": 2}))
+    force = closed["reaction_force"]
+    reached = values(run(loading=pressed({"kind": "ramp", "to": force, "duration": 1.0}, control="force")))
+    assert reached["reaction_force"] == pytest.approx(force, rel=1e-6)
+    assert reached["reaction_force"] != pytest.approx(force * (1 + 3e-6), rel=1e-6)
+    assert reached["displacement"] == pytest.approx(1e-3, rel=0.03), (
+        "twice the penetration tolerance, and another path of friction"
+    )
+    assert abs(reached["jaw_force_lower"][2]) == pytest.approx(force, rel=1e-6)
+
+
+def test_a_held_closing_relaxes_by_the_series():
+    tissue = SOFT | {"relaxation": FADING}
+    result = run(
+        block={"size": SIZE, "tissue": tissue},
+        contact={"kind": "coulomb", "friction": 0.0},
+        loading=pressed({"kind": "jump", "to": 1e-3, "duration": 3.0}),
+        mesh=FEW | {"cells": (1, 1, 1)},
+        penetration_tolerance=1e-6,
+        time={"tolerance": 5e-3},
+    )
+    values(result)
+    times, forces = (np.array([step.values[name] for step in result.steps]) for name in ("time", "reaction_force"))
+    expected = 0.5 + 0.5 * np.exp(-times)
+    assert forces / forces[0] == pytest.approx(expected, rel=5e-3), "error in time, and the penetration follows the pressure"
+    assert forces / forces[0] != pytest.approx(expected**1.1, rel=5e-3)
+
+
+def test_pressure_alone_swells_the_block_against_the_jaws(tube_file):
+    held = pressed({"kind": "hold", "duration": 0.5})
+    swelling = [{"kind": "ramp", "to": 1000.0, "duration": 0.5}]
+    result = with_tube(tube_file, {"kind": "history", "pieces": swelling}, loading=held)
+    found = values(result)
+    assert found["displacement"] == 0
+    assert found["lumen_pressure"] == pytest.approx([1000.0])
+    assert found["reaction_force"] > 1e-3
+    assert found["jaw_force_upper"][2] == pytest.approx(-found["jaw_force_lower"][2], rel=1e-4)
+    taxels = np.array(found["taxel_force_upper"])
+    assert taxels[1].mean() > 2 * taxels[[0, 2]].mean(), "the row above the tube"
+    sucking = [{"kind": "jump", "to": -1000.0, "duration": 0.5}]
+    sucked = values(with_tube(tube_file, {"kind": "history", "pieces": sucking}, loading=held))
+    assert np.mean(sucked["taxel_force_upper"][1]) < 0.3 * taxels[1].mean()
+
+
+def test_a_pulse_is_felt_under_a_closing(tube_file):
+    pulse = PULSE | {"rise": 1.0, "rate": 1.0, "diastole": 500.0, "systole": 2000.0}
+    result = with_tube(tube_file, pulse, loading=CLOSING, time={"steps": 1, "per_period": 4})
+    values(result)
+    pressures, forces = (np.array([s.values[name] for s in result.steps]) for name in ("lumen_pressure_1", "reaction_force"))
+    assert pressures == pytest.approx([500.0, 1250.0, 2000.0, 1250.0, 500.0])
+    assert forces.argmax() == 2
+    assert [frame.time for frame in result.frames] == pytest.approx([1.0, 1.5, 2.0])
+    assert "lumen 1: as given, 500 Pa to 2 kPa at 1 Hz, a raised cosine" in result.assumptions
+
+
+def test_forces_that_do_not_add_up_are_refused():
+    parts = TaxelForces(np.ones((3, 2, 2)), np.zeros(3), np.ones(3))
+    check_sums(JawReading(parts, np.full(3, 5.0)), np.eye(3), "upper", 0.0)
+    for wrong in (np.full(3, 5.0 + 3 * 1e-8 * 35), np.full(3, np.nan)):
+        with pytest.raises(ConvergenceError, match="upper jaw miss its force"):
+            check_sums(JawReading(parts, wrong), np.eye(3), "upper", 0.0)
+
+
+def test_a_failure_keeps_what_was_accepted(monkeypatch):
+    solve = GraspModel.equilibrium
+
+    def failing(self, state, closing, guess, **more):
+        if closing > 0.6e-3:
+            raise ConvergenceError("no way")
+        return solve(self, state, closing, guess, **more)
+
+    monkeypatch.setattr(GraspModel, "equilibrium", failing)
+    result = run(time={"steps": 2}, mesh=FEW | {"cells": (1, 1, 1)})
+    assert result.status == "failed"
+    assert "no way" in result.reason
+    assert result.quantities["displacement"].value < 0.6e-3
+    assert result.details["rejected_steps"] > 0
+
+
+def test_an_interruption_keeps_what_was_accepted():
+    def interrupting(step):
+        raise KeyboardInterrupt
+
+    result = grasp(time={"steps": 2}, mesh=FEW | {"cells": (1, 1, 1)}).run(interrupting)
+    assert result.status == "interrupted"
+    assert len(result.steps) == 1
+
+
+@pytest.mark.parametrize(("reading", "limits"), [("above_diastole", (0, 40)), ("absolute", (80, 120)), ("captions", (8, 12))])
+def test_a_pulse_rises_and_beats(reading, limits):
+    pulse = PulsePressure(kind="pulse", reading=reading, rate=2.0, rise=0.5)
+    history = pulse.history(10.0)
+    found = history.value([0.5, 0.75, 1.0, 0.625, 9.75])
+    least, most = (MMHG * value for value in limits)
+    assert found == pytest.approx([least, most, least, (least + most) / 2, most], abs=1e-9 * most)
+    assert found != pytest.approx([least, most, least, least, most], abs=1e-9 * most)
+    counted = replace_beats(pulse, 2).history(10.0)
+    assert counted.value([1.25, 9.75]) == pytest.approx([most, least], abs=1e-9 * most)
+
+
+def replace_beats(pulse, beats):
+    return PulsePressure.model_validate(pulse.model_dump() | {"beats": beats})
+
+
+def test_stretches_are_the_union_of_all_breakpoints():
+    first = History((Segment(0.0, 1.0, 0.0, 2.0), Segment(1.0, 3.0, 5.0)))
+    second = History((Segment(0.0, 1.0 + 1e-12, 1.0), Segment(1.0 + 1e-12, 2.0, 1.0, 1.0)))
+    course = stretches([first, second], 3.0)
+    assert [(s.start, s.end) for s in course] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
+    assert course[0].at(0.5) == (1.0, 1.0)
+    assert course[1].at(1.5) == pytest.approx((5.0, 1.5))
+    assert course[2].at(2.5) == pytest.approx((5.0, 2.0))
+    assert course[1].begins_at((5.0, 1.0 + 1e-12))
+    assert [stretch.sudden for stretch in course] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"inclusions": [{"shape": BALL | {"radius": 11e-3}, "material": "lump"}]},
+            "sphere 1 protrudes by .* through the lower face",
+        ),
+        ({"inclusions": [{"shape": BALL, "material": "lump"}] * 2}, "sphere 1"),
+        (
+            {"inclusions": [{"shape": BALL, "material": "lump", "lumen": PULSE}]},
+            r"inclusions.0.lumen: sphere 1 has no empty space",
+        ),
+        ({"inclusions": [{"shape": TUBE, "material": "lump"}]}, "structured cannot follow the wall of tube 1; take kind: tetra"),
+        ({"inclusions": [], "mesh": {"kind": "layers"}}, "exactly one sphere or ellipsoid"),
+        ({"loading": pressed({"kind": "ramp", "to": 10e-3, "duration": 1.0})}, "less than half the block's height 20 mm"),
+        ({"loading": pressed({"kind": "ramp", "to": -1e-3, "duration": 1.0})}, "falls to -1 mm"),
+        ({"loading": pressed({"kind": "hold", "duration": 1.0})}, "nothing happens"),
+        ({"loading": pressed({"kind": "jump", "to": 0.0, "duration": 1.0}, control="force")}, "must press all the time"),
+        ({"upper": {"width": 30e-3, "offset": (0.0, 60e-3)}}, None),
+        ({"upper": {"width": 30e-3, "depth": 30e-3, "offset": (0.0, 34e-3)}}, "upper.offset 34 mm: the jaw passes beside"),
+        ({"lower": {"depth": 20e-3}}, "matrix: 29 mm wide, more than lower.depth 20 mm"),
+        ({"inclusions": [{"shape": BALL, "material": "lumps"}]}, "did you mean 'lump'"),
+        ({"inclusions": [{"shape": TUBE, "material": "lump", "lumen": PULSE | {"systole": 0.0}}]}, "greater than 0"),
+        ({"inclusions": [{"shape": TUBE, "material": "lump", "lumen": PULSE | {"diastole": 1e5}}]}, "above diastole 100 kPa"),
+    ],
+)
+def test_what_cannot_be_grasped_is_refused(changes, words):
+    if words is None:
+        assert grasp(**changes).jaw("upper").depth > 2 * 60e-3, "a jaw without a size covers the block wherever it stands"
+        return
+    with pytest.raises(ValidationError, match=words):
+        grasp(**changes)
+
+
+def test_a_mesh_that_does_not_fit_the_case_is_refused(tube_file):
+    tube = {"shape": TUBE, "material": "artery_wall"}
+    with pytest.raises(InputError, match=r"2 regions, the case has 3: the tissue and 2 inclusions"):
+        run(mesh=tube_file, inclusions=[tube | {"shape": TUBE | {"inner_radius": 2e-3}}, {"shape": aside(), "material": "lump"}])
+    with pytest.raises(InputError, match="unit right"):
+        run(mesh=tube_file | {"unit": "m"}, inclusions=[tube])
+    with pytest.raises(InputError, match="too coarse: no element lies in sphere 1"):
+        run(inclusions=[{"shape": BALL | {"radius": 0.5e-3}, "material": "lump"}])
+    with pytest.raises(InputError, match=r"region 1 .* shares .* of its place with tube 1"):
+        run(mesh=tube_file | {"regions": {"5": 1, "6": 0}}, inclusions=[tube])
+    elsewhere = TUBE | {"centre_line": [(0.0, 8e-3, 10e-3), (40e-3, 8e-3, 10e-3)]}
+    with pytest.raises(InputError, match=r"region 1 .* shares .* of its place with tube 1"):
+        run(mesh=tube_file, inclusions=[tube | {"shape": elsewhere}])
+
+
+def test_a_mesh_that_fills_the_lumen_is_refused(tmp_path):
+    block = structured_block(SIZE, (1, 16, 8), [Tube.model_validate(TUBE)])
+    full = structured_block(SIZE, (1, 16, 8))
+    regions = np.zeros(len(full.mesh.elements), int)
+    corners = full.mesh.nodes[full.mesh.elements[:, :4]].mean(axis=1)
+    wall = {tuple(place) for place in block.mesh.nodes[block.mesh.elements[block.mesh.regions == 1, :4]].mean(axis=1).round(9)}
+    regions[[tuple(place) in wall for place in corners.round(9)]] = 1
+    path, count = tmp_path / "full.vtu", full.mesh.corner_count
+    cells = meshio.CellBlock("tetra", full.mesh.elements[:, :4])
+    meshio.Mesh(full.mesh.nodes[:count], [cells], cell_data={"region": [regions]}).write(path)
+    mesh = {"kind": "file", "path": str(path), "unit": "m", "regions": {"0": 0, "1": 1}}
+    with pytest.raises(InputError, match=r"no facet of the mesh lies on lumen:1; an empty space must be left out"):
+        run(mesh=mesh, inclusions=[{"shape": TUBE, "material": "artery_wall"}])
+
+
+def test_touching_lumps_are_refused_in_cells_too():
+    touching = [BALL | {"center": (x, 20e-3, 10e-3)} for x in (15e-3, 25e-3)]
+    with pytest.raises(ValidationError, match=r"sphere 1 and sphere 2 (are|overlap by) .*; allowed: at least 10 µm between"):
+        grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
+
+
+def test_a_ragged_lump_is_told():
+    lump = {"shape": BALL, "material": "lump"}
+    result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
+    assert any("the mesh gives sphere 1" in words for words in result.warnings)
+
+
+def aside():
+    return BALL | {"center": (20e-3, 34e-3, 10e-3), "radius": 3e-3}
+
+
+def test_another_mesh_source_carries_the_content():
+    sourced = grasp(mesh={"kind": "layers"}, inclusions=[{"shape": BALL, "material": "lump"}]).sourced()
+    assert sourced.origin == "built in layers"
+    assert replace(sourced, origin="").content == sourced.content
+    assert len(sourced.content) == 32

@@ -1,0 +1,303 @@
+"""The figures of a grasp: cut, maps, view in space and histories of a made-up result."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.image import imread, imsave
+from matplotlib.text import Text
+
+from tactsim.contact.jaw import Jaw
+from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.figures import view as grasp_view
+from tactsim.experiments.grasp.figures.grasp import grasp_figure, history_figure, maps_figure, section_figure
+from tactsim.experiments.grasp.figures.maps import inclusion_shadows
+from tactsim.experiments.grasp.figures.moment import shown_moment
+from tactsim.experiments.grasp.figures.parts import SIDES, grasp_of
+from tactsim.experiments.grasp.figures.section import cutting_plane
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.structured_block import morphed_block
+from tactsim.outside.processes import Ended
+from tactsim.plotting import figures_for, off_screen
+from tactsim.plotting.plane_cut import OUTER, interfaces, plane_cut
+from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+
+SIZE = np.array([40e-3, 40e-3, 20e-3])
+SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
+CLOSING = 1e-3
+STEPS = 6
+ENDS = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]
+"""Corners of a tetrahedron at the ends of its edges, in the order of VTK."""
+
+
+def made_up_frame():
+    """A block squeezed by 1 mm from above and below that bulges, its pressure highest over the lump."""
+    mesh = morphed_block(SIZE, SPHERE, BlockMeshSettings(size=5e-3, inclusion_size=2e-3)).mesh
+    x, y, z = (mesh.nodes / SIZE - 0.5).T
+    bulge = 0.08 * (1 - 3 * z**2)
+    moved = np.stack([bulge * x * SIZE[0], bulge * y * SIZE[1], -2 * CLOSING * z], axis=1)
+    away = ((mesh.nodes - SPHERE.center) ** 2).sum(axis=1)
+    pressure = 4e3 * np.exp(-away / 8e-3**2) + 2e3 * np.exp(-4 * (x**2 + y**2))
+    pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, ENDS]].mean(axis=2)
+    fields = {"displacement [m]": moved, "pressure [Pa]": pressure}
+    return FieldFrame(1.0, mesh.nodes, {"tetra10": mesh.elements}, fields, {"region [1]": mesh.regions.astype(float)})
+
+
+def made_up(*, frame=None, status=Status.CONVERGED, steps=STEPS, tilt=0.0, layout=None):
+    """A grasp with a lump nearer to the upper jaw."""
+    layout = layout or TaxelLayout()
+    x, y = ((layout.borders(along).mean(axis=1)) for along in "xy")
+    shape = np.exp(-((y[:, None] - 2e-3) ** 2 + (x[None] - 1e-3) ** 2) / 9e-3**2)
+    pressure = {"upper": 2e3 + 5e3 * shape, "lower": 2.2e3 + 1.5e3 * shape}
+    course = np.linspace(1 / steps, 1, steps)
+    quantities = {"displacement": Quantity(CLOSING, "m", "")}
+    for side in SIDES:
+        force = pressure[side] * layout.area
+        quantities |= {
+            f"taxel_pressure_{side}": Quantity(pressure[side].tolist(), "Pa", ""),
+            f"taxel_force_{side}": Quantity(force.tolist(), "N", ""),
+            f"taxel_force_{side}_history": Quantity((course[:, None, None] ** 1.3 * force).tolist(), "N", ""),
+        }
+    jaws = {side: Jaw(width=50e-3, depth=50e-3, side=side, tilt_y=tilt) for side in SIDES}
+    details = {
+        "title": "A made-up grasp",
+        "block_size": SIZE.tolist(),
+        "inclusions": [SPHERE.model_dump(mode="json")],
+        "jaws": {side: jaw.model_dump(mode="json") for side, jaw in jaws.items()},
+        "matrix": layout.model_dump(mode="json"),
+    }
+    records = tuple(
+        StepRecord(
+            k + 1,
+            4,
+            1e-12,
+            {"time": s, "displacement": s * CLOSING, "jaw_force_upper_z": 5 * s**1.3, "jaw_force_lower_z": -5.1 * s**1.3}
+            | {"lumen_pressure_1": 1e4 + 2e3 * np.sin(6 * s)},
+        )
+        for k, s in enumerate(course)
+    )
+    frames = () if frame is None else (frame,)
+    return Result("grasp", status, "because", quantities, steps=records, frames=frames, details=details)
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return made_up_frame()
+
+
+def told(figure):
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_cut_has_the_areas_and_outlines_of_block_and_lump(frame):
+    still = replace(frame, point_data={**frame.point_data, "displacement [m]": np.zeros_like(frame.points)})
+    for level, radius in ((20e-3, 5e-3), (23e-3, 4e-3)):
+        cut = plane_cut(still, 1, level, frame.points[:, 0])
+        assert cut.areas().sum() == pytest.approx(SIZE[0] * SIZE[2], rel=1e-3)  # slivers are left out
+        np.testing.assert_allclose(cut.values, cut.triangles[:, :, 0], atol=1e-12)
+        lump = (cut.between == [0, 1]).all(axis=1)
+        away = np.linalg.norm(cut.segments[lump] - SPHERE.center[::2], axis=2)
+        np.testing.assert_allclose(away, radius, rtol=0.02)  # quadratic elements on the sphere
+        lengths = np.linalg.norm(np.diff(cut.segments, axis=1)[:, 0], axis=1)
+        assert lengths[lump].sum() == pytest.approx(2 * np.pi * radius, rel=0.01)
+        assert lengths[~lump].sum() == pytest.approx(2 * (SIZE[0] + SIZE[2]), rel=1e-9)
+        assert (cut.between[~lump] == [OUTER, 0]).all()
+
+
+def test_cut_of_a_deformed_block_is_where_the_plane_is_now(frame):
+    moved = frame.points * [1.0, 2.0, 1.0] + [0.0, 5e-3, 0.0] - frame.points
+    shifted = replace(frame, point_data={**frame.point_data, "displacement [m]": moved})
+    assert len(plane_cut(shifted, 1, 3e-3, frame.points[:, 1]).triangles) == 0
+    np.testing.assert_allclose(plane_cut(shifted, 1, 25e-3, frame.points[:, 1]).values, 10e-3, atol=1e-12)
+
+
+def test_values_of_elements_may_jump_where_regions_meet(frame):
+    regions = np.asarray(frame.cell_data["region [1]"])
+    by_element = np.repeat(1.0 + regions[:, None], 4, axis=1)
+    jumping = plane_cut(frame, 1, 20e-3, by_element)
+    assert set(np.unique(jumping.values.round(9))) == {1.0, 2.0}
+    nodal = np.ones(len(frame.points))
+    nodal[np.unique(frame.cells["tetra10"][regions == 1])] = 2.0
+    assert len(np.unique(plane_cut(frame, 1, 20e-3, nodal).values.round(3))) > 2
+    linear = frame.points[frame.cells["tetra10"][:, :4], 0]
+    whole = plane_cut(frame, 1, 20e-3, frame.points[:, 0])
+    assert plane_cut(frame, 1, 20e-3, linear).values.max() == pytest.approx(whole.values.max(), rel=0.02)
+
+
+def test_an_artery_is_shown_at_its_highest_pressure(frame):
+    result = made_up(frame=frame)
+    course = [0.0, 1e3, 5e3, 2e3, 1e3, 0.0]
+    steps = tuple(
+        replace(step, values=step.values | {"lumen_pressure_1": p}) for step, p in zip(result.steps, course, strict=True)
+    )
+    places = {side: [20e-3, 20e-3, 19e-3 if side == "upper" else 1e-3] for side in SIDES}
+    frames = (replace(frame, time=steps[2].values["time"]), replace(frame, time=steps[-1].values["time"]))
+    pulsing = replace(result, steps=steps, frames=frames, details=result.details | {"jaw_places": places})
+    shown = shown_moment(pulsing)
+    assert [found.time for found in shown.frames] == [frames[0].time]
+    assert shown.steps == steps
+    force = np.asarray(result.quantities["taxel_force_upper_history"].value)[2]
+    np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)
+    opened = CLOSING - steps[2].values["displacement"]
+    assert shown.details["jaw_places"]["upper"][2] == pytest.approx(19e-3 + opened)
+    assert "highest pressure, 5 kPa" in told(section_figure(shown))
+    assert shown_moment(result) is result
+    assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
+
+
+def test_interfaces_close_every_region_once(frame):
+    faces, between = interfaces(frame)
+    corners = frame.points[faces[:, :3]]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    outer = between[:, 0] == OUTER
+    sides = SIZE[[0, 0, 1]] * SIZE[[1, 2, 2]]
+    assert areas[outer].sum() == pytest.approx(2 * sides.sum(), rel=1e-9)
+    volumes = np.linalg.det(corners) / 6  # of the cones from the origin, which add up if all faces look outward
+    assert volumes[outer].sum() == pytest.approx(SIZE.prod(), rel=1e-9)
+    assert volumes[~outer].sum() == pytest.approx(4 / 3 * np.pi * SPHERE.radius**3, rel=0.15)
+    assert areas[~outer].sum() == pytest.approx(4 * np.pi * SPHERE.radius**2, rel=0.1)  # flat facets of a coarse ball
+
+
+def test_plane_passes_the_inclusion_and_crosses_a_long_one(frame):
+    assert cutting_plane(frame, SIZE)[::2] == (1, 1)
+    assert cutting_plane(frame, SIZE)[1] == pytest.approx(20e-3, abs=1e-4)
+    rod = np.abs(frame.points[frame.cells["tetra10"]].mean(axis=1)[:, 1:] - [20e-3, 10e-3]).max(axis=1) < 5e-3
+    along_x = replace(frame, cell_data={"region [1]": rod.astype(float)})
+    assert cutting_plane(along_x, SIZE)[::2] == (0, 1)
+    bare = replace(frame, cell_data={"region [1]": 0.0 * rod})
+    assert cutting_plane(bare, SIZE) == (1, 20e-3, 0)
+
+
+def test_jaws_stand_where_they_meet_the_tissue_or_where_the_result_says(frame):
+    grasp = grasp_of(made_up(frame=frame))
+    np.testing.assert_allclose(grasp.places["upper"], [20e-3, 20e-3, SIZE[2] - CLOSING], atol=1e-8)
+    np.testing.assert_allclose(grasp.places["lower"], [20e-3, 20e-3, CLOSING], atol=1e-8)
+    given = made_up(frame=frame)
+    places = {"upper": [1.0, 2.0, 3.0], "lower": [4.0, 5.0, 6.0]}
+    told_places = grasp_of(replace(given, details={**given.details, "jaw_places": places})).places
+    assert {side: place.tolist() for side, place in told_places.items()} == places
+    leaning = grasp_of(made_up(frame=frame, tilt=0.05)).places["upper"]
+    assert leaning[2] > SIZE[2] - CLOSING + 0.5e-3
+
+
+def test_shadow_of_a_ball_is_its_disc(frame):
+    x, y, covered = inclusion_shadows(frame, SIZE)
+    area = covered.sum() * (x[1] - x[0]) * (y[1] - y[0])
+    assert area == pytest.approx(np.pi * 5.0**2, rel=0.02)
+    middle = ((covered * x).sum() / covered.sum(), (covered * y[:, None]).sum() / covered.sum())
+    np.testing.assert_allclose(middle, [20.0, 20.0], atol=0.1)
+
+
+def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
+    pressures = {"upper": np.arange(1.0, 7.0).reshape(2, 3) * 1e3, "lower": np.full((2, 3), 5e2)}
+    result = made_up(layout=TaxelLayout(rows=2, columns=3, pitch=8e-3, size=6e-3))
+    written = {f"taxel_pressure_{side}": Quantity(pressures[side].tolist(), "Pa", "") for side in SIDES}
+    axes = maps_figure(replace(result, quantities={**result.quantities, **written})).axes
+    places = {text.get_text(): text.get_position() for text in axes[0].texts}
+    assert places["1.00"][0] == pytest.approx(12.0)
+    assert places["1.00"][1] == pytest.approx(16.0)
+    assert places["3.00"][0] == pytest.approx(28.0)
+    assert places["4.00"][1] == pytest.approx(24.0)
+    assert {"row 1", "row 2", "col. 3"} <= set(places)
+    assert "0.500" in {text.get_text() for text in axes[1].texts}
+    squares = [next(c for c in axis.collections if len(c.get_facecolor()) == 6) for axis in axes[:2]]
+    assert tuple(squares[0].get_facecolor()[0]) != tuple(squares[1].get_facecolor()[0])
+
+
+def test_large_matrix_shows_colours_only():
+    words = told(maps_figure(made_up(layout=TaxelLayout(rows=12, columns=12, pitch=2.5e-3, size=2e-3))))
+    assert "N on the taxels" in words
+    assert "kPa" in words
+
+
+def test_figures_tell_what_is_seen(frame):
+    result = made_up(frame=frame, tilt=0.02)
+    section = told(section_figure(result))
+    for words in ("A made-up grasp", "cut at y = 20 mm through the middle of sphere 1", "pressure in the tissue in kPa", "U2,2"):
+        assert words in section
+    overview = told(grasp_figure(result))
+    for words in ("upper jaw", "lower jaw (L)", "x in mm", "row 3", "pressure in the lumen", "time in s", "9 of 18 taxels"):
+        assert words in overview
+
+
+def test_history_without_time_is_over_the_closing():
+    result = made_up()
+    steps = tuple(replace(s, values={n: v for n, v in s.values.items() if n != "time"}) for s in result.steps)
+    assert "closing of each jaw in mm" in told(history_figure(replace(result, steps=steps)))
+
+
+def test_single_step_without_fields_leaves_the_maps():
+    alone = made_up(steps=1)
+    assert list(figures_for(alone)) == ["grasp.png", "grasp_maps.png", "views.png", "views_pressure.png"]
+    assert "time in s" not in told(grasp_figure(alone))
+    assert figures_for(replace(alone, steps=())) == {}
+
+
+def test_failed_run_is_marked():
+    assert "FAILED" in told(grasp_figure(made_up(status=Status.FAILED)))
+
+
+def test_overview_comes_first_and_the_view_last(frame):
+    drawings = figures_for(made_up(frame=frame))
+    names = [
+        "grasp.png",
+        "grasp_maps.png",
+        "grasp_section.png",
+        "grasp_history.png",
+        "views.png",
+        "views_pressure.png",
+        "grasp_view.png",
+    ]
+    assert list(drawings) == names
+    assert drawings["grasp_history.png"]().startswith(b"\x89PNG")
+
+
+def test_camera_projects_to_pixels():
+    camera = off_screen.Camera((0.0, 0.0, 0.0), (0.0, -1.0, 0.0), 2.0, (200, 100))
+    np.testing.assert_allclose(camera.project(np.array([[0, 0, 0], [1, 5, 0], [0, 5, 1]])), [[100, 50], [125, 50], [100, 25]])
+
+
+def test_view_shows_the_scene_where_the_camera_puts_it():
+    corners = np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1]])
+    camera = off_screen.Camera((0.0, 0.0, 0.0), (0.0, -1.0, 0.0), 2.0, (200, 100))
+    surface = off_screen.Surface(corners, np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]]))
+    try:
+        (content,) = off_screen.pictures([surface], [camera])
+    except TactsimError as error:
+        pytest.skip(str(error))
+    red = imread(io.BytesIO(content))[:, :, 1] < 0.5
+    y, x = np.nonzero(red)
+    assert red.sum() == pytest.approx(25**2 * 2, rel=0.05)
+    np.testing.assert_allclose([x.min(), x.max(), y.min(), y.max()], [75, 125, 25, 75], atol=1.5)
+
+
+def test_machine_that_cannot_render_says_why(monkeypatch, frame):
+    monkeypatch.setattr(off_screen, "run_child", lambda *arguments, **options: Ended(-6, "WARN| libOSMesa not found."))
+    drawing = figures_for(made_up(frame=frame))[grasp_view.VIEW]
+    with pytest.raises(TactsimError, match=r"grasp_view\.png is left out.*libOSMesa not found"):
+        drawing()
+
+
+def test_view_names_what_it_shows(monkeypatch, frame):
+    blank = io.BytesIO()
+    imsave(blank, np.ones((4, 4, 3)))
+    seen = []
+
+    def drawn(surfaces, cameras):
+        seen.append((surfaces, cameras))
+        return [blank.getvalue()] * len(cameras)
+
+    monkeypatch.setattr(grasp_view, "pictures", drawn)
+    words = told(grasp_view.view_figure(made_up(frame=frame)))
+    for expected in ("upper jaw", "lower jaw", "sphere 1", "each jaw closed by 1 mm", "kPa"):
+        assert expected in words
+    (surfaces, cameras) = seen[0]
+    for camera in cameras:
+        places = camera.project(np.concatenate([surface.points for surface in surfaces]))
+        assert (places > 0).all()
+        assert (places < camera.pixels).all()

@@ -1,0 +1,35 @@
+"""Where Newton starts a grasp from."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tactsim.experiments.grasp.path import GraspedBlock
+
+CLOSING = 1e-3
+
+
+class Model:
+    """Remembers what it is asked to start from; its uniform compression is one everywhere."""
+
+    space, body = None, SimpleNamespace(pattern=None)
+
+    def __init__(self, *facets):
+        self.facets = dict.fromkeys(facets)
+
+    def compressed(self, closing):
+        return np.ones(4)
+
+    def equilibrium(self, now, closing, guess, **settings):
+        return guess
+
+
+@pytest.mark.parametrize(("facets", "first"), [(("upper", "lower"), 1.0), (("upper", "lower", "lumen:1"), 0.0)])
+def test_a_hollow_tube_is_not_squeezed_by_the_first_guess(facets, first):
+    experiment = SimpleNamespace(softness=5e-5, loading=SimpleNamespace(control="displacement"), lumens=())
+    rest = SimpleNamespace(load=0.0, unknowns=np.zeros(4))
+    found = GraspedBlock(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
+    assert (found == first).all()

@@ -1,0 +1,82 @@
+"""A grasp that ends in voltages, and the same from its stored result."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
+from tactsim.plotting.result_figures import figures_for
+from tactsim.results import Status
+from tactsim.results.writing import write_result
+from tactsim.sensors.matrix_readout import MatrixReadout
+
+READOUT = MatrixReadout(seed=4)
+
+
+@pytest.fixture(scope="module")
+def read_grasp():
+    return Grasp.example().model_copy(update={"readout": READOUT}).run(lambda step: None)
+
+
+def value(result, name):
+    return np.asarray(result.quantities[name].value)
+
+
+def test_a_grasp_with_a_readout_has_the_voltages_of_18_sensors_over_time(read_grasp):
+    time, voltage = value(read_grasp, "readout_time"), value(read_grasp, "voltage_upper_history")
+    assert time[0] == 0
+    assert time[-1] == pytest.approx(1.0)
+    assert voltage.shape == (len(time), 3, 3)
+    assert np.all(voltage[0] == 0)
+    assert np.all(np.diff(voltage, axis=0) > -1e-6)
+    np.testing.assert_array_equal(voltage[-1], value(read_grasp, "voltage_upper"))
+    error = value(read_grasp, "read_force_upper") - value(read_grasp, "taxel_force_upper")
+    assert np.abs(error).max() <= float(value(read_grasp, "read_force_largest_error"))
+    assert any("calibration by the film's own line" in told for told in read_grasp.assumptions)
+    assert "taxel_voltages.png" in figures_for(read_grasp)
+
+
+def test_without_a_readout_a_grasp_ends_at_the_forces():
+    result = Grasp.example().run(lambda step: None)
+    assert "voltage_upper" not in result.quantities
+    assert "taxel_voltages.png" not in figures_for(result)
+
+
+def test_a_readout_that_fails_does_not_lose_the_grasp():
+    fast = MatrixReadout(chain={"sampling_rate": 200e3, "low_pass": None})
+    result = Grasp.example().model_copy(update={"readout": fast}).run(lambda step: None)
+    assert result.status is Status.CONVERGED
+    assert "taxel_force_upper" in result.quantities
+    assert "voltage_upper" not in result.quantities
+    assert any("no voltages" in words and "lower sampling_rate" in words for words in result.warnings)
+
+
+def test_an_incomplete_grasp_is_refused(read_grasp, tmp_path):
+    write_result(replace(read_grasp, details={}), tmp_path / "grasp", case_id="0" * 16, provenance={})
+    with pytest.raises(StorageError, match="not a complete result of a grasp"):
+        MatrixReadoutRun(grasp=str(tmp_path / "grasp")).run(lambda step: None)
+
+
+def test_a_stored_grasp_is_read_alike(read_grasp, tmp_path):
+    folder = tmp_path / "grasp"
+    write_result(read_grasp, folder, case_id="0" * 16, provenance={})
+    again = MatrixReadoutRun(grasp=str(folder), readout=READOUT).run(lambda step: None)
+    assert again.status is Status.CONVERGED
+    for name in ("voltage_lower_history", "read_force_upper"):
+        np.testing.assert_allclose(value(again, name), value(read_grasp, name), rtol=1e-9, atol=1e-12)
+    other = MatrixReadoutRun(grasp=str(folder), readout=MatrixReadout(seed=4, scatter=None)).run(lambda step: None)
+    assert np.abs(value(other, "voltage_upper") - value(read_grasp, "voltage_upper")).max() > 1e-4
+    assert figures_for(again)["taxel_voltages.png"]()[:4] == b"\x89PNG"
+
+
+def test_a_folder_without_a_grasp_is_refused(tmp_path):
+    with pytest.raises(StorageError):
+        MatrixReadoutRun(grasp=str(tmp_path / "none")).run(lambda step: None)
+    from tactsim.experiments.film.film_test import FilmTest
+
+    write_result(FilmTest.example().run(lambda step: None), tmp_path / "film", case_id="0" * 16, provenance={})
+    with pytest.raises(InputError, match="needed: a grasp"):
+        MatrixReadoutRun(grasp=str(tmp_path / "film")).run(lambda step: None)

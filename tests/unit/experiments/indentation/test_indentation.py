@@ -1,0 +1,152 @@
+"""What an indentation accepts, how it goes past the touch, and what it keeps when the mesh is refined or the user stops it."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.sphere import Sphere
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.path import indentation_path
+from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.specimen import Layer, Specimen
+
+SOFT = NeoHookean(c10=1000.0)
+COARSE = MeshSettings(finest=0.15e-3, growth=0.8)
+
+
+def thin(**changes):
+    specimen = changes.pop("specimen", {})
+    given = {
+        "specimen": Specimen(**({"material": SOFT, "thickness": 3e-3, "radius": 7e-3} | specimen)),
+        "body": Annulus(fillet=0.4e-3),
+        "recess": 0.2e-3,
+        "displacement": 0.6e-3,
+        "mesh": COARSE,
+    }
+    return Indentation(**(given | changes))
+
+
+def run(**changes):
+    return thin(**changes).run(lambda step: None)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return run()
+
+
+def test_threshold_quantities(plain):
+    values = {name: quantity.value for name, quantity in plain.quantities.items()}
+    assert plain.status == "converged"
+    assert values["tissue_rise"] == pytest.approx(0.2e-3, rel=1e-4)
+    assert values["threshold_pressure"] == pytest.approx(values["threshold_force"] / (np.pi * (3e-3**2 - 1.5e-3**2)))
+    assert values["threshold_displacement"] == values["displacement"] < 0.6e-3
+    assert any("fillet" in text for text in plain.assumptions)
+    assert {name for step in plain.steps for name in step.values} <= set(plain.units)
+
+
+def test_run_goes_past_the_touch_with_both_sensors_loaded(plain):
+    beyond = run(stop="displacement")
+    last = beyond.steps[-1].values
+    assert beyond.status == "converged"
+    assert last["displacement"] == pytest.approx(0.6e-3)
+    assert last["sensor_force"] > 0
+    assert last["reaction_force"] + last["sensor_force"] == pytest.approx(last["base_force"], rel=1e-8)
+    assert last["tissue_rise"] < 0.2e-3 + 4e-7, "the sensor holds the tissue back"
+    assert beyond.quantities["threshold_force"].value == pytest.approx(plain.quantities["threshold_force"].value, rel=1e-9)
+
+
+def test_stopped_before_the_threshold_is_a_failure():
+    result = run(displacement=0.1e-3)
+    assert result.status == "failed"
+    assert "not reached" in result.reason
+    assert "threshold_pressure" not in result.quantities
+
+
+def test_convex_tissue_starts_with_a_rise_and_concave_with_none():
+    curved = {"surface_radius": 12e-3}
+    convex = run(specimen={"surface": "convex", **curved}, displacement=0.5e-3)
+    sag = 12e-3 - np.sqrt(12e-3**2 - np.array([1.5e-3, 1.9e-3]) ** 2)
+    assert sag[0] < convex.steps[0].values["tissue_rise_axis"] < sag[1], "the fillet meets the surface between the two radii"
+    concave = run(specimen={"surface": "concave", **curved}, displacement=0.05e-3, stop="displacement")
+    assert concave.steps[0].values["tissue_rise_axis"] < 0
+
+
+def test_hard_skin_raises_the_threshold_and_slipping_base_lowers_it(plain):
+    pressure = plain.quantities["threshold_pressure"].value
+    skin = run(specimen={"layers": (Layer(thickness=0.5e-3, material=NeoHookean(c10=10e3)),)})
+    assert skin.quantities["threshold_pressure"].value > 1.5 * pressure
+    slipping = run(specimen={"base": "slipping"})
+    assert slipping.quantities["threshold_pressure"].value != pytest.approx(pressure, rel=0.01)
+
+
+def test_same_case_same_numbers(plain):
+    again = run()
+    for name, quantity in plain.quantities.items():
+        assert again.quantities[name].value == pytest.approx(quantity.value, rel=1e-10), name
+
+
+def test_refined_state_is_the_same_state():
+    experiment = thin(contact=Coulomb(friction=0.0))
+    model = experiment.model()
+    record = IndentationRecord(experiment, model, time.perf_counter())
+    states = [state for state, _ in indentation_path(experiment, model, record)]
+    state, marked = states[-1], np.arange(0, len(model.mesh.elements), 4)
+    finer, same, _ = model.refined(state, marked)
+    assert len(finer.mesh.elements) > len(model.mesh.elements)
+    np.testing.assert_allclose(finer.base_force(same.unknowns), model.base_force(state.unknowns), rtol=0.02)
+    assert finer.highest(same.unknowns, 1.5e-3) == pytest.approx(model.highest(state.unknowns, 1.5e-3), abs=1e-15)
+    solved = finer.advance(same, same.load, same.unknowns)
+    assert finer.base_force(solved.unknowns)[1] == pytest.approx(model.base_force(state.unknowns)[1], rel=0.02)
+
+
+def test_interruption_keeps_what_was_accepted():
+    def stop_at_three(step):
+        if step.step == 3:
+            raise KeyboardInterrupt
+
+    result = thin().run(stop_at_three)
+    assert result.status == "interrupted"
+    assert len(result.steps) == 3
+    assert result.frames
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"specimen": {"radius": 2.9e-3}}, "wider specimen"),
+        ({"displacement": 3e-3}, "smaller than the specimen's thickness"),
+        ({"recess": None}, "needs the recess"),
+        ({"recess": 3.1e-3, "displacement": 1e-3}, "recess must be smaller"),
+        ({"body": Sphere(radius=2e-3)}, "only an annulus has a recess"),
+        ({"mesh": MeshSettings(finest=1e-3)}, "too coarse"),
+        ({"specimen": {"thickness": 1e4}}, "units wrong"),
+        ({"specimen": {"surface": "convex", "surface_radius": 12e-3}, "recess": 0.05e-3}, "before it touches the annulus"),
+    ],
+)
+def test_impossible_experiments_are_refused(changes, words):
+    with pytest.raises(ValidationError, match=words):
+        thin(**changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"layers": (Layer(thickness=3e-3, material=SOFT),)}, "leave nothing"),
+        ({"surface": "convex"}, "surface_radius belongs"),
+        ({"surface_radius": 1.0}, "surface_radius belongs"),
+        ({"surface": "convex", "surface_radius": 6e-3}, "at least the specimen's radius"),
+        ({"surface": "concave", "surface_radius": 7e-3, "radius": 7e-3}, "as deep as"),
+    ],
+)
+def test_impossible_specimens_are_refused(changes, words):
+    with pytest.raises(ValidationError, match=words):
+        Specimen(**({"material": SOFT, "thickness": 3e-3, "radius": 7e-3} | changes))

@@ -1,0 +1,64 @@
+"""The figure of an indentation, for every way a run can end, drawn from memory and from disk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from tactsim.experiments.indentation.figures.indentation import indentation_figure
+from tactsim.plotting import figures_for
+from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+
+
+def made_up(status=Status.CONVERGED):
+    points = np.array([[0, 0, 0], [4, 0, 0], [0, -4, 0], [2, 0, 0], [2, -2, 0], [0, -2, 0]]) * 1e-3
+    elements = np.array([[0, 2, 1, 5, 4, 3]])
+    fields = {"displacement [m]": np.zeros((6, 3)), "pressure [Pa]": np.linspace(-1e3, 9e3, 6)}
+    frame = FieldFrame(1e-3, points, {"triangle6": elements}, fields)
+    steps = tuple(
+        StepRecord(k, 5, 1e-12, {"displacement": 1e-4 * k, "reaction_force": 0.1 * k**2, "tissue_rise": 5e-5 * k})
+        for k in range(1, 5)
+    )
+    quantities = {
+        "threshold_displacement": Quantity(4e-4, "m", ""),
+        "threshold_force": Quantity(1.6, "N", ""),
+        "threshold_pressure": Quantity(75450.0, "Pa", ""),
+    }
+    details = {"body": {"kind": "annulus"}, "recess": 2e-4, "starting_height": 0.0, "title": "A title"}
+    return Result("indentation", status, "because", quantities, steps=steps, frames=(frame,), details=details)
+
+
+def texts(figure):
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_threshold_and_title_are_told():
+    told = texts(indentation_figure(made_up()))
+    for words in ("A title", "threshold", "75.45 kPa", "1.6 N", "pressure in kPa", "displacement in"):
+        assert words in told
+    assert "FAILED" not in told
+
+
+@pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
+def test_a_run_that_did_not_end_well_is_marked(status):
+    told = texts(indentation_figure(replace(made_up(status), quantities={})))
+    assert f"{status.upper()} after a displacement" in told
+    assert "because" in told
+
+
+def test_rise_reaches_the_recess_on_its_own_axis():
+    figure = indentation_figure(made_up())
+    rise = next(axis for axis in figure.axes if "rise" in axis.get_ylabel())
+    np.testing.assert_allclose(rise.lines[0].get_ydata()[-1], 0.2)
+    assert 0.2 < rise.get_ylim()[1] < 0.3
+
+
+def test_png_by_name_and_nothing_without_steps():
+    drawings = figures_for(made_up())
+    assert list(drawings) == ["indentation.png"]
+    assert drawings["indentation.png"]().startswith(b"\x89PNG")
+    assert figures_for(replace(made_up(), steps=())) == {}
+    assert figures_for(replace(made_up(), kind="unheard_of")) == {}

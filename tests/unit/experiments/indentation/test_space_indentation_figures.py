@@ -1,0 +1,80 @@
+"""The figure of an indentation in space: the cut through the tissue, for every part that is computed and every way to end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.tilted import Tilted
+from tactsim.experiments.indentation.figures.indentation_3d import space_indentation_figure
+from tactsim.experiments.indentation.figures.section import Section
+from tactsim.experiments.indentation.figures.section_3d import cut
+from tactsim.mesh.axisymmetric import section_mesh
+from tactsim.mesh.revolved import swept
+from tactsim.plotting import figures_for
+from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+
+SECTION = section_mesh(8e-3, (0.0, -4e-3), lambda points: np.full(len(points), 2e-3))
+TURNS = {"quarter": np.pi / 2, "half": np.pi, "whole": 2 * np.pi}
+
+
+def made_up(symmetry="half", status=Status.CONVERGED):
+    mesh = swept(SECTION, round(TURNS[symmetry] / np.pi * 4), TURNS[symmetry]).mesh
+    fields = {"displacement [m]": 0.01 * mesh.nodes, "pressure [Pa]": 1e3 * np.arange(len(mesh.nodes)) / len(mesh.nodes)}
+    frame = FieldFrame(4e-4, mesh.nodes, {"tetra10": mesh.elements}, fields, {"region [1]": mesh.regions.astype(float)})
+    steps = tuple(
+        StepRecord(k, 5, 1e-12, {"displacement": 1e-4 * k, "reaction_force": 0.1 * k**2, "tissue_rise": 5e-5 * k})
+        for k in range(1, 5)
+    )
+    body = Tilted(body=Annulus(), tilt_y=0.0 if symmetry == "quarter" else 0.05)
+    details = {
+        "body": body.model_dump(mode="json"),
+        "symmetry": symmetry,
+        "starting_height": 0.0,
+        "recess": 8e-4,
+        "title": "A title",
+    }
+    quantities = {"pressure_around": Quantity([1e4, 2e4, 2e4, 1e4, 5e3, 4e3, 4e3, 5e3], "Pa", "")}
+    return Result("indentation_3d", status, "because", quantities, steps=steps, frames=(frame,), details=details)
+
+
+@pytest.mark.parametrize(("symmetry", "sections"), [("quarter", 1), ("half", 2), ("whole", 2)])
+def test_cut_is_the_section_once_on_each_side_that_is_computed(symmetry, sections):
+    found = cut(made_up(symmetry).frames[-1])
+    assert len(found.cells["triangle6"]) == sections * len(SECTION.elements)
+    corners = found.points[found.cells["triangle6"][:, :3], :2]
+    sides = corners[:, 1:] - corners[:, :1]
+    area = np.abs(np.linalg.det(sides)).sum() / 2
+    assert area == pytest.approx(sections * 8e-3 * 4e-3, rel=1e-12)
+    assert area != pytest.approx((3 - sections) * 8e-3 * 4e-3, rel=0.1)
+    edges, outline = Section(found).edges()
+    middles = found.points[edges[:, 1]]
+    np.testing.assert_allclose(middles, found.points[edges[:, [0, 2]]].mean(axis=1), atol=1e-15)
+    assert outline.any()
+
+
+@pytest.mark.parametrize("symmetry", list(TURNS))
+def test_figure_tells_what_is_seen(symmetry):
+    told = " ".join(text.get_text() for text in space_indentation_figure(made_up(symmetry)).findobj(Text))
+    for words in ("A title", "cut y = 0", "pressure in", "inner sensor", "displacement in"):
+        assert words in told
+    assert ("sectors of the annulus" in told) == (symmetry != "quarter")
+
+
+def test_failed_run_is_marked_and_fields_may_be_missing():
+    failed = made_up(status=Status.FAILED)
+    told = " ".join(text.get_text() for text in space_indentation_figure(replace(failed, frames=())).findobj(Text))
+    assert "FAILED" in told
+    assert "because" in told
+    assert "cut" not in told
+
+
+def test_drawings_are_png_and_none_without_steps():
+    drawings = figures_for(made_up())
+    assert list(drawings) == ["indentation_3d.png"]
+    assert drawings["indentation_3d.png"]().startswith(b"\x89PNG")
+    assert figures_for(replace(made_up(), steps=())) == {}

@@ -1,0 +1,150 @@
+"""What a timed indentation accepts, and how it follows force, displacement, relaxation, the touch and unloading."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.sphere import Sphere
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
+from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
+from tactsim.mechanics.specimen import Layer, Specimen
+from tactsim.plotting import figures_for
+from tactsim.relaxation import Relaxation
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+FADING = Relaxation(fractions=(0.4, 0.2), times=(0.1, 2.0))
+TISSUE = NeoHookean(c10=1000.0, relaxation=FADING)
+ELASTIC = NeoHookean(c10=1000.0)
+COARSE = MeshSettings(finest=0.15e-3, growth=0.8)
+JUMP = {"kind": "jump", "to": 0.1e-3, "duration": 10.0}
+SINE = {"kind": "sine", "amplitude": 0.1, "frequency": 1.0, "duration": 1.0}
+
+
+def displaced(*pieces):
+    return DisplacementLoading.model_validate({"control": "displacement", "pieces": list(pieces)})
+
+
+def forced(*pieces):
+    return ForceLoading.model_validate({"control": "force", "pieces": list(pieces)})
+
+
+def thin(**changes):
+    material = changes.pop("material", TISSUE)
+    given = {
+        "specimen": Specimen(material=material, thickness=3e-3, radius=7e-3),
+        "body": Annulus(fillet=0.4e-3),
+        "contact": Coulomb(friction=0.0),
+        "loading": displaced(JUMP),
+        "mesh": COARSE,
+        "time": TimeSettings(tolerance=5e-3, per_decade=1),
+    }
+    return TimedIndentation(**(given | changes))
+
+
+def history(result, name):
+    assert result.status == "converged", result.reason
+    return np.array([step.values[name] for step in result.steps])
+
+
+def fading(times):
+    equilibrium, parts, tau = FADING.amplitudes
+    return equilibrium + np.exp(-np.asarray(times)[:, None] / tau) @ parts
+
+
+def test_a_held_displacement_relaxes_by_the_series():
+    result = thin(contact=Coulomb(friction=0.4)).run(lambda step: None)
+    force, times = history(result, "reaction_force"), history(result, "time")
+    np.testing.assert_allclose(force / force[0], fading(times), rtol=2e-3, err_msg="the penetration follows the pressure")
+    assert not np.allclose(force / force[0], fading(times) ** 1.05, rtol=2e-3)
+    assert history(result, "base_force") == pytest.approx(force, rel=1e-7)
+    assert times[-1] == 10.0
+
+
+def test_a_held_force_creeps():
+    result = thin(loading=forced({"kind": "jump", "to": 0.05, "duration": 100.0})).run(lambda step: None)
+    force, depth = history(result, "reaction_force"), history(result, "displacement")
+    np.testing.assert_allclose(force, 0.05, rtol=1e-8)
+    assert (np.diff(depth) > -5e-3 * depth.max()).all(), "up to the tolerance in time"
+    elastic = thin(material=ELASTIC, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run(lambda step: None)
+    slow = NeoHookean(c10=1000.0 * FADING.amplitudes[0])
+    relaxed = thin(material=slow, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run(lambda step: None)
+    assert depth[0] == pytest.approx(history(elastic, "displacement")[-1], rel=1e-3)
+    assert depth[-1] == pytest.approx(history(relaxed, "displacement")[-1], rel=2e-3)
+
+
+def test_a_cycle_dissipates_and_the_contact_opens_before_the_body_is_back():
+    ramps = ({"kind": "ramp", "to": 0.1e-3, "duration": 0.2}, {"kind": "ramp", "to": 0.0, "duration": 0.2})
+    result = thin(loading=displaced(*ramps, {"kind": "hold", "duration": 0.1})).run(lambda step: None)
+    force, depth = history(result, "reaction_force"), history(result, "displacement")
+    work = np.trapezoid(force, depth)
+    assert work > 0.05 * force.max() * depth.max()
+    assert force[-1] == pytest.approx(0.0, abs=1e-9)
+    opened = depth[np.argmax((force <= 0) & (history(result, "time") > 0.2))]
+    assert 0.0 < opened < 0.1e-3
+    elastic = thin(material=ELASTIC, loading=displaced(*ramps)).run(lambda step: None)
+    loop = np.trapezoid(history(elastic, "reaction_force"), history(elastic, "displacement"))
+    assert abs(loop) < 0.02 * force.max() * depth.max(), "the trapezoidal rule on twenty steps each way"
+
+
+def test_the_touch_is_located_in_time():
+    loading = displaced({"kind": "ramp", "to": 0.6e-3, "duration": 1.0})
+    result = thin(loading=loading, recess=0.1e-3, stop="touch").run(lambda step: None)
+    assert history(result, "tissue_rise")[-1] == pytest.approx(0.1e-3, rel=1e-4)
+    assert 0 < result.quantities["time_of_touch"].value < 1.0
+    short = thin(loading=displaced(JUMP), recess=2e-3, stop="touch").run(lambda step: None)
+    assert (short.status, short.reason) == ("failed", "the tissue did not touch the inner sensor within the history")
+    beyond = thin(loading=loading, recess=0.05e-3).run(lambda step: None)
+    assert any("rose beyond the recess" in warning for warning in beyond.warnings)
+
+
+def test_one_relaxing_layer_is_enough():
+    specimen = Specimen(material=ELASTIC, thickness=3e-3, radius=7e-3, layers=(Layer(thickness=1e-3, material=TISSUE),))
+    force = history(thin(specimen=specimen).run(lambda step: None), "reaction_force")
+    whole = history(thin().run(lambda step: None), "reaction_force")
+    assert whole[-1] / whole[0] < force[-1] / force[0] < 1
+
+
+def test_elastic_tissue_has_no_memory_and_a_figure():
+    result = thin(material=ELASTIC, compare="layer").run(lambda step: None)
+    assert np.ptp(history(result, "reaction_force")) < 1e-6 * history(result, "reaction_force")[0]
+    assert abs(result.quantities["closed_form_difference"].value) < 0.5, "a fillet of an eighth of the radius costs force"
+    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(result).values())
+    assert any("closed form is meant for" in warning for warning in result.warnings)
+
+
+def test_an_interruption_keeps_the_steps():
+    def stop(step):
+        if step.step == 2:
+            raise KeyboardInterrupt
+
+    result = thin().run(stop)
+    assert (result.status, len(result.steps)) == ("interrupted", 2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"loading": forced(JUMP | {"to": 0.1}, {"kind": "sine", "amplitude": 0.1, "frequency": 1.0, "duration": 1.0})},
+            "preload",
+        ),
+        ({"loading": forced({"kind": "ramp", "to": -1.0, "duration": 1.0})}, "must press all the time"),
+        ({"loading": displaced(JUMP | {"to": 4e-3})}, "smaller than the specimen's thickness"),
+        ({"compare": "layer", "body": Sphere(radius=2e-3)}, "not for a sphere"),
+        ({"compare": "layer", "material": NeoHookean(c10=1e3, bulk_modulus=1e6)}, "incompressible"),
+        ({"loading": displaced({"kind": "hold", "duration": 1.0})}, "never becomes positive"),
+        ({"loading": displaced(JUMP | {"to": -1e-4})}, "never becomes positive"),
+        ({"stop": "touch"}, "needs the recess"),
+        ({"body": Sphere(radius=2e-3), "recess": 1e-4}, "only an annulus has a recess"),
+    ],
+)
+def test_impossible_experiments_are_refused(changes, words):
+    with pytest.raises(ValidationError, match=words):
+        thin(**changes)

@@ -1,0 +1,73 @@
+"""Stored grasps, made up, counted by their true and their estimated class."""
+
+import numpy as np
+import pytest
+
+from tactsim.contact.jaw import Jaw
+from tactsim.errors import InputError
+from tactsim.experiments.localization.confusion import Confusion
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.plotting.result_figures import figures_for
+from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results.writing import write_result
+
+SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
+PLAIN = np.full((2, 3, 3), 0.25)
+LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
+
+
+def stored(folder, forces, inclusions):
+    layout = TaxelLayout()
+    found = {"displacement": Quantity(1e-3, "m", "")}
+    for jaw, side in enumerate(("upper", "lower")):
+        found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
+    details = {
+        "block_size": [40e-3, 40e-3, 20e-3],
+        "inclusions": [shape.model_dump(mode="json") for shape in inclusions],
+        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
+        "jaw_places": {"upper": [20e-3, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
+        "matrix": layout.model_dump(mode="json"),
+    }
+    step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})
+    result = Result("grasp", Status.CONVERGED, "", found, steps=(step,), units={"displacement": "m"}, details=details)
+    return str(write_result(result, folder, case_id="0" * 16, provenance={}))
+
+
+@pytest.fixture
+def folders(tmp_path):
+    return {
+        "plain": stored(tmp_path / "plain", PLAIN, ()),
+        "lump": stored(tmp_path / "lump", LUMP, (SPHERE,)),
+        "hidden": stored(tmp_path / "hidden", PLAIN, (SPHERE,)),
+        "both": stored(tmp_path / "both", LUMP, (SPHERE, Tube.example())),
+    }
+
+
+def run(folders, *names, **changes):
+    given = {"noise": 1e-3, "draws": 3, "estimator": ThesisEstimator(background="reference")} | changes
+    experiment = Confusion(grasps=tuple(folders[name] for name in names), reference=folders["plain"], **given)
+    return experiment.run(lambda step: None)
+
+
+def test_classes_are_counted(folders):
+    result = run(folders, "plain", "lump", "hidden")
+    counts = np.array(result.quantities["confusion"].value)
+    assert counts[0, 0] == 3
+    assert counts[1].tolist() == [3, 3, 0, 0, 0]
+    assert counts.sum() == 9
+    assert result.quantities["share_right"].value == pytest.approx(6 / 9)
+    assert result.quantities["recalls"].value == [1.0, 0.5, None, None, None]
+    assert figures_for(result)["confusion.png"]()[:4] == b"\x89PNG"
+    assert str(folders["lump"]) not in str(result.details)
+
+
+def test_much_noise_hides_the_lump(folders):
+    assert run(folders, "lump", noise=1.0).quantities["share_right"].value < 1
+
+
+def test_a_lump_beside_an_artery_has_no_class(folders):
+    with pytest.raises(InputError, match=r"both has sphere, tube; allowed"):
+        run(folders, "both")

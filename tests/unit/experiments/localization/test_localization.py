@@ -1,0 +1,197 @@
+"""A stored grasp, made up or damaged, and what is found in it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.case.loading import load_case
+from tactsim.contact.jaw import Jaw
+from tactsim.errors import CaseError, InputError, StorageError
+from tactsim.experiments.localization.figures.parts import outline, viewed
+from tactsim.experiments.localization.figures.views import VIEWS, views_figure
+from tactsim.experiments.localization.localization import Localization
+from tactsim.experiments.localization.source import true_places
+from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.plotting.result_figures import figures_for
+from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results.writing import write_result
+
+SIZE = np.array([40e-3, 40e-3, 20e-3])
+SPHERE = Sphere(center=(28e-3, 14e-3, 12e-3), radius=5e-3)
+PLAIN = np.full((2, 3, 3), 0.25)
+BALL = np.array(
+    [
+        [[0.0034, 0.0318, 0.369], [0.0028, 0.021, 0.1399], [0.004, 0.0033, 0.0029]],
+        [[0.0039, 0.0714, 0.234], [0.0029, 0.0621, 0.1505], [0.0027, 0.0048, 0.0073]],
+    ]
+)
+"""Coarse finite elements: what a hard ball there adds to plain ICF, in N."""
+ESTIMATOR = ThesisEstimator(background="reference")
+
+
+def grasp(forces, *, closing=1e-3, inclusions=(SPHERE,), apart=0.0, layout=None, extra=None):
+    layout = layout or TaxelLayout()
+    found = {"displacement": Quantity(closing, "m", "")}
+    for jaw, side in enumerate(("upper", "lower")):
+        found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
+        found[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
+    details = {
+        "block_size": SIZE.tolist(),
+        "inclusions": [shape.model_dump(mode="json") for shape in inclusions],
+        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
+        "jaw_places": {"upper": [20e-3 + apart, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
+        "matrix": layout.model_dump(mode="json"),
+    }
+    step = StepRecord(1, 3, 0.0, {"displacement": closing})
+    return Result(
+        "grasp", Status.CONVERGED, "made up", found | (extra or {}), steps=(step,), units={"displacement": "m"}, details=details
+    )
+
+
+def stored(folder, result):
+    write_result(result, folder, case_id="0" * 16, provenance={})
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    root = tmp_path_factory.mktemp("grasps")
+    return stored(root / "ball", grasp(PLAIN + BALL)), stored(root / "plain", grasp(PLAIN))
+
+
+def run(folders, **changes):
+    given = {"grasp": folders[0], "reference": folders[1], "noise": 1e-3, "estimator": ESTIMATOR} | changes
+    return Localization(**given).run(lambda step: None)
+
+
+def value(result, name):
+    return np.asarray(result.quantities[name].value)
+
+
+def test_a_stored_ball_is_found_and_the_errors_told(folders):
+    result = run(folders)
+    assert value(result, "present") == 1
+    assert np.abs(value(result, "estimated_center") - SPHERE.center).max() < 1e-3
+    away = value(result, "estimated_center") - SPHERE.center
+    assert value(result, "lateral_error") == pytest.approx(np.hypot(*away[:2]))
+    assert value(result, "depth_error") == pytest.approx(away[2])
+    np.testing.assert_allclose(value(result, "true_center"), SPHERE.center)
+    np.testing.assert_allclose(value(result, "taxel_difference_upper"), BALL[0], atol=1e-12)
+    printed = run(folders, estimator=ESTIMATOR.model_copy(update={"form": "as_printed"}))
+    assert abs(value(printed, "depth_error")) > 5 * abs(value(result, "depth_error"))
+
+
+def test_plain_tissue_has_nothing_in_it(folders):
+    result = run(folders, grasp=folders[1])
+    assert value(result, "present") == 0
+    assert "estimated_center" not in result.quantities
+    assert "nothing there" in result.reason
+    assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
+
+
+def test_the_views_show_the_true_and_the_estimated_place(folders):
+    result = run(folders)
+    grasp_seen = viewed(result)
+    np.testing.assert_allclose(grasp_seen.signal, BALL, atol=1e-12)
+    np.testing.assert_allclose(grasp_seen.estimates[0], value(result, "estimated_center"))
+    first, second, distance = outline(grasp_seen.true[0], SIZE, away=1)
+    row, column = np.unravel_index(distance.argmin(), distance.shape)
+    np.testing.assert_allclose([first[column], second[row]], [28, 12], atol=0.2)
+    within = 1e3 * np.array([SPHERE.center[0], SPHERE.center[2]])
+    covered = np.hypot(first[None] - within[0], second[:, None] - within[1]) < 4.9
+    assert (distance[covered] < 0).all()
+    figure = views_figure(result)
+    titles = [axis.get_title(loc="left") for axis in figure.axes]
+    assert sum("view" in title for title in titles) == 3
+    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))
+    image = front.images[0]
+    assert image.get_extent() == pytest.approx([10 - 10 / 99, 30 + 10 / 99, 0, 20])
+    row, column = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
+    assert column > 70
+    assert row < 30
+
+
+@pytest.mark.parametrize("layout", [TaxelLayout(rows=1, columns=1), TaxelLayout(rows=2, columns=9, pitch=4e-3, size=4e-3)])
+def test_every_matrix_has_views(layout):
+    forces = np.ones((2, layout.rows, layout.columns))
+    result = grasp(forces, layout=layout, inclusions=(Tube.example(),))
+    assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
+
+
+def test_dead_taxels_are_interpolated_and_told(folders):
+    result = run(folders, dead=(("upper", 2, 2), ("lower", 3, 1)))
+    assert value(result, "present") == 1
+    assert any("neighbours: 2" in words for words in result.warnings)
+    assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
+    with pytest.raises(InputError, match="dead: taxel upper, 4, 1 of a matrix of 3 rows"):
+        run(folders, dead=(("upper", 4, 1),))
+
+
+def test_saturated_taxels_of_read_forces_are_not_trusted(folders, tmp_path):
+    with pytest.raises(InputError, match="has no read_force"):
+        run(folders, readings="read_force")
+    spoiled = PLAIN + BALL
+    spoiled[0, 0, 2] = 9.0
+    extra = {}
+    for jaw, side in enumerate(("upper", "lower")):
+        share = np.zeros((3, 3))
+        share[0, 2] = 0.4 * (jaw == 0)
+        extra[f"read_force_{side}"] = Quantity(spoiled[jaw].tolist(), "N", "")
+        extra[f"saturated_{side}"] = Quantity(share.tolist(), "1", "")
+    read = stored(tmp_path / "read", grasp(PLAIN + BALL, extra=extra))
+    result = run(folders, grasp=read, reference=None, readings="read_force", estimator=ThesisEstimator())
+    assert value(result, "taxel_force_upper")[0, 2] < 1
+    assert any("neighbours: 1" in words for words in result.warnings)
+
+
+def test_what_does_not_fit_is_refused(folders, tmp_path):
+    other = stored(tmp_path / "closing", grasp(PLAIN, closing=0.9e-3))
+    with pytest.raises(InputError, match="closed by 1 mm, those of the reference by 900 µm"):
+        run(folders, reference=other)
+    finer = TaxelLayout(pitch=9e-3, size=8e-3)
+    with pytest.raises(InputError, match="another matrix"):
+        run(folders, reference=stored(tmp_path / "layout", grasp(PLAIN, layout=finer)))
+    apart = stored(tmp_path / "apart", grasp(PLAIN, apart=6e-3))
+    with pytest.raises(InputError, match="6 mm apart sideways"):
+        run(folders, grasp=apart)
+    with pytest.raises(InputError, match="needs readings of the tissue without a lump"):
+        run(folders, reference=None)
+    with pytest.raises(StorageError):
+        run(folders, grasp=str(tmp_path / "none"))
+    nothing = Result("closed_form", Status.CONVERGED, "", {}, steps=(), units={})
+    with pytest.raises(InputError, match="needed: a grasp or a matrix_readout"):
+        run(folders, grasp=stored(tmp_path / "other", nothing))
+
+
+def test_an_artery_is_as_near_as_its_centre_line():
+    tube = Tube.example()
+    points = true_places(tube, SIZE)
+    np.testing.assert_allclose(points[:, 1:], np.broadcast_to([20e-3, 10e-3], (len(points), 2)))
+    assert points[:, 0].min() == pytest.approx(0, abs=1e-3)
+    assert points[:, 0].max() == pytest.approx(40e-3, abs=1e-3)
+
+
+def test_a_case_file_reads_it(tmp_path, folders):
+    text = f"""\
+schema: tactsim/case/1
+title: Where is it
+experiment:
+  kind: localization
+  grasp: {folders[0]}
+  reference: {folders[1]}
+  noise: 1 mN
+  dead: [[upper, 1, 1]]
+  estimator: {{kind: thesis, background: reference, lateral: peak}}
+"""
+    path = tmp_path / "case.yaml"
+    path.write_text(text, encoding="utf-8")
+    case = load_case(path)
+    assert case.experiment.estimator.lateral == "peak"
+    assert case.experiment.run(lambda step: None).status is Status.CONVERGED
+    path.write_text(text.replace("noise: 1 mN", "noise: -1 mN"), encoding="utf-8")
+    with pytest.raises(CaseError, match="noise"):
+        load_case(path)

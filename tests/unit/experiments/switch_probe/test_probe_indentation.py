@@ -1,0 +1,75 @@
+"""The probe in plane strain: forces on strips of its sides, balance of forces, and the plane measure of an indentation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.trapezoid import Trapezoid
+from tactsim.experiments.indentation.contact_record import contact_values
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.timed_path import TimedIndentationPath
+from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation, probe_states, side_forces
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.mechanics.specimen import Specimen
+from tactsim.sensors.switch_array import SwitchArray
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+
+def indentation(depth=1e-3, **changes):
+    given = {
+        "specimen": Specimen(material=NeoHookean(c10=5e3), thickness=20e-3, radius=20e-3),
+        "body": Trapezoid(),
+        "contact": Coulomb(friction=0.4),
+        "loading": DisplacementLoading.model_validate(
+            {"control": "displacement", "pieces": [{"kind": "ramp", "to": depth, "duration": 1.0}]}
+        ),
+        "penetration_tolerance": 1e-6,
+        "mesh": MeshSettings(finest=0.4e-3, growth=0.8),
+        "time": TimeSettings(tolerance=0.05, per_decade=0, first=0.05),
+    }
+    return ProbeIndentation(**(given | changes))
+
+
+def test_a_strip_carries_the_pressure_on_it():
+    """A wall at 45 degrees, so that a mm of height is one of undeformed length, under a pressure that grows with it."""
+    along = np.linspace(0, 6e-3, 61)
+    array = SwitchArray(strip=0.5e-3)
+    highest, carried = side_forces(along, along, 1e6 * along, array)
+    np.testing.assert_allclose(carried, 1e6 * array.heights * 0.5e-3, rtol=2e-3)  # ends of strips between the samples
+    assert not np.allclose(carried, 1.006 * 1e6 * array.heights * 0.5e-3, rtol=2e-3)
+    assert highest == pytest.approx(6e-3)
+    untouched, none = side_forces(along, along, np.zeros(61), array)
+    assert untouched == 0.0
+    assert not none.any()
+    half, some = side_forces(along, along, np.where(along < 2.6e-3, 1e3, 0.0), array)
+    assert half == pytest.approx(2.6e-3, abs=0.1e-3)
+    assert (some > 0).tolist() == [True, True, False, False, False]
+
+
+def test_forces_balance_in_plane_strain_and_scale_with_the_width():
+    setup = indentation()
+    model = setup.model()
+    assert model.space.measure == "plane_strain"
+    assert model.surface.points.weights.sum() == pytest.approx(20e-3, rel=1e-12), "the half width, per m"
+    path = TimedIndentationPath(setup, model)
+    *_, (last, _) = path.states()
+    values, _ = contact_values(model, last.contact)
+    assert values["base_force"] == pytest.approx(values["reaction_force"], rel=1e-7)
+    *_, state = probe_states(setup, SwitchArray(), width=10e-3)
+    assert state.force == pytest.approx(2 * 10e-3 * values["reaction_force"], rel=1e-9)
+    assert state.depth == pytest.approx(1e-3)
+    assert state.contact_height == 0.0, "the sides begin above the fillet"
+
+
+def test_refining_keeps_the_plane_measure():
+    setup = indentation()
+    model = setup.model()
+    contact = TimedIndentationPath(setup, model)._begin.contact
+    finer, _, _ = model.refined(contact, np.array([0, 1]))
+    assert finer.space.measure == "plane_strain"
+    assert len(finer.space.elements) > len(model.space.elements)

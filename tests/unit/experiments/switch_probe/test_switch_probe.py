@@ -1,0 +1,211 @@
+"""The switch probe: what it reports, the ranking of its tissues, E26, the fast model beside finite elements, what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from pydantic import ValidationError
+
+from tactsim.case import load_case
+from tactsim.contact.trapezoid import Trapezoid
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.switch_probe import switch_probe
+from tactsim.experiments.switch_probe.figures import switch_panel_figure
+from tactsim.experiments.switch_probe.run import force_noise, touched
+from tactsim.experiments.switch_probe.setup import ProbeTissue
+from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.plotting import figures_for
+from tactsim.relaxation import Relaxation
+from tactsim.results import Status
+from tactsim.results.document import document_text
+from tactsim.sensors.noise import Noise
+from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.switch_array import SwitchArray
+
+CASES = Path(__file__).parents[4] / "cases"
+COARSE = {"mesh": MeshSettings(finest=0.4e-3, growth=0.8), "time": TimeSettings(tolerance=0.05, per_decade=0)}
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+
+def tissue(*, c10=5e3, fractions=(0.9,), times=(6.0,), name="tissue"):
+    return ProbeTissue(name=name, material=NeoHookean(c10=c10, relaxation=Relaxation(fractions=fractions, times=times)))
+
+
+def probe(**changes):
+    return SwitchProbe(**({"tissues": (tissue(),), "sides": "followed"} | changes))
+
+
+@pytest.fixture(scope="module")
+def three():
+    return load_case(CASES / "switch_tissues.yaml").experiment.run(lambda step: None)
+
+
+def forces(result):
+    """Force (tissue, rate, depth) in N at each mm."""
+    details = result.details
+    shape = (len(details["tissues"]), len(details["rates"]), 5)
+    return np.array([result.quantities[f"forces_{k + 1}"].value for k in range(shape[0] * shape[1])]).reshape(shape)
+
+
+def test_the_rankings_of_figure_5_8(three):
+    assert three.status is Status.CONVERGED
+    assert three.details["rates"] == [1e-3, 0.5e-3, 3e-3]
+    first, second, third = forces(three)
+    assert (second > first).all()
+    assert (second > third).all()
+    assert first[0, 4] > 1.05 * third[0, 4]
+    assert first[1, 4] < 0.95 * third[1, 4], "the ranking changes with the rate"
+    assert first[2, 4] > third[2, 4]
+    spread = np.ptp(forces(three)[:, 0], axis=0)
+    assert spread[0] < 0.025 * second[0, 4], "similar in the first mm, beside the largest force"
+    assert spread[4] > 0.2 * second[0, 4]
+
+
+def test_every_touch_is_read(three):
+    for number, told in enumerate(three.details["touches"], 1):
+        assert told["count"] == 1
+        assert [closing["switch"] for closing in told["closings"]] == [1, 2, 3, 4, 5]
+        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(told["rate"], rel=0.03)
+        intervals = three.quantities[f"switching_intervals_{number}"].value
+        assert intervals[1:] == pytest.approx(
+            1e-3 / told["rate"], rel=0.05
+        )  # the pressure on each switch is higher, so its threshold is met sooner
+        assert intervals[1:] != pytest.approx(1.15e-3 / told["rate"], rel=0.05)
+        read, true = three.quantities[f"switching_forces_{number}"].value, three.quantities[f"forces_{number}"].value
+        assert ((read < true * 1.05) & (read > true * 0.85)).all(), "half a strip early, late by the threshold"
+
+
+def test_history_and_document(three):
+    for step in three.steps:
+        assert set(step.values) == set(SwitchProbe.history_units)
+        assert np.isfinite(list(step.values.values())).all()
+    assert "null" not in document_text(three, "case").replace('"mean_rate": null', "")
+
+
+def test_the_same_seed_gives_the_same_touch():
+    noisy = {"chain": SignalChain(noise=Noise(white=1e-3))}
+    runs = [probe(seed=seed, **noisy).run(lambda step: None) for seed in (1, 1, 2)]
+    assert runs[0].steps == runs[1].steps
+    assert runs[0].steps != runs[2].steps
+
+
+def test_the_noise_is_that_of_the_readings():
+    setup = probe(chain=SignalChain(noise=Noise(white=1e-3), low_pass=None))
+    touch = touched(setup, setup.tissues[0], 1e-3, np.random.default_rng(4))
+    resting = touch.force[touch.time < 0]
+    assert resting.std() == pytest.approx(force_noise(setup), rel=0.2)  # four standard deviations of 200 samples
+    assert resting.std() != pytest.approx(2 * force_noise(setup), rel=0.2)
+
+
+def test_computed_sides_are_touched_by_the_first_switch_only():
+    result = probe(sides="computed").run(lambda step: None)
+    assert result.quantities["closed_switches_1"].value == 1
+    assert "mean_rate_1" not in result.quantities
+    assert result.quantities["contact_height_1"].value == pytest.approx(1.468e-3, rel=1e-3)
+    assert any("no mean rate" in warning for warning in result.warnings)
+    assert any("sinks in" in warning for warning in result.warnings)
+
+
+def test_a_printed_mean_rate_is_a_third():
+    printed = probe(array=SwitchArray(formula="as_printed")).run(lambda step: None).quantities["mean_rate_1"].value
+    corrected = probe().run(lambda step: None).quantities["mean_rate_1"].value
+    assert printed / corrected == pytest.approx(1 / 3, rel=0.02)
+
+
+def test_thousands_of_samples_a_second():
+    setup = probe()
+    result = setup.run(lambda step: None)
+    assert 10_000 / result.timing["total"] > 2000  # 10 s at 1 kHz
+
+
+def test_figures(three):
+    drawings = figures_for(three)
+    assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
+    assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
+    told = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
+    for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
+        assert words in told
+    single = probe(sides="computed").run(lambda step: None)
+    assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
+    told = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
+    assert "not every switch closed" in told
+
+
+@pytest.mark.parametrize(("error", "status"), [(KeyboardInterrupt(), "interrupted"), (ConvergenceError("no luck"), "failed")])
+def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
+    def stopped(setup, chosen, rate, generator):
+        if rate == 3e-3:
+            raise error
+        return touched(setup, chosen, rate, generator)
+
+    monkeypatch.setattr(switch_probe, "touched", stopped)
+    found = probe(rates=(1e-3, 3e-3)).run(lambda step: None)
+    assert found.status == status
+    assert "forces_1" in found.quantities
+    assert "forces_2" not in found.quantities
+    assert figures_for(found)["force_over_depth.png"]().startswith(b"\x89PNG")
+    nothing = probe(rates=(3e-3,)).run(lambda step: None)
+    assert (nothing.status, nothing.steps, figures_for(nothing)) == (status, (), {})
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"rates": (0.0,)}, "greater than 0"),
+        ({"rates": (1e-3, 1e-3)}, "two rates are equal"),
+        ({"tissues": (tissue(), tissue())}, "the same name"),
+        ({"rates": (1e-6,)}, "sample more slowly"),
+        ({"rates": (10.0,)}, "sample faster"),
+        ({"depth": 6e-3}, "beyond the curve"),
+        ({"depth": 25e-3}, "smaller than the height of the block"),
+        ({"probe": Trapezoid(face=3e-3)}, "set model: fem"),
+        ({"tissues": (ProbeTissue(name="b", material={"set": "b1a_stable"}),)}, "such a material or set model: fem"),
+        ({"array": SwitchArray(count=4)}, "has 5 switches"),
+        ({"sides": "guessed"}, "computed"),
+    ],
+)
+def test_impossible_experiments_are_refused(changes, words):
+    with pytest.raises(ValidationError, match=words):
+        probe(**changes)
+
+
+def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
+    given = {"depth": 2e-3, "sides": "computed"}
+    fast = probe(**given).run(lambda step: None)
+    found = probe(model="fem", **COARSE, **given).run(lambda step: None)
+    assert found.status is Status.CONVERGED, found.reason
+    expected = fast.quantities["forces_1"].value
+    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
+    assert not np.allclose(found.quantities["forces_1"].value, 1.06 * expected, rtol=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("rate", "fractions"), [(0.5e-3, (0.9,)), (1e-3, (0.9,)), (3e-3, (0.4,))])
+def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fractions):
+    given = {"tissues": (tissue(fractions=fractions),), "rates": (rate,), "sides": "computed"}
+    fast, found = (probe(model=model, **given).run(lambda step: None) for model in ("fast", "fem"))
+    expected = fast.quantities["forces_1"].value
+    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
+    assert not np.allclose(found.quantities["forces_1"].value, 1.06 * expected, rtol=0.02)
+    heights = [run.quantities["contact_height_1"].value for run in (fast, found)]
+    assert heights[1] == pytest.approx(heights[0], rel=0.03)
+    pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, found)]
+    assert pressed[0] == pytest.approx(pressed[1], rel=0.35), (
+        "a strip under the last edge of the contact; superposition is rough there"
+    )
+    assert pressed[0] != pytest.approx(2 * pressed[1], rel=0.35)
+
+
+@pytest.mark.slow
+def test_the_curve_is_that_of_the_finite_elements():
+    stiff = ProbeTissue(name="elastic", material=NeoHookean(c10=5e3))
+    fast, found = (probe(model=model, tissues=(stiff,), sides="computed").run(lambda step: None) for model in ("fast", "fem"))
+    np.testing.assert_allclose(found.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
+    assert found.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
+    assert not np.allclose(found.quantities["forces_1"].value, 1.006 * fast.quantities["forces_1"].value, rtol=2e-3)

@@ -1,0 +1,57 @@
+"""Histories of a case file: pieces, their values, and what they refuse."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from tactsim.mechanics.loading import AnyLoading
+
+ADAPTER = TypeAdapter(AnyLoading)
+
+
+def read(control, *pieces):
+    return ADAPTER.validate_python({"control": control, "pieces": list(pieces)}, context={"units": "required"})
+
+
+def test_pieces_follow_each_other():
+    loading = read(
+        "force",
+        {"kind": "jump", "to": "0.3 N", "duration": "2 s"},
+        {"kind": "sine", "amplitude": "0.2 N", "frequency": "1 Hz", "duration": "4 s"},
+        {"kind": "ramp", "to": "1 N", "duration": "1 s"},
+        {"kind": "hold", "duration": "3 s"},
+        {"kind": "samples", "times": ["0 s", "1 s", "3 s"], "values": ["0.5 N", "0.7 N", "0.1 N"]},
+    )
+    history = loading.history()
+    times = np.array([0.0, 1.9, 2.25, 2.75, 6.5, 8.0, 10.5, 12.0, 99.0])
+    expected = [0.3, 0.3, 0.5, 0.1, 0.65, 1.0, 0.6, 0.4, 0.1]
+    np.testing.assert_allclose(history.value(times), expected, rtol=1e-12)
+    assert loading.duration == pytest.approx(13.0)
+    assert loading.least_and_most() == pytest.approx((0.1, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("control", "piece", "words"),
+    [
+        ("force", {"kind": "jump", "to": "3 mm", "duration": "1 s"}, "wrong dimension"),
+        ("displacement", {"kind": "ramp", "to": "1 N", "duration": "1 s"}, "wrong dimension"),
+        ("force", {"kind": "hold", "duration": "0 s"}, "greater than 0"),
+        ("force", {"kind": "hold", "duration": 1.0}, "has no unit"),
+        ("force", {"kind": "sine", "amplitude": "1 N", "frequency": "-1 Hz", "duration": "1 s"}, "greater than 0"),
+        ("force", {"kind": "samples", "times": ["0 s", "1 s"], "values": ["1 N"]}, "each time needs its value"),
+        ("force", {"kind": "samples", "times": ["0 s", "0 s"], "values": ["1 N", "1 N"]}, "increase"),
+        ("force", {"kind": "samples", "times": ["1 s", "2 s"], "values": ["1 N", "1 N"]}, "begin at zero"),
+        ("force", {"kind": "samples", "times": ["0 s", "1 s"], "values": ["nan N", "1 N"]}, "not finite"),
+        ("force", {"kind": "jerk", "duration": "1 s"}, "jerk"),
+    ],
+)
+def test_impossible_pieces_are_refused(control, piece, words):
+    with pytest.raises(ValidationError, match=words):
+        read(control, piece)
+
+
+def test_a_history_needs_a_piece():
+    with pytest.raises(ValidationError, match="at least one piece"):
+        read("force")

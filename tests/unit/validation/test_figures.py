@@ -1,0 +1,47 @@
+"""Figures of the validation report."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tactsim.errors import UnknownName
+from tactsim.validation.figures import validation_figure
+
+LINE = {"label": "printed", "value": 400.0}
+BARS = [{"label": "default", "values": [8e4, 1e5]}, {"label": "friction 0", "values": []}]
+CURVE = {"label": "fit", "x": [0.6, 0.8], "y": [2.0, 1.0], "style": "line"}
+PANEL = {"y_axis": "force", "unit": "N", "curves": [CURVE, {**CURVE, "style": "points"}], "logarithmic": True}
+RANGES = {
+    "form": "ranges",
+    "title": "t",
+    "axis": "pressure",
+    "unit": "Pa",
+    "panels": [{"title": "a", "bars": BARS, "lines": [LINE]}],
+}
+CURVES = {"form": "curves", "title": "t", "x_axis": "stretch", "x_unit": "", "panels": [PANEL, {**PANEL, "unit": ""}]}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        RANGES,
+        CURVES,
+        {**CURVES, "x_logarithmic": True, "even_panels": True},
+        {**CURVES, "panels": [PANEL]},
+        {**RANGES, "panels": RANGES["panels"] * 2},
+    ],
+)  # type: ignore[operator]
+def test_figures_are_drawn(data: dict[str, Any]) -> None:
+    assert validation_figure(data).startswith(b"\x89PNG")
+
+
+def test_a_bracket_without_any_run_is_still_drawn() -> None:
+    panel = {"title": "a", "bars": BARS[1:], "lines": [LINE]}
+    assert validation_figure({**RANGES, "panels": [panel]}).startswith(b"\x89PNG")
+
+
+def test_an_unknown_form_is_refused() -> None:
+    with pytest.raises(UnknownName, match="ranges"):
+        validation_figure({"form": "range"})
