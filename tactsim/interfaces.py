@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, ClassVar, Self
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -108,3 +109,62 @@ class Experiment(Kind):
 
         A run that does not converge or is interrupted returns a result with that status, the reason, and what was accepted.
         """
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class MarkedFunction:
+    """A function that the tables of the thesis call by its name, with arguments that are read from its signature."""
+
+    family: str
+    """``quantity`` for the number of a row, ``drawing`` for the data of a figure."""
+    function: Callable[..., Any]
+    unit: str | Callable[..., str] = "1"
+    """SI unit of the number, or a function that returns it from those of the arguments that it names."""
+    check: Callable[..., None] | None = None
+    """Raises a ValueError if the arguments that it names do not go together; called when a table is read."""
+
+    @property
+    def name(self) -> str:
+        """What a table writes as ``kind``."""
+        return self.function.__name__
+
+    @property
+    def module(self) -> str:
+        """Where it is defined."""
+        return self.function.__module__
+
+
+MARKED: dict[tuple[str, str, str], MarkedFunction] = {}
+"""Every marked function by family, name and module; to define it again in its module replaces it."""
+
+
+def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | None = None) -> Callable[[Function], Function]:
+    """Marks a function as a number that rows of a thesis table compare, wherever it is defined.
+
+    ::
+
+        @quantity(unit="Pa")
+        def initial_modulus(material: str) -> float: ...
+
+    A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. Every argument has a type, which sets its
+    unit and bounds, and is described under ``Parameters``; a parameter ``inputs: Inputs`` receives the outcomes of the table's
+    studies. ``unit`` and ``check`` are those of `MarkedFunction`.
+    """
+
+    def mark(function: Function) -> Function:
+        return _marked(MarkedFunction("quantity", function, unit, check))
+
+    return mark
+
+
+def drawing(function: Function) -> Function:
+    """Marks a function, as `quantity` does, as one that returns the plain data of a figure of a thesis table."""
+    return _marked(MarkedFunction("drawing", function))
+
+
+def _marked(marked: MarkedFunction) -> Any:
+    MARKED[marked.family, marked.name, marked.module] = marked
+    return marked.function

@@ -12,7 +12,8 @@ from typing import Annotated, Any, Union
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from tactsim.errors import UnknownName
+from tactsim.errors import InputError, UnknownName
+from tactsim.interfaces import MARKED, MarkedFunction
 
 
 @cache
@@ -94,3 +95,40 @@ def union_of(known: dict[str, Any]) -> Any:
     """Pydantic type of these kinds, told apart by ``kind``."""
     choices = tuple(known[kind] for kind in sorted(known))
     return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007
+
+
+def marked_functions(package: str, family: str) -> dict[str, MarkedFunction]:
+    """Name -> function of a family (``quantity``, ``drawing``), in the order of the names.
+
+    Those of every module of ``package`` and of its packages, and those that any other module or a notebook has marked so far.
+
+    Raises
+    ------
+    InputError
+        If functions of two modules have the same name.
+    """
+    root = importlib.import_module(package)
+    for info in pkgutil.walk_packages(root.__path__, f"{package}."):
+        importlib.import_module(info.name)
+    functions: dict[str, MarkedFunction] = {}
+    for key in sorted(key for key in MARKED if key[0] == family):
+        _, name, module = key
+        if name in functions:
+            raise InputError(f"two modules mark a {family} {name!r}: {functions[name].module} and {module}; rename one of them")
+        functions[name] = MARKED[key]
+    return functions
+
+
+def forget(function: Callable[..., Any]) -> None:
+    """Takes back the mark of a function, so that tables no longer know it.
+
+    Raises
+    ------
+    UnknownName
+        If it is not marked.
+    """
+    keys = [key for key, marked in MARKED.items() if marked.function is function]
+    if not keys:
+        raise UnknownName("marked function", function.__name__, (name for _, name, _ in MARKED))
+    for key in keys:
+        del MARKED[key]
