@@ -149,9 +149,9 @@ def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | Non
         @quantity(unit="Pa")
         def initial_modulus(material: str) -> float: ...
 
-    A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. Every argument has a type, which sets its
-    unit and bounds, and is described under ``Parameters``; a parameter ``inputs: Inputs`` receives the outcomes of the table's
-    studies. ``unit`` and ``check`` are those of `MarkedFunction`.
+    A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. The type of an argument sets its unit and
+    bounds; its description stands there or under ``Parameters``. A parameter ``inputs: Inputs`` receives the outcomes of the
+    table's studies. ``unit`` and ``check`` are those of `MarkedFunction`.
     """
 
     def mark(function: Function) -> Function:

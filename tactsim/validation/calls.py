@@ -82,7 +82,7 @@ def any_call(functions: Iterable[MarkedFunction]) -> Any:
 
 @cache
 def call_class(marked: MarkedFunction) -> type[Call]:
-    """The calls of one function: its arguments with their types, defaults and descriptions.
+    """The calls of a function: its arguments with the types and defaults of the signature and the descriptions of the docstring.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def call_class(marked: MarkedFunction) -> type[Call]:
         If a parameter has no type or cannot be passed by its name.
     """
     types = get_type_hints(marked.function, include_extras=True)
-    described = descriptions(marked.function)
+    described: dict[str, Any] = descriptions(marked.function)
     fields: dict[str, Any] = {"kind": (Literal[marked.name], marked.name)}
     for name, parameter in inspect.signature(marked.function).parameters.items():
         if name == INPUTS:
@@ -101,7 +101,8 @@ def call_class(marked: MarkedFunction) -> type[Call]:
                 f"{marked.family} {marked.name} of {marked.module}: a table cannot write the argument {name}; {NEEDED}"
             )
         default = ... if parameter.default is parameter.empty else parameter.default
-        fields[name] = (types[name], Field(default, description=described.get(name)))
+        description = {"description": described[name]} if name in described else {}
+        fields[name] = (types[name], Field(default, **description))
     model = create_model(marked.name, __base__=Call, __module__=marked.module, __doc__=marked.function.__doc__, **fields)
     model.marked = marked
     return model

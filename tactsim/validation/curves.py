@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from tactsim.interfaces import Array
 
 Data = dict[str, Any]
 """Text, numbers, lists and mappings, which JSON can hold."""
+Title = Annotated[str, Field(description="Title of the figure.")]
 
 
 def series(label: str, x: Array, y: Array, style: str = "line") -> Data:

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
 
 from tactsim.errors import InputError, UnknownName
 from tactsim.validation.study import RunOutcome
+
+StudyName = Annotated[str, Field(description="Study of the table.")]
+RunName = Annotated[str, Field(description="Run of the study.")]
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from tactsim.interfaces import MARKED, MarkedFunction, drawing, quantity
 from tactsim.registry import forget, marked_functions
 from tactsim.units import is_unit, parse_quantity
 from tactsim.validation import compare, load_tables
-from tactsim.validation.calls import INPUTS, PACKAGE, descriptions
+from tactsim.validation.calls import INPUTS, PACKAGE, call_class, descriptions
 from tactsim.validation.inputs import Inputs
 
 SHIPPED = Path(__file__).parents[2] / "cases" / "thesis"
@@ -39,7 +39,10 @@ def test_the_signature_is_typed_and_every_argument_described(marked: MarkedFunct
     assert types["return"] == (float if marked.family == "quantity" else dict[str, Any])
     assert types.get(INPUTS, Inputs) is Inputs
     assert (inspect.getdoc(marked.function) or "").partition("\n")[0].strip()
-    assert set(descriptions(marked.function)) == set(parameters) - {INPUTS}
+    fields = call_class(marked).model_fields
+    assert set(fields) == set(parameters) - {INPUTS} | {"kind"}
+    assert [name for name, field in fields.items() if not field.description and name != "kind"] == []
+    assert set(descriptions(marked.function)) <= set(fields), "what is described is an argument"
 
 
 def test_every_function_serves_a_shipped_table() -> None:

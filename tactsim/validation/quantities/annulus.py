@@ -12,13 +12,14 @@ from tactsim.analytic.force_factor import LARGEST_RATIO, force_factor, rise_fact
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.interfaces import drawing, quantity
 from tactsim.units import Force, Length, NonNegative, Positive, Time
-from tactsim.validation.curves import Data, curves_figure, panel, series
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.atrium import Compliance, Times
 
 Approximation = Literal["thesis_4_2_21", "small_hole_series", "smythe"]
-Formula = Literal["exact", Approximation]
-Ratio = Annotated[float, Field(ge=0, le=LARGEST_RATIO)]
-"""Inner over outer radius."""
+Formula = Annotated[Literal["exact", Approximation], Field(description="Formula of the force factor.")]
+Ratio = Annotated[float, Field(ge=0, le=LARGEST_RATIO, description="Inner over outer radius.")]
+Ratios = Annotated[tuple[float, ...], Field(min_length=1, description="Inner over outer radius.")]
+OuterRadius = Annotated[Length, Field(gt=0, description="Radius of the face.")]
 OUTER_RADIUS = 3e-3
 """Radius of the face in m, Fig. 3.7d; chapter 4 prints none."""
 CREEP_UNITS = {"displacement": "m", "rise": "m", "time_to_touch": "s", "force_to_touch": "N", "displacement_over_radius": "1"}
@@ -41,8 +42,6 @@ def annulus_force_factor(
 
     Parameters
     ----------
-    radius_ratio : inner over outer radius
-    formula : formula of the force factor
     measure : the number; its relative error; (1 - kappa) / beta^3; (1 - kappa - 4 beta^3 / (3 pi^2)) / beta^4
     """
     factor = float(force_factor(radius_ratio, formula))
@@ -55,23 +54,13 @@ def annulus_force_factor(
 
 @quantity(unit="1")
 def annulus_rise_factor(radius_ratio: Ratio) -> float:
-    """Height of the surface on the axis above the face of the annulus over its displacement, on a half-space; dimensionless.
-
-    Parameters
-    ----------
-    radius_ratio : inner over outer radius
-    """
+    """Height of the surface on the axis above the face of the annulus over its displacement, on a half-space; dimensionless."""
     return float(rise_factor(radius_ratio))
 
 
 @quantity(unit="1")
 def displacement_prefactor(compliance: Compliance = "half_shear") -> float:
-    """n in eps0 = p D(t) / (n ro kappa) of eq. 4.6.4, with the compliance D of Table 4.1 and Poisson's ratio 1/2, at 1 s.
-
-    Parameters
-    ----------
-    compliance : reading of D: 1/E, or 1/(2G)
-    """
+    """n in eps0 = p D(t) / (n ro kappa) of eq. 4.6.4, with the compliance D of Table 4.1 and Poisson's ratio 1/2, at 1 s."""
     annulus = ViscoelasticAnnulus(1.0, 0.1, atrial_shear_compliance("viscosities", compliance))
     displacement = float(annulus.creep_displacement(1.0, 1.0))
     return float(table_4_1("viscosities").creep(1.0)) / (displacement * annulus.force_factor)
@@ -82,7 +71,7 @@ def annulus_creep(
     *,
     quantity: Literal["displacement", "rise", "time_to_touch", "force_to_touch", "displacement_over_radius"],
     radius_ratio: Annotated[float, Field(gt=0, le=LARGEST_RATIO)] = 0.1,
-    outer_radius: Positive[Length] = OUTER_RADIUS,
+    outer_radius: OuterRadius = OUTER_RADIUS,
     recess: Positive[Length] = 0.7e-3,
     force: Positive[Force] = 1.0,
     time: NonNegative[Time] = 0.5,
@@ -96,12 +85,9 @@ def annulus_creep(
     ----------
     quantity : what is asked for; the rise is that of the tissue in the hole
     radius_ratio : inner over outer radius
-    outer_radius : radius of the face
     recess : depth of the small sensor
     force : constant force
     time : time since the force began
-    times, compliance : readings of the column of times of Table 4.1 and of its compliance
-    formula : formula of the force factor
     """
     annulus = ViscoelasticAnnulus(outer_radius, radius_ratio, atrial_shear_compliance(times, compliance), formula)
     if quantity == "time_to_touch":
@@ -116,7 +102,7 @@ def annulus_creep(
 
 @drawing
 def force_factor_errors(
-    title: str,
+    title: Title,
     formulas: Annotated[tuple[Approximation, ...], Field(min_length=1)],
     largest_error: Positive[float] = 0.05,
 ) -> Data:
@@ -124,7 +110,6 @@ def force_factor_errors(
 
     Parameters
     ----------
-    title : title of the figure
     formulas : formulas that are judged
     largest_error : a formula is drawn up to this error
     """
@@ -145,12 +130,12 @@ def force_factor_errors(
 @drawing
 def annulus_indentations(
     *,
-    title: str,
+    title: Title,
     over: Literal["time", "force"],
-    ratios: Annotated[tuple[float, ...], Field(min_length=1)],
+    ratios: Ratios,
     force: Positive[Force],
     time: Positive[Time],
-    outer_radius: Positive[Length] = OUTER_RADIUS,
+    outer_radius: OuterRadius = OUTER_RADIUS,
     times: Times = "viscosities",
     compliance: Compliance = "half_shear",
 ) -> Data:
@@ -158,13 +143,9 @@ def annulus_indentations(
 
     Parameters
     ----------
-    title : title of the figure
     over : what runs along the axis, up to its value below; the other is held
-    ratios : inner over outer radius
     force : force, or the largest force
     time : time since the force began, or the longest one
-    outer_radius : radius of the face
-    times, compliance : readings of the column of times of Table 4.1 and of its compliance
     """
     tissue = atrial_shear_compliance(times, compliance)
     x = np.linspace(0, time if over == "time" else force, POINTS_DRAWN)

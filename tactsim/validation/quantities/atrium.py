@@ -11,14 +11,13 @@ from tactsim.analytic.atrial import TAU, TIMES, E, table_4_1
 from tactsim.errors import InputError
 from tactsim.interfaces import Array, drawing, quantity
 from tactsim.units import Frequency, NonNegative, Positive, Time
-from tactsim.validation.curves import Data, curves_figure, panel, series
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 
-Times = Literal["retardation_times", "viscosities"]
-"""Reading of the column of times of Table 4.1."""
-Compliance = Literal["tensile", "half_shear"]
-"""Reading of its compliance: 1/E or 1/(2G)."""
-Unit = Annotated[int, Field(ge=1, le=8)]
-"""Kelvin unit, by its row of the table."""
+Times = Annotated[Literal["retardation_times", "viscosities"], Field(description="Reading of the column of times of Table 4.1.")]
+Compliance = Annotated[
+    Literal["tensile", "half_shear"], Field(description="Reading of the compliance of Table 4.1: 1/E, or 1/(2G).")
+]
+Unit = Annotated[int, Field(ge=1, le=8, description="Row of Table 4.1.")]
 FREQUENCIES = np.arange(1.0, 37.0, 5.0)
 """Tested frequencies in Hz, thesis section 4.4."""
 TIMES_LABELS = {"retardation_times": "times in s (as printed)", "viscosities": "viscosities in MPa s (as in 4.6.4)"}
@@ -75,13 +74,7 @@ def atrial_constant(constant: Literal["modulus", "time"], number: Annotated[int,
 
 @quantity(unit="1/s")
 def atrial_rate(number: Unit, times: Times = "viscosities") -> float:
-    """Rate 1 / tau_i in 1/s of a Kelvin unit: E_i / C_i if the column of times holds viscosities (E7).
-
-    Parameters
-    ----------
-    number : row of Table 4.1
-    times : reading of its column of times
-    """
+    """Rate 1 / tau_i in 1/s of a Kelvin unit: E_i / C_i if the column of times holds viscosities (E7)."""
     return 1 / numbered_unit(times, number)[1]
 
 
@@ -93,7 +86,6 @@ def atrial_compliance(number: Unit | None = None, time: NonNegative[Time] | None
     ----------
     number : unit of the table; null for the whole
     time : time since a step of stress; null for infinite time
-    times : reading of the column of times
     """
     if number is not None:
         return numbered_unit(times, number)[0]
@@ -119,7 +111,6 @@ def atrial_oscillation(
     ----------
     quantity : what is measured
     frequency : frequency of the test
-    times : reading of the column of times
     """
     compliance = complex(table_4_1(times).complex_compliance(2 * np.pi * frequency))
     modulus = 1 / compliance
@@ -201,15 +192,10 @@ def even_frequencies(
 
 
 @drawing
-def atrial_moduli(title: str, times: Times) -> Data:
+def atrial_moduli(title: Title, times: Times) -> Data:
     """Complex, elastic and viscous modulus in Pa and tan delta of Table 4.1 over the frequency in Hz, as Fig. 4.10.
 
     The measured moduli are not printed.
-
-    Parameters
-    ----------
-    title : title of the figure
-    times : reading of the column of times
     """
     frequency = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], POINTS)
     line, tested = (1 / table_4_1(times).complex_compliance(2 * np.pi * f) for f in (frequency, FREQUENCIES))
@@ -227,14 +213,10 @@ def atrial_moduli(title: str, times: Times) -> Data:
 
 
 @drawing
-def atrial_compliances(title: str) -> Data:
+def atrial_compliances(title: Title) -> Data:
     """Elastic and viscous compliance in 1/MPa of Table 4.1 by eq. 4.3.8 over the frequency in Hz in both readings, as Fig. 4.11.
 
     The measured compliances are not printed.
-
-    Parameters
-    ----------
-    title : title of the figure
     """
     frequency = np.geomspace(FREQUENCIES[0], FREQUENCIES[-1], POINTS)
 

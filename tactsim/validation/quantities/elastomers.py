@@ -12,7 +12,7 @@ from tactsim.contact.rod import Rod
 from tactsim.errors import InputError, UnknownName
 from tactsim.experiments.elastomer_report import RankingReport
 from tactsim.interfaces import quantity
-from tactsim.validation.inputs import Inputs
+from tactsim.validation.inputs import Inputs, RunName, StudyName
 
 Measurements = Annotated[tuple[float, ...], Field(min_length=2)]
 SCALE, INDENTOR = DurometerScale(), Rod()
@@ -63,8 +63,8 @@ def hertz_durometer_modulus(reading: float, scale: DurometerScale = SCALE, inden
 @quantity(unit=lambda quantity: RankingReport.UNITS.get(quantity, "1"))
 def elastomer_value(
     inputs: Inputs,
-    study: str,
-    run: str,
+    study: StudyName,
+    run: RunName,
     shape: Annotated[int, Field(ge=1)],
     elastomer: Annotated[int, Field(ge=1)],
     *,
@@ -74,17 +74,14 @@ def elastomer_value(
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     shape : shape of the energy, counted from 1 in the order of the case
     elastomer : elastomer, counted from 1 in the order of Table 3.3
     quantity : name in the history
 
     Raises
     ------
-    UnknownName
-        If there is no such run or name.
-    InputError
-        If the run did not converge or has no such elastomer.
+    UnknownName, InputError
+        If there is no such run or name, or the run did not converge or has no such elastomer.
     """
     history = inputs.converged(study, run).history
     if quantity not in history:

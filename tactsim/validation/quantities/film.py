@@ -22,6 +22,7 @@ from tactsim.sensors.signal_chain import SignalChain
 from tactsim.sensors.tunnelling import particle_separation, tunnelling_decay, volume_fraction
 from tactsim.units import Density, Force, Frequency, Length, Mass, NonNegative, Positive, Time
 
+FilmComposite = Annotated[AnyComposite, Field(description="Name of a shipped composite, or its numbers.")]
 FILLER_UNITS = {"volume": "1", "mass": "1", "sample_mass": "kg", "filler_volume": "m^3", "matrix_volume": "m^3"}
 CONSTANT_UNITS = {
     "separation": "m",
@@ -67,7 +68,7 @@ def filler_fraction(
 @quantity(unit=lambda number: CONSTANT_UNITS[number])
 def film_constant(
     number: Literal["separation", "decay", "exponent", "initial_resistance", "contact_resistance", "creep_rate"],
-    composite: AnyComposite = LITERAL,
+    composite: FilmComposite = LITERAL,
     force: Force = 1.0,
 ) -> float:
     """In SI: s0, gamma, gamma s0, R0, both contacts' resistance at a force, or the rate E1 / mu1 of the creep at a force.
@@ -75,7 +76,6 @@ def film_constant(
     Parameters
     ----------
     number : which of them
-    composite : name of a shipped composite, or its numbers
     force : force on the reference area, where the number depends on it
     """
     numbers: dict[str, Callable[[], float]] = {
@@ -92,7 +92,7 @@ def film_constant(
 @quantity(unit="ohm")
 def film_resistance(
     *,
-    composite: AnyComposite = IDENTIFIED,
+    composite: FilmComposite = IDENTIFIED,
     force: Force,
     time: Time,
     reading: Reading | Literal["history"] = "history",
@@ -101,7 +101,6 @@ def film_resistance(
 
     Parameters
     ----------
-    composite : name of a shipped composite, or its numbers
     force : constant force on the reference area
     time : time since it began
     reading : printed or corrected equation; ``history`` integrates the creep law
@@ -115,7 +114,7 @@ def film_resistance(
 @quantity(unit="1")
 def film_sensitivity(
     number: Literal["drift", "exponent", "line_error", "printed_excess"],
-    composite: AnyComposite = LITERAL,
+    composite: FilmComposite = LITERAL,
     force: Force = 1.0,
     time: Time = 60.0,
 ) -> float:
@@ -128,7 +127,6 @@ def film_sensitivity(
     Parameters
     ----------
     number : which of them
-    composite : name of a shipped composite, or its numbers
     force : constant force on the reference area
     time : time since it began
     """

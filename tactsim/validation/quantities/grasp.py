@@ -12,7 +12,7 @@ from pydantic import Field
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import Array, quantity
 from tactsim.units import Length, NonNegative, Time, format_quantity
-from tactsim.validation.inputs import Inputs
+from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 
 Side = Literal["upper", "lower"]
@@ -63,27 +63,28 @@ def _force_on(forces: Array, taxel: Taxel) -> float:
 
 
 @quantity(unit="1")
-def taxel_asymmetry(inputs: Inputs, study: str, run: str, mirror: Literal["left_right", "front_back", "upper_lower"]) -> float:
+def taxel_asymmetry(
+    inputs: Inputs, study: StudyName, run: RunName, mirror: Literal["left_right", "front_back", "upper_lower"]
+) -> float:
     """Largest difference of mirrored taxels over the largest force of a taxel, dimensionless.
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     mirror : columns, rows or jaws that are exchanged
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run did not converge or has no taxels.
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no taxels.
     """
     forces = np.stack([_taxels_at(inputs, (study, run), side) for side in SIDES])
     axis = {"upper_lower": 0, "front_back": 1, "left_right": 2}[mirror]
     return float(np.abs(forces - np.flip(forces, axis)).max() / np.abs(forces).max())
 
 
-def _forces_on(inputs: Inputs, study: str, runs: tuple[str, ...], *, side: Sides, taxel: Taxel, closing: float | None) -> Array:
+def _forces_on(
+    inputs: Inputs, study: StudyName, runs: tuple[str, ...], *, side: Sides, taxel: Taxel, closing: float | None
+) -> Array:
     """Force in N on a taxel in each of some runs, shape (runs,)."""
     if side == "upper less lower":
         upper, lower = (_forces_on(inputs, study, runs, side=jaw, taxel=taxel, closing=closing) for jaw in SIDES)
@@ -103,7 +104,7 @@ def _comparable(change: str, runs: tuple[str, ...], bases: tuple[str, ...]) -> N
 @quantity(unit="N", check=_comparable)
 def taxel_change(
     inputs: Inputs,
-    study: str,
+    study: StudyName,
     change: Literal["least along", "greatest along", "least from base", "greatest from base"],
     runs: Annotated[tuple[str, ...], Field(min_length=1)],
     bases: tuple[str, ...] = (),
@@ -119,7 +120,6 @@ def taxel_change(
 
     Parameters
     ----------
-    study : study of the table
     change : which of the changes
     runs : runs in the order of the change
     bases : runs without the inclusion: one for each run (on the same mesh, whose error is then taken off), or one for all
@@ -131,10 +131,8 @@ def taxel_change(
     ------
     InvalidQuantity
         If the runs and bases do not make such a change.
-    UnknownName
-        If there is no such run.
-    InputError
-        If a run did not converge, has no such taxel, or no step that ended at the closing.
+    UnknownName, InputError
+        If there is no such run, or one did not converge, has no such taxel, or no step that ended at the closing.
     """
     _comparable(change, runs, bases)
     forces = partial(_forces_on, inputs, study, side=side, taxel=taxel, closing=closing)
@@ -146,8 +144,8 @@ def taxel_change(
 @quantity(unit="N")
 def taxel_contrast(
     inputs: Inputs,
-    study: str,
-    run: str,
+    study: StudyName,
+    run: RunName,
     *,
     side: Side = "lower",
     taxel: Taxel,
@@ -157,37 +155,31 @@ def taxel_contrast(
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     side : jaw
     taxel : row and column, counted from 1
     others : rows and columns of those that it is compared with
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run did not converge or has no such taxel.
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no such taxel.
     """
     forces = _taxels_at(inputs, (study, run), side)
     return max(_force_on(forces, taxel) - _force_on(forces, other) for other in others)
 
 
 @quantity(unit="N")
-def taxel_pulse(inputs: Inputs, study: str, run: str, start: NonNegative[Time]) -> float:
+def taxel_pulse(inputs: Inputs, study: StudyName, run: RunName, start: NonNegative[Time]) -> float:
     """Largest difference in N between the greatest and the least force of a taxel, over all taxels of both jaws, from a time on.
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     start : time at which the pulse begins
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run did not converge, has no taxels, or fewer than two steps from this time on.
+    UnknownName, InputError
+        If there is no such run, or it did not converge, has no taxels, or fewer than two steps from this time on.
     """
     outcome = inputs.converged(study, run)
     beating = np.array(outcome.history["time"]) >= start * (1 - SAME)

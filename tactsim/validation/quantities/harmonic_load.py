@@ -14,9 +14,9 @@ from tactsim.analytic.response import response
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.errors import UnknownName
 from tactsim.interfaces import Array, drawing, quantity
-from tactsim.units import Force, Length, NonNegative, Positive, Time
-from tactsim.validation.curves import Data, curves_figure, panel, series
-from tactsim.validation.quantities.annulus import OUTER_RADIUS
+from tactsim.units import Force, NonNegative, Positive, Time
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+from tactsim.validation.quantities.annulus import OUTER_RADIUS, OuterRadius, Ratios
 
 FREQUENCY, DELAY, STATIC = 1.0, 2.0, -0.2
 """Hz, s and N of the load as the text gives it; compression negative, section 4.7."""
@@ -158,11 +158,11 @@ def slow_creep(time: NonNegative[Time]) -> float:
 
 @drawing
 def quasi_static_response(
-    title: str,
-    ratios: Annotated[tuple[float, ...], Field(min_length=1)],
+    title: Title,
+    ratios: Ratios,
     amplitudes: Annotated[tuple[Force, ...], Field(min_length=1, max_length=2)],
     end: Positive[Time],
-    outer_radius: Positive[Length] = OUTER_RADIUS,
+    outer_radius: OuterRadius = OUTER_RADIUS,
 ) -> Data:
     """Displacement in m over time in s under a preload and a harmonic load, as Fig. 4.14; negative into the tissue, as in 4.7.1.
 
@@ -170,11 +170,8 @@ def quasi_static_response(
 
     Parameters
     ----------
-    title : title of the figure
-    ratios : inner over outer radius
     amplitudes : amplitudes of the harmonic load
     end : longest time
-    outer_radius : radius of the face
     """
     tissue = atrial_shear_compliance("viscosities", "half_shear")
     times = np.linspace(0, end, POINTS)

@@ -14,8 +14,11 @@ from tactsim.identification.uniaxial import UniaxialFit, fit_uniaxial, uniaxial_
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Array, Material, drawing, quantity
 from tactsim.materials.library import named_material
-from tactsim.validation.curves import Data, curves_figure, panel, series
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 
+SetName = Annotated[str, Field(description="Shipped set.")]
+FitForm = Annotated[str, Field(description="Form of the fit, as in ``tactsim material --fit``.")]
+Measure = Annotated[Literal["max", "rms"], Field(description="Largest error, or root mean square.")]
 LARGEST_COMPRESSION = 0.6
 """Smallest stretch, an assumption: the height of the specimen of the compression test is not printed."""
 POINTS = 200
@@ -32,12 +35,8 @@ def _constant(material: Material, name: str) -> float:
 
 
 @quantity(unit="Pa")
-def initial_modulus(material: str) -> float:
+def initial_modulus(material: SetName) -> float:
     """Young's modulus E = 3 G in Pa of an incompressible material set: 6 (c10 + c01) for Mooney-Rivlin.
-
-    Parameters
-    ----------
-    material : shipped set
 
     Raises
     ------
@@ -48,12 +47,11 @@ def initial_modulus(material: str) -> float:
 
 
 @quantity(unit="Pa")
-def library_constant(material: str, constant: str) -> float:
+def library_constant(material: SetName, constant: str) -> float:
     """A constant in Pa as the library holds it.
 
     Parameters
     ----------
-    material : shipped set
     constant : name of the constant
 
     Raises
@@ -97,13 +95,11 @@ def _stretches(smallest: float) -> Array:
 
 
 @quantity(unit="Pa")
-def fitted_constant(material: str, form: str, constant: str) -> float:
+def fitted_constant(material: SetName, form: FitForm, constant: str) -> float:
     """A constant in Pa of a least-squares fit to the uniaxial compression curve of a set (3.1.9 with c11).
 
     Parameters
     ----------
-    material : shipped set whose curve is fitted
-    form : form of the fit, as in ``tactsim material --fit``
     constant : name of the constant
 
     Raises
@@ -115,14 +111,8 @@ def fitted_constant(material: str, form: str, constant: str) -> float:
 
 
 @quantity(unit="1")
-def fit_error(material: str, form: str, measure: Literal["max", "rms"] = "max") -> float:
+def fit_error(material: SetName, form: FitForm, measure: Measure = "max") -> float:
     """Relative error of the nominal stress of a fit to the uniaxial compression curve of a set.
-
-    Parameters
-    ----------
-    material : shipped set whose curve is fitted
-    form : form of the fit, as in ``tactsim material --fit``
-    measure : largest error, or root mean square
 
     Raises
     ------
@@ -136,10 +126,10 @@ def fit_error(material: str, form: str, measure: Literal["max", "rms"] = "max") 
 @quantity(unit="1")
 def material_error(
     *,
-    material: str,
-    reference: str,
+    material: SetName,
+    reference: SetName,
     between: tuple[Annotated[float, Field(gt=0, lt=1)], Literal[1]] = (0.6, 1),
-    measure: Literal["max", "rms"],
+    measure: Measure,
 ) -> float:
     """Relative error of the uniaxial nominal stress of a material set against a reference set.
 
@@ -148,7 +138,6 @@ def material_error(
     material : shipped set that is judged
     reference : shipped set that it stands for
     between : stretches; at 1 both stresses vanish, so the last point lies one spacing below
-    measure : largest error, or root mean square
 
     Raises
     ------
@@ -162,12 +151,11 @@ def material_error(
 
 
 @quantity(unit="Pa")
-def corrected_stress(material: str, stretch: float) -> float:
+def corrected_stress(material: SetName, stretch: float) -> float:
     """True uniaxial stress in Pa at a stretch by 3.1.9 corrected: W1 and W2 keep the terms of c11.
 
     Parameters
     ----------
-    material : shipped set
     stretch : stretch along the load
 
     Raises
@@ -179,7 +167,7 @@ def corrected_stress(material: str, stretch: float) -> float:
 
 
 @quantity(unit="1")
-def printed_stress_sign(material: str) -> float:
+def printed_stress_sign(material: SetName) -> float:
     """Stretch in tension at which the stress of 3.1.9 as printed (no c11) changes its sign.
 
     Parameters
@@ -188,10 +176,8 @@ def printed_stress_sign(material: str) -> float:
 
     Raises
     ------
-    UnknownName
-        If there is no such set.
-    InputError
-        If the stress keeps its sign.
+    UnknownName, InputError
+        If there is no such set, or the stress keeps its sign.
     """
     constants = named_material(material).material.model_dump()
 
@@ -205,22 +191,19 @@ def printed_stress_sign(material: str) -> float:
 
 @quantity(unit="1")
 def ellipticity_window(
-    *, material: str, path: Literal["uniaxial", "planar"] = "uniaxial", end: Literal["lower", "upper"]
+    *, material: SetName, path: Literal["uniaxial", "planar"] = "uniaxial", end: Literal["lower", "upper"]
 ) -> float:
     """Stretch at one end of the compression window in which a material set is not strongly elliptic.
 
     Parameters
     ----------
-    material : shipped set
     path : loading path
     end : which end
 
     Raises
     ------
-    UnknownName
-        If there is no such set.
-    InputError
-        If the set loses strong ellipticity in no or in several windows.
+    UnknownName, InputError
+        If there is no such set, or it loses strong ellipticity in no or in several windows.
     """
     from tactsim.materials.stability_range import stability_range
 
@@ -232,13 +215,11 @@ def ellipticity_window(
 
 
 @drawing
-def uniaxial_fits(title: str, material: str, forms: tuple[str, ...]) -> Data:
+def uniaxial_fits(title: Title, material: SetName, forms: tuple[str, ...]) -> Data:
     """Nominal stress in Pa of a material set with fits of several forms, relative errors in percent below, as Fig. 3.8.
 
     Parameters
     ----------
-    title : title of the figure
-    material : shipped set whose curve is fitted
     forms : forms of the fit
 
     Raises

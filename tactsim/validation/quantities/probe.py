@@ -13,7 +13,7 @@ from tactsim.interfaces import quantity
 from tactsim.sensors.switch_array import Formula, SwitchArray
 from tactsim.sensors.switch_reading import read_switches
 from tactsim.units import Frequency, FrozenModel, Length, Positive, Speed, format_quantity
-from tactsim.validation.inputs import Inputs
+from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 
 DIMENSION_UNITS = {"switches": "1", "left": "1", "right": "1", "pitch": "m", "travel": "m", "lean": "rad"}
@@ -83,22 +83,19 @@ class Press(FrozenModel):
 
 @quantity(unit="1")
 def probe_force_ratio(
-    inputs: Inputs, study: str, run: str, press: Press, over: Press, *, depth: Positive[Length] = 5e-3
+    inputs: Inputs, study: StudyName, run: RunName, press: Press, over: Press, *, depth: Positive[Length] = 5e-3
 ) -> float:
     """Force on the probe over that of another tissue or rate, both at the same depth on the way in; dimensionless.
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     press, over : numerator and denominator
     depth : depth of the probe in the tissue
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run did not converge, or has no touch of this tissue and rate down to the depth.
+    UnknownName, InputError
+        If there is no such run, or it did not converge, or has no touch of this tissue and rate down to the depth.
     """
     outcome = inputs.run(study, run)
     if not outcome.converged:

@@ -12,18 +12,18 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Array, drawing, quantity
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.units import FrozenModel, Length, Positive, parse_quantity
-from tactsim.validation.curves import Data, curves_figure, panel, series
-from tactsim.validation.inputs import Inputs
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.quantities.annulus import OUTER_RADIUS
 from tactsim.validation.study import RunOutcome
 
-RunName = tuple[str, str]
+StudyAndRun = tuple[str, str]
 """Study and run."""
 Area = Literal["annulus", "disc", "both"]
 ClosedForm = Literal["half_space", "layer"]
 
 
-def _value(inputs: Inputs, run: RunName, quantity: str) -> float:
+def _value(inputs: Inputs, run: StudyAndRun, quantity: str) -> float:
     """A quantity of a run in SI."""
     outcome = inputs.run(*run)
     if not outcome.converged or quantity not in outcome.quantities:
@@ -32,27 +32,24 @@ def _value(inputs: Inputs, run: RunName, quantity: str) -> float:
 
 
 @quantity(unit=lambda si_unit: si_unit)
-def run_quantity(inputs: Inputs, study: str, run: str, quantity: str, si_unit: str = "1") -> float:
+def run_quantity(inputs: Inputs, study: StudyName, run: RunName, quantity: str, si_unit: str = "1") -> float:
     """A quantity of a simulation in SI.
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     quantity : name of the quantity
     si_unit : SI unit of the quantity
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run did not converge or has no such quantity.
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no such quantity.
     """
     return _value(inputs, (study, run), quantity)
 
 
 @quantity(unit="1")
-def run_ratio(inputs: Inputs, run: RunName, over: RunName, quantity: str = "threshold_pressure") -> float:
+def run_ratio(inputs: Inputs, run: StudyAndRun, over: StudyAndRun, quantity: str = "threshold_pressure") -> float:
     """A quantity of a simulation over that of another, dimensionless.
 
     Parameters
@@ -62,21 +59,15 @@ def run_ratio(inputs: Inputs, run: RunName, over: RunName, quantity: str = "thre
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If a run did not converge or has no such quantity.
+    UnknownName, InputError
+        If there is no such run, or one did not converge or has no such quantity.
     """
     return _value(inputs, run, quantity) / _value(inputs, over, quantity)
 
 
 @quantity(unit="1")
-def converged_runs(inputs: Inputs, study: str) -> float:
+def converged_runs(inputs: Inputs, study: StudyName) -> float:
     """Number of runs of a study that converged: a bracket must not become narrower unnoticed.
-
-    Parameters
-    ----------
-    study : study of the table
 
     Raises
     ------
@@ -118,10 +109,8 @@ def bracket(
 
     Raises
     ------
-    UnknownName
-        If there is no such study.
-    InputError
-        If the row prints no number or no run converged.
+    UnknownName, InputError
+        If there is no such study, or the row prints no number or no run converged.
     """
     if inputs.expected is None:
         raise InputError("a bracket needs a printed number to compare")
@@ -153,14 +142,13 @@ class Panel(FrozenModel):
 
 
 @drawing
-def range_bars(inputs: Inputs, title: str, panels: Annotated[tuple[Panel, ...], Field(min_length=1)]) -> Data:
+def range_bars(inputs: Inputs, title: Title, panels: Annotated[tuple[Panel, ...], Field(min_length=1)]) -> Data:
     """Form ``ranges``: the threshold pressures in Pa of each run over both areas beside the printed numbers, as Table 3.2.
 
     A run that has not converged has no values.
 
     Parameters
     ----------
-    title : title of the figure
     panels : studies from left to right
 
     Raises
@@ -216,7 +204,7 @@ class ComparedRun(FrozenModel):
 
 @quantity(unit="1")
 def closed_form_depth(
-    inputs: Inputs, study: str, compared: ComparedRun, form: ClosedForm = "layer", part: Positive[float] = 0.1
+    inputs: Inputs, study: StudyName, compared: ComparedRun, form: ClosedForm = "layer", part: Positive[float] = 0.1
 ) -> float:
     """Displacement over the outer radius from which on force and closed form differ by more than a part.
 
@@ -224,17 +212,14 @@ def closed_form_depth(
 
     Parameters
     ----------
-    study : study of the table
     compared : the simulation
     form : closed form
     part : relative difference of the force
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the run has no history.
+    UnknownName, InputError
+        If there is no such run, or it has no history.
     """
     depth, departure = compared.departure(inputs.run(study, compared.run), form)
     difference = np.abs(departure)
@@ -249,22 +234,18 @@ def closed_form_depth(
 
 @drawing
 def closed_form_limits(
-    inputs: Inputs, title: str, study: str, runs: Annotated[tuple[ComparedRun, ...], Field(min_length=1)]
+    inputs: Inputs, title: Title, study: StudyName, runs: Annotated[tuple[ComparedRun, ...], Field(min_length=1)]
 ) -> Data:
     """Force of the simulations over that of both closed forms, over displacement over outer radius; all dimensionless.
 
     Parameters
     ----------
-    title : title of the figure
-    study : study of the table
     runs : the simulations
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If a run has no history.
+    UnknownName, InputError
+        If there is no such run, or one has no history.
     """
     panels = []
     forms: tuple[tuple[ClosedForm, str], ...] = (("layer", "layer"), ("half_space", "half-space"))

@@ -12,37 +12,38 @@ from tactsim.errors import CaseError, InputError
 from tactsim.experiments.threshold_source import CurveSource
 from tactsim.interfaces import drawing, quantity
 from tactsim.units import Force, Length, Positive, Pressure, format_quantity
-from tactsim.validation.curves import Data, curves_figure, panel, series
-from tactsim.validation.inputs import Inputs
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+from tactsim.validation.inputs import Inputs, RunName, StudyName
+
+InnerRadius = Annotated[Length, Field(description="Radius of the hole.")]
+OuterRadius = Annotated[Length, Field(description="Radius of the face.")]
 
 
 @quantity(unit="m^2")
-def annular_area(*, inner_radius: Length = 0.0, outer_radius: Length) -> float:
+def annular_area(*, inner_radius: InnerRadius = 0.0, outer_radius: OuterRadius) -> float:
     """Area in m^2 of the sensor's face, pi (ro^2 - ri^2).
 
     Parameters
     ----------
     inner_radius : radius of the hole; zero for the full disc
-    outer_radius : radius of the face
     """
     return float(np.pi * (outer_radius**2 - inner_radius**2))
 
 
 @quantity(unit="N")
-def threshold_force(pressure: Pressure, inner_radius: Length, outer_radius: Length) -> float:
+def threshold_force(pressure: Pressure, inner_radius: InnerRadius, outer_radius: OuterRadius) -> float:
     """Force in N that belongs to a printed threshold pressure on the annular area.
 
     Parameters
     ----------
     pressure : threshold pressure
-    inner_radius, outer_radius : radii of the hole and of the face
     """
     return float(pressure * np.pi * (outer_radius**2 - inner_radius**2))
 
 
 @quantity(unit="1")
 def threshold_at_level(
-    inputs: Inputs, curve: str, level: Positive[Force], *, inner_radius: Length, outer_radius: Length, recess: Length
+    inputs: Inputs, curve: str, level: Positive[Force], *, inner_radius: InnerRadius, outer_radius: OuterRadius, recess: Length
 ) -> float:
     """Force on the plate when the small sensor bears a level, over that at the touch; slowly, without noise and filter.
 
@@ -52,7 +53,6 @@ def threshold_at_level(
     ----------
     curve : stored forces of both sensors, relative to the table
     level : force on the small sensor at which it triggers
-    inner_radius, outer_radius : radii of the hole and of the face
     recess : depth of the small sensor
 
     Raises
@@ -117,7 +117,7 @@ def _accepts(inputs: Inputs, case: str, thickness: float) -> bool:
 
 @quantity(unit="1")
 def equal_force_ratio(
-    inputs: Inputs, study: str, run: str, recess: Positive[Length], hardness: Annotated[float, Field(gt=1)]
+    inputs: Inputs, study: StudyName, run: RunName, recess: Positive[Length], hardness: Annotated[float, Field(gt=1)]
 ) -> float:
     """A/L for a harder tissue over A/L for the simulated one, so that both have the same threshold force; dimensionless.
 
@@ -126,16 +126,13 @@ def equal_force_ratio(
 
     Parameters
     ----------
-    study, run : study of the table, and run of the study
     recess : recess L for the simulated tissue
     hardness : modulus of the harder tissue over that of the simulated one
 
     Raises
     ------
-    UnknownName
-        If there is no such run.
-    InputError
-        If the tissue of the run does not rise as far as the recess.
+    UnknownName, InputError
+        If there is no such run, or the tissue of the run does not rise as far as the recess.
     """
     history = inputs.run(study, run).history
     rise, force = (np.array(history.get(name, ())) for name in ("tissue_rise", "reaction_force"))
@@ -150,9 +147,9 @@ def equal_force_ratio(
 @drawing
 def recess_over_hardness(
     inputs: Inputs,
-    title: str,
-    study: str,
-    run: str,
+    title: Title,
+    study: StudyName,
+    run: RunName,
     *,
     tissue: str,
     hole: Positive[Length],
@@ -163,8 +160,6 @@ def recess_over_hardness(
 
     Parameters
     ----------
-    title : title of the figure
-    study, run : study of the table, and run of the study up to the largest recess
     tissue : what the run simulates
     hole : inner diameter A of the annulus
     shallowest : smallest recess that is drawn

@@ -51,6 +51,7 @@ def test_what_the_signature_does_not_allow_is_refused(wrong: dict[str, str]) -> 
 def test_arguments_are_described_by_the_docstring() -> None:
     assert descriptions(ordered) == {"shorter": "two lengths, in this order", "longer": "two lengths, in this order"}
     assert called(ordered).model_fields["longer"].description == "two lengths, in this order"
+    assert called(elastomer_value).model_fields["study"].description == "Study of the table.", "from the type of the argument"
 
 
 def test_a_unit_may_depend_on_the_arguments() -> None:
