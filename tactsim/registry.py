@@ -7,10 +7,11 @@ import json
 import pkgutil
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Annotated, Any, Union
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from tactsim.errors import AmbiguousKind, UnknownName
@@ -38,8 +39,67 @@ def register(cls: Any) -> None:
     known[kind] = cls
 
 
-def forget(cls: Any) -> None:
-    """Remove a registered class, such as one that a test or a notebook defined."""
+@dataclass(frozen=True)
+class MarkedFunction:
+    """A function that the tables of the thesis call by its name, with arguments that are read from its signature."""
+
+    family: str
+    """``quantity`` for the number of a row, ``drawing`` for the data of a figure."""
+    function: Callable[..., Any]
+    unit: str | Callable[..., str] = "1"
+    """SI unit of the number, or a function that returns it from those of the arguments that it names."""
+    check: Callable[..., None] | None = None
+    """Raises a ValueError if the arguments that it names do not go together; called when a table is read."""
+
+    @property
+    def name(self) -> str:
+        """What a table writes as ``kind``."""
+        return self.function.__name__
+
+    @property
+    def module(self) -> str:
+        """Where it is defined."""
+        return self.function.__module__
+
+
+_marked: dict[tuple[str, str, str], MarkedFunction] = {}
+"""Every marked function by family, name and module; one defined again in its module takes the place of the earlier one."""
+
+
+def mark(marked: MarkedFunction) -> None:
+    """Make a function known to the tables."""
+    _marked[marked.family, marked.name, marked.module] = marked
+
+
+def marked_functions(package: str, family: str) -> dict[str, MarkedFunction]:
+    """Name -> function of a family (``quantity``, ``drawing``), sorted by name.
+
+    Those of every module of ``package`` and its folders, and those that any other module or a notebook has marked so far.
+
+    Raises
+    ------
+    AmbiguousKind
+        If functions of two modules have the same name.
+    """
+    _load_all(package, ".*")
+    functions: dict[str, MarkedFunction] = {}
+    for key in sorted(key for key in _marked if key[0] == family):
+        _, name, module = key
+        if name in functions:
+            raise AmbiguousKind(
+                f"two modules mark a {family} {name!r}: {functions[name].module} and {module}; rename one of them"
+            )
+        functions[name] = _marked[key]
+    return functions
+
+
+def forget(thing: Any) -> None:
+    """Remove a registered class or a marked function, such as one that a test or a notebook defined."""
+    if not isinstance(thing, type):
+        for key in [key for key, marked in _marked.items() if marked.function is thing]:
+            del _marked[key]
+        return
+    cls: Any = thing
     known, kind = _registered.get(family(cls), {}), cls.model_fields["kind"].default
     if kind in known and known[kind] is cls:
         del known[kind]
@@ -162,6 +222,12 @@ def _named_schema(cls: Any) -> Any:
     """The schema of a class with a name, so that the JSON Schema describes the class once."""
     schema = cls.__pydantic_core_schema__
     return schema if "ref" in schema else {**schema, "ref": f"{cls.__module__}.{cls.__qualname__}:{id(cls)}"}
+
+
+def union_of(known: dict[str, Any]) -> Any:
+    """Pydantic type of these classes, told apart by ``kind``."""
+    choices = tuple(known[kind] for kind in sorted(known))
+    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007
 
 
 def shipped(what: str, name: str, library: Mapping[str, Any]) -> Any:

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
 
@@ -191,3 +191,9 @@ Density = quantity_type("kg/m^3", "0.91 g/cm^3")
 ConductancePerForce = quantity_type("S/N", "0.05 mS/N")
 PressurePerForce = quantity_type("Pa/N", "60.9 kPa/N")
 ViscosityPerForce = quantity_type("Pa*s/N", "1.2 MPa*s/N")
+
+Number = TypeVar("Number")
+Positive = Annotated[Number, Field(gt=0)]
+"""``Positive[Length]``: greater than zero."""
+NonNegative = Annotated[Number, Field(ge=0)]
+"""``NonNegative[Time]``: zero or greater."""

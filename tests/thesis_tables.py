@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar, Literal, Self
-
-from tactsim.validation.evaluator import Evaluator, Inputs
 
 MANIFEST = """\
 schema: tactsim/thesis-manifest/1
@@ -45,20 +42,3 @@ def write_tables(folder: Path, table: str = TABLE, manifest: str = MANIFEST) -> 
     (folder / "manifest.yaml").write_text(manifest, encoding="utf-8")
     (folder / "small.yaml").write_text(table, encoding="utf-8")
     return folder
-
-
-class Doubled(Evaluator):
-    """A pretended evaluator: twice a length."""
-
-    unit: ClassVar[str] = "m"
-    kind: Literal["doubled"] = "doubled"
-    length: float
-
-    @classmethod
-    def example(cls) -> Self:
-        """Any."""
-        return cls(length=1.0)
-
-    def found(self, inputs: Inputs) -> float:
-        """In m."""
-        return 2 * self.length

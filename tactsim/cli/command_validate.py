@@ -94,7 +94,7 @@ def _figures(outcomes: Sequence[TableOutcome]) -> tuple[dict[str, bytes], list[s
             try:
                 from tactsim.validation.figures import validation_figure
 
-                drawn[f"{outcome.name}_{name}.png"] = validation_figure(drawing.data(outcome.inputs))
+                drawn[f"{outcome.name}_{name}.png"] = validation_figure(drawing(outcome.inputs))
             except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
                 troubles.append(f"figure {name} of {outcome.name}: {type(error).__name__}: {error}")
     return drawn, troubles

@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from inspect import isabstract
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
-from tactsim.registry import register
+from tactsim.registry import MarkedFunction, mark, register
 from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 Progress = Callable[["StepRecord"], None]
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Kind(FrozenModel, ABC):
@@ -134,3 +135,29 @@ class Experiment(CaseKind):
 
         A run that does not converge or is interrupted returns a result with that status, the reason, and what was accepted.
         """
+
+
+def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | None = None) -> Callable[[Function], Function]:
+    """Marks a function as a number that rows of a thesis table compare, wherever it is defined.
+
+    ::
+
+        @quantity(unit="Pa")
+        def initial_modulus(material: str) -> float: ...
+
+    A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. The type of an argument sets its unit and
+    bounds; its description stands there or under ``Parameters``. A parameter ``inputs: Inputs`` receives the outcomes of the
+    table's studies. ``unit`` and ``check`` are those of `MarkedFunction`.
+    """
+
+    def marked(function: Function) -> Function:
+        mark(MarkedFunction("quantity", function, unit, check))
+        return function
+
+    return marked
+
+
+def drawing(function: Function) -> Function:
+    """Marks a function, as `quantity` does, as one that returns the plain data of a figure of a thesis table."""
+    mark(MarkedFunction("drawing", function))
+    return function

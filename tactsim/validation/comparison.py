@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tactsim.errors import TactsimError
-from tactsim.validation.evaluator import Inputs
+from tactsim.validation.inputs import Inputs
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter, Row, Table
 
@@ -60,14 +60,14 @@ def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
     found: float | None = None
     if row.evaluate is not None:
         try:
-            found = float(row.evaluate.found(replace(inputs, expected=row.expected)))
+            found = float(row.evaluate(replace(inputs, expected=row.expected)))
         except TactsimError as error:
             return RowOutcome(row, None, False, "LEFT: cannot be evaluated", str(error))
         if not math.isfinite(found):
             return RowOutcome(row, None, False, "LEFT: not a finite number", f"{found}")
     if isinstance(row.state, Assumption):
         return RowOutcome(row, found, True, "assumption", row.state.assumption)
-    if found is None:  # the validation of a row lets only an assumption lack its evaluator
+    if found is None:  # the validation of a row lets only an assumption lack it
         return RowOutcome(row, None, False, "LEFT: nothing to evaluate", "")
     if isinstance(row.state, Bound):
         return _finding(row, row.state, found)

@@ -31,7 +31,7 @@ class LoadedTables:
     """What is absent or not counted; each lets the validation fail."""
 
 
-def load_tables(folder: Path, names: Sequence[str] = (), model: type[Table] | None = None) -> LoadedTables:
+def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
     """The named tables of a folder, all if none is named, held against its manifest.
 
     Raises
@@ -40,6 +40,8 @@ def load_tables(folder: Path, names: Sequence[str] = (), model: type[Table] | No
         If a name is neither in the manifest nor a file.
     CaseError
         For a file that is no table, with one line for every fault.
+    InputError
+        If two numbers or two figures have the same name, or a signature does not say what a table may write.
     StorageError
         If the manifest cannot be read.
     """
@@ -50,7 +52,8 @@ def load_tables(folder: Path, names: Sequence[str] = (), model: type[Table] | No
         if name not in known:
             raise UnknownName("thesis table", name, known)
     chosen = list(dict.fromkeys(names)) or known
-    tables = {name: read_model(files[name], model or table_class()) for name in chosen if name in files}
+    model = table_class()
+    tables = {name: read_model(files[name], model) for name in chosen if name in files}
     faults = [fault for name in chosen for fault in _faults(name, tables.get(name), manifest)]
     return LoadedTables(folder, tables, manifest, tuple(faults))
 

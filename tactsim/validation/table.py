@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Annotated, Any, Literal, Self
+from functools import lru_cache
+from typing import Any, Literal, Self
 
 from pydantic import Field, SerializeAsAny, create_model, model_validator
 
-from tactsim.registry import Registered
+from tactsim.registry import MarkedFunction
 from tactsim.units import FrozenModel, parse_quantity
-from tactsim.validation.evaluator import Drawing, Evaluator
+from tactsim.validation.calls import Call, any_call, callable_now
 from tactsim.validation.study import Study
 
 TABLE_SCHEMA = "tactsim/thesis-table/1"
@@ -108,7 +108,7 @@ class Row(FrozenModel):
     """Where it stands, or from which printed numbers the errata derive it."""
     printed: str | float | None = None
     """The number with its unit; a plain number is dimensionless. Only an assumption or a finding may do without."""
-    evaluate: SerializeAsAny[Evaluator] | None = None
+    evaluate: SerializeAsAny[Call] | None = None
     """How it is computed here. Only an assumption may do without."""
     tolerance: Tolerance | None = None
     """How near it must come; for a row that is reproduced."""
@@ -134,7 +134,7 @@ class Row(FrozenModel):
     @property
     def unit(self) -> str:
         """SI unit of what is evaluated; ``1`` if nothing is."""
-        return self.evaluate.found_unit if self.evaluate else "1"
+        return self.evaluate.result_unit if self.evaluate else "1"
 
     @property
     def expected(self) -> float | None:
@@ -166,7 +166,7 @@ class Table(FrozenModel):
     """Simulations that its rows rest on."""
     rows: tuple[Row, ...] = Field(min_length=1)
     """The numbers."""
-    figures: dict[str, SerializeAsAny[Drawing]] = {}
+    figures: dict[str, SerializeAsAny[Call]] = {}
     """File name without suffix -> figure."""
 
     @model_validator(mode="after")
@@ -201,12 +201,20 @@ def in_si(value: str | float, unit: str) -> float:
     return float(value)
 
 
-@cache
-def table_class(evaluator: Any = None, drawing: Any = None) -> type[Table]:
-    """The table whose evaluators and figures are of these types; by default all that are registered."""
-    evaluators: Any = evaluator or Annotated[Evaluator, Registered(Evaluator)]
-    drawings: Any = drawing or Annotated[Drawing, Registered(Drawing)]
-    row = create_model("Row", __base__=Row, evaluate=(evaluators | None, None))
+def table_class() -> type[Table]:
+    """The table whose rows and figures call any of the functions that are marked now.
+
+    Raises
+    ------
+    InputError
+        If two functions have the same name, or a signature does not say what a table may write.
+    """
+    return _table_of(callable_now("quantity"), callable_now("drawing"))
+
+
+@lru_cache(maxsize=2)
+def _table_of(quantities: tuple[MarkedFunction, ...], drawings: tuple[MarkedFunction, ...]) -> type[Table]:
+    row = create_model("Row", __base__=Row, evaluate=(any_call(quantities) | None, None))
     rows: Any = (tuple[row, ...], Field(min_length=1))
-    figures: Any = (dict[str, drawings], {})
+    figures: Any = (dict[str, any_call(drawings)], {})  # type: ignore[misc]
     return create_model("Table", __base__=Table, rows=rows, figures=figures)

@@ -13,14 +13,18 @@ from tactsim.analytic.atrial import E0, TAU, E
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.errors import InputError, UnknownName
 from tactsim.validation import compare, load_tables
-from tactsim.validation.atrial_units import FREQUENCIES, numbered_unit, numbered_units, truncated, units_by_speed
 from tactsim.validation.comparison import compare_row
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.annulus_creep import AnnulusCreep
-from tactsim.validation.evaluators.atrial_oscillation import AtrialOscillation
-from tactsim.validation.evaluators.dynamic_coefficient import DynamicCoefficient
-from tactsim.validation.evaluators.dynamic_exponent import DynamicExponent
-from tactsim.validation.evaluators.identifiable_constants import IdentifiableConstants, sensitivities
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.annulus import annulus_creep
+from tactsim.validation.quantities.atrium import (
+    FREQUENCIES,
+    atrial_oscillation,
+    identifiable_constants,
+    numbered_unit,
+    numbered_units,
+    sensitivities,
+)
+from tactsim.validation.quantities.harmonic_load import dynamic_coefficient, dynamic_exponent, truncated, units_by_speed
 from tactsim.validation.table import OutsideBy, Row
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
@@ -39,7 +43,7 @@ def test_every_row_holds_and_every_figure_has_its_data(name: str) -> None:
     outcome = compare(name, LOADED.tables[name], SHIPPED, {})
     assert [row.row.id for row in outcome.rows if not row.held] == []
     for drawing in outcome.table.figures.values():
-        json.dumps(drawing.data(outcome.inputs), allow_nan=False)
+        json.dumps(drawing(outcome.inputs), allow_nan=False)
 
 
 @pytest.mark.parametrize("row", COMPARED)
@@ -80,26 +84,26 @@ def test_digits_are_cut_toward_zero() -> None:
 def test_the_two_odd_coefficients_come_out_of_cut_parts() -> None:
     """Eq. 4.7.2: 0.06 is six times 0.01, and -5.46 is -341.61 + 336.15."""
     for name, exact, cut in (("slow", 0.0985, 0.06), ("static_rest", -5.449, -5.46)):
-        found = [1e6 * DynamicCoefficient(coefficient=name, truncated_parts=t).found(Inputs()) for t in (False, True)]
+        found = [1e6 * dynamic_coefficient(name, truncated_parts=t) for t in (False, True)]
         assert found == pytest.approx([exact, cut], abs=5e-4)  # given to four digits
         assert found[0] != pytest.approx(cut, abs=5e-4)
 
 
 def test_the_exponents_as_written_are_sums_of_printed_numbers() -> None:
-    found = [DynamicExponent(exponent=name, as_written=True).found(Inputs()) for name in ("both", "first", "second")]
+    found = [dynamic_exponent(name, as_written=True) for name in ("both", "first", "second")]
     assert found == pytest.approx([7.07, 7.07 - 4.29, 7.07 - 2.77], rel=1e-12)  # round-off
 
 
 def test_touching_is_when_the_rise_is_the_recess() -> None:
-    force = AnnulusCreep(quantity="force_to_touch").found(Inputs())
-    assert AnnulusCreep(quantity="rise", force=force).found(Inputs()) == pytest.approx(0.7e-3, rel=1e-12)  # round-off
-    moment = AnnulusCreep(quantity="time_to_touch").found(Inputs())
-    assert AnnulusCreep(quantity="rise", time=moment).found(Inputs()) == pytest.approx(0.7e-3, rel=1e-12)
+    force = annulus_creep(quantity="force_to_touch")
+    assert annulus_creep(quantity="rise", force=force) == pytest.approx(0.7e-3, rel=1e-12)  # round-off
+    moment = annulus_creep(quantity="time_to_touch")
+    assert annulus_creep(quantity="rise", time=moment) == pytest.approx(0.7e-3, rel=1e-12)
 
 
 def test_moduli_and_compliances_are_reciprocal() -> None:
     quantities = ("elastic_modulus", "viscous_modulus", "elastic_compliance", "viscous_compliance")
-    e, v, d, w = (AtrialOscillation(quantity=name, frequency=6.0).found(Inputs()) for name in quantities)  # type: ignore[arg-type]
+    e, v, d, w = (atrial_oscillation(name, frequency=6.0) for name in quantities)  # type: ignore[arg-type]
     assert (e + 1j * v) * (d - 1j * w) == pytest.approx(1, rel=1e-13)  # round-off
 
 
@@ -115,4 +119,4 @@ def test_the_sensitivities_are_the_differences_of_the_compliance() -> None:
     np.testing.assert_allclose(sensitivities(), expected, atol=1e-8)  # the square of the step, and round-off over the step
     with pytest.raises(AssertionError):
         np.testing.assert_allclose(sensitivities(), expected + 3e-8, atol=1e-8)
-    assert [IdentifiableConstants(data_error=error).found(Inputs()) for error in (0.01, 1e-9)] == [4, 8]
+    assert [identifiable_constants(error) for error in (0.01, 1e-9)] == [4, 8]

@@ -1,4 +1,4 @@
-"""The table of chapter 5: rows without simulations hold, a number wrong by three tolerances does not, and its evaluators."""
+"""The table of chapter 5: rows without simulations hold, a number wrong by three tolerances does not, and its functions."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ import pytest
 from tactsim.errors import InputError
 from tactsim.validation import load_tables
 from tactsim.validation.comparison import compare_row
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.probe_force_ratio import Press, ProbeForceRatio
-from tactsim.validation.evaluators.switch_mean_rate import SwitchMeanRate
 from tactsim.validation.execution import simulated
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.probe import Press, probe_force_ratio, switch_mean_rate
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Bound, OutsideBy, Row
 
@@ -74,20 +73,22 @@ def touch(force: float) -> RunOutcome:
 
 
 def test_a_ratio_is_taken_on_the_way_in() -> None:
-    press = Press(tissue=1, rate=1e-3)
-    found = ProbeForceRatio(study="s", run="r", press=press, over=press, depth=1.2e-3)
-    assert found.found(Inputs(studies={"s": (touch(2.0),)})) == 1.0
+    press, touched = Press(tissue=1, rate=1e-3), touch(2.0)
+
+    def ratio(over: Press = press, depth: float = 1.2e-3, outcome: RunOutcome = touched) -> float:
+        return probe_force_ratio(Inputs(studies={"s": (outcome,)}), "s", "r", press, over, depth=depth)
+
+    assert ratio() == 1.0
     for other in ({"tissue": 2, "rate": 1e-3}, {"tissue": 1, "rate": 2e-3}):
         with pytest.raises(InputError, match="no touch of tissue"):
-            found.model_copy(update={"over": Press(**other)}).found(Inputs(studies={"s": (touch(2.0),)}))
+            ratio(over=Press(**other))
     with pytest.raises(InputError, match="down to"):
-        found.model_copy(update={"depth": 6e-3}).found(Inputs(studies={"s": (touch(2.0),)}))
-    failed = touch(2.0).model_copy(update={"status": "failed", "reason": "gave up"})
+        ratio(depth=6e-3)
     with pytest.raises(InputError, match="gave up"):
-        found.found(Inputs(studies={"s": (failed,)}))
+        ratio(outcome=touched.model_copy(update={"status": "failed", "reason": "gave up"}))
 
 
 def test_coarse_sampling_misses_the_rate_by_its_step() -> None:
-    coarse = SwitchMeanRate(rate=0.97e-3, sampling_rate=20.0).found(Inputs())
+    coarse = switch_mean_rate(rate=0.97e-3, sampling_rate=20.0)
     assert coarse == pytest.approx(0.97e-3, rel=0.02)
     assert coarse != pytest.approx(0.97e-3, rel=1e-4)

@@ -1,4 +1,4 @@
-"""The table of section 6.6: its evaluators on invented grasps, findings that can fail, and one simulated pair."""
+"""The table of section 6.6: its numbers on invented grasps, findings that can fail, and one simulated pair."""
 
 from __future__ import annotations
 
@@ -11,19 +11,15 @@ import pytest
 from pydantic import ValidationError
 from thesis_tables import MANIFEST, TABLE, write_tables
 
-from tactsim.errors import CaseError, InputError, UnknownName
+from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
 from tactsim.validation import compare, load_tables
 from tactsim.validation.comparison import compare_row
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.taxel_asymmetry import TaxelAsymmetry
-from tactsim.validation.evaluators.taxel_change import TaxelChange
-from tactsim.validation.evaluators.taxel_contrast import TaxelContrast
-from tactsim.validation.evaluators.taxel_pulse import TaxelPulse
 from tactsim.validation.execution import StudyRunner
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.grasp import taxel_asymmetry, taxel_change, taxel_contrast, taxel_history, taxel_pulse
 from tactsim.validation.report import count_rows, terminal_report
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Assumption, Bound, Row
-from tactsim.validation.taxel_readings import taxel_history
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
 LOADED = load_tables(SHIPPED, ["section_6_6"])
@@ -75,34 +71,34 @@ def test_a_history_has_rows_and_columns_in_their_places() -> None:
         taxel_history(grasp("a", forces).model_copy(update={"history": {}}), "lower")
 
 
-def change(runs: Sequence[str], which: str, **others: Any) -> TaxelChange:
+def change(studies: Inputs, runs: Sequence[str], which: Any, **others: Any) -> float:
     """A change in the study ``s``."""
-    return TaxelChange.model_validate({"study": "s", "runs": tuple(runs), "change": which, **others})
+    return taxel_change(studies, "s", which, tuple(runs), **others)
 
 
 def test_the_least_and_the_greatest_change_tell_a_sign() -> None:
     rising = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.7), d=middle(2.7))
     turning = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.4), d=middle(2.7))
-    assert change("abcd", "least along").found(rising) == pytest.approx(0.2, rel=1e-12)  # round-off
-    assert change("abcd", "greatest along").found(rising) == pytest.approx(1.0, rel=1e-12)
-    assert change("abcd", "least along").found(turning) < 0
-    assert change("bcd", "least from base", bases=("a",)).found(rising) == pytest.approx(0.5, rel=1e-12)
-    assert change("bc", "greatest from base", bases=("d",)).found(turning) == pytest.approx(-1.2, rel=1e-12)
-    assert change("abcd", "greatest along", taxel=(1, 1)).found(rising) == 0
+    assert change(rising, "abcd", "least along") == pytest.approx(0.2, rel=1e-12)  # round-off
+    assert change(rising, "abcd", "greatest along") == pytest.approx(1.0, rel=1e-12)
+    assert change(turning, "abcd", "least along") < 0
+    assert change(rising, "bcd", "least from base", bases=("a",)) == pytest.approx(0.5, rel=1e-12)
+    assert change(turning, "bc", "greatest from base", bases=("d",)) == pytest.approx(-1.2, rel=1e-12)
+    assert change(rising, "abcd", "greatest along", taxel=(1, 1)) == 0
 
 
 def test_what_the_meshes_differ_by_is_taken_off() -> None:
     """Plain blocks on the two meshes read 1 and 2 N: the body adds 0.5 N on the first and 0.2 N on the second."""
     studies = inputs(a=middle(1.5), b=middle(2.2), plain_a=middle(1.0), plain_b=middle(2.0))
     plain = ("plain_a", "plain_b")
-    assert change("ab", "least along").found(studies) > 0
-    assert change("ab", "least along", bases=plain).found(studies) == pytest.approx(-0.3, rel=1e-12)
-    assert change("ab", "least from base", bases=plain).found(studies) == pytest.approx(0.2, rel=1e-12)
+    assert change(studies, "ab", "least along") > 0
+    assert change(studies, "ab", "least along", bases=plain) == pytest.approx(-0.3, rel=1e-12)
+    assert change(studies, "ab", "least from base", bases=plain) == pytest.approx(0.2, rel=1e-12)
 
 
 def test_the_jaws_are_told_apart() -> None:
     studies = Inputs(studies={"s": (grasp("a", middle(2.0), middle(2.5)), grasp("b", middle(4.0), middle(3.0)))})
-    found = [change("ab", "least along", side=side).found(studies) for side in ("upper", "lower", "upper less lower")]
+    found = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
     assert found == [2.0, 0.5, 1.5]
 
 
@@ -110,10 +106,10 @@ def test_a_change_is_read_at_the_closing_asked_for() -> None:
     forces = middle(3.0)
     forces[0] = 2.0
     studies = inputs(a=forces, plain=middle(2.5))
-    at = [change("a", "least from base", bases=("plain",), closing=closing).found(studies) for closing in (None, 1e-3, 5e-4)]
+    at = [change(studies, "a", "least from base", bases=("plain",), closing=closing) for closing in (None, 1e-3, 5e-4)]
     assert at == [0.5, 0.5, 2.0]
     with pytest.raises(InputError, match="no step of s, a ended at a closing of 700 µm"):
-        change("a", "least from base", bases=("plain",), closing=7e-4).found(studies)
+        change(studies, "a", "least from base", bases=("plain",), closing=7e-4)
 
 
 @pytest.mark.parametrize(
@@ -125,19 +121,23 @@ def test_a_change_is_read_at_the_closing_asked_for() -> None:
     ],
 )
 def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, said: str) -> None:
+    with pytest.raises(InvalidQuantity, match=said):
+        change(Inputs(), runs, which, bases=tuple(bases))
+    row = next(row for row in TABLE_6_6.rows if getattr(row.evaluate, "kind", "") == "taxel_change")
+    call = {"kind": "taxel_change", "study": "s", "runs": tuple(runs), "change": which, "bases": tuple(bases)}
     with pytest.raises(ValidationError, match=said):
-        change(runs, which, bases=tuple(bases))
+        type(row).model_validate({**row.model_dump(), "evaluate": call})
 
 
 def test_what_did_not_converge_or_is_not_there_is_told() -> None:
     failed = Inputs(studies={"s": (grasp("a", middle(1.0)), grasp("b", middle(2.0), status="failed"))})
     with pytest.raises(InputError, match="s, b did not converge: end"):
-        change("ab", "least along").found(failed)
+        change(failed, "ab", "least along")
     with pytest.raises(UnknownName):
-        change("ac", "least along").found(failed)
+        change(failed, "ac", "least along")
     for place in ((0, 1), (4, 1), (1, 4)):
         with pytest.raises(InputError, match=r"of a matrix of 3 rows"):
-            TaxelContrast(study="s", run="a", taxel=place, others=((1, 1),)).found(failed)
+            taxel_contrast(failed, "s", "a", taxel=place, others=((1, 1),))
 
 
 @pytest.mark.parametrize(("mirror", "place"), [("left_right", (1, 2)), ("front_back", (2, 1)), ("upper_lower", (1, 1))])
@@ -146,27 +146,27 @@ def test_only_the_broken_symmetry_is_told(mirror: str, place: tuple[int, int]) -
     bent[-1][place] += 0.1
     studies = Inputs(studies={"s": (grasp("even", even), grasp("bent", even, bent))})
     for name in ("left_right", "front_back", "upper_lower"):
-        assert TaxelAsymmetry(study="s", run="even", mirror=name).found(studies) == 0  # type: ignore[arg-type]
-        found = TaxelAsymmetry(study="s", run="bent", mirror=name).found(studies)  # type: ignore[arg-type]
+        assert taxel_asymmetry(studies, "s", "even", name) == 0  # type: ignore[arg-type]
+        found = taxel_asymmetry(studies, "s", "bent", name)  # type: ignore[arg-type]
         assert (found > 0) == (name in (mirror, "upper_lower"))
     largest = bent[-1].max()
-    assert TaxelAsymmetry(study="s", run="bent", mirror=mirror).found(studies) == pytest.approx(0.1 / largest, rel=1e-12)  # type: ignore[arg-type]
+    assert taxel_asymmetry(studies, "s", "bent", mirror) == pytest.approx(0.1 / largest, rel=1e-12)  # type: ignore[arg-type]
 
 
 def test_a_taxel_reads_less_than_each_of_the_others() -> None:
     row = np.array([[[0.5, 0.9, 0.7]]])
     found = inputs(a=row, b=row[..., ::-1])
-    assert TaxelContrast(study="s", run="a", taxel=(1, 1), others=((1, 2), (1, 3))).found(found) == pytest.approx(-0.2, rel=1e-12)
-    assert TaxelContrast(study="s", run="b", taxel=(1, 1), others=((1, 2), (1, 3))).found(found) > 0
+    assert taxel_contrast(found, "s", "a", taxel=(1, 1), others=((1, 2), (1, 3))) == pytest.approx(-0.2, rel=1e-12)
+    assert taxel_contrast(found, "s", "b", taxel=(1, 1), others=((1, 2), (1, 3))) > 0
 
 
 def test_the_change_of_a_pulse_leaves_out_what_came_before() -> None:
     steps = np.zeros((4, 1, 2))
     steps[:, 0, 0], steps[:, 0, 1] = (9.0, 0.1, 0.4, 0.2), (0.0, 0.3, 0.35, 0.3)
-    assert TaxelPulse(study="s", run="a", start=1.0).found(inputs(a=steps)) == pytest.approx(0.3, rel=1e-12)
-    assert TaxelPulse(study="s", run="a", start=0.0).found(inputs(a=steps)) > 1
+    assert taxel_pulse(inputs(a=steps), "s", "a", 1.0) == pytest.approx(0.3, rel=1e-12)
+    assert taxel_pulse(inputs(a=steps), "s", "a", 0.0) > 1
     with pytest.raises(InputError, match="a change needs two"):
-        TaxelPulse(study="s", run="a", start=3.0).found(inputs(a=steps))
+        taxel_pulse(inputs(a=steps), "s", "a", 3.0)
 
 
 def finding(folder: Path, state: str) -> list:
@@ -181,7 +181,7 @@ def finding(folder: Path, state: str) -> list:
 
 
 def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
-    (row,) = finding(tmp_path, FINDING)  # the evaluator finds 125 N/m
+    (row,) = finding(tmp_path, FINDING)  # 125 N/m are computed
     assert (row.held, row.state, row.reason) == (True, "above 100 N/m", "a force that is felt")
     (row,) = finding(tmp_path, FINDING.replace("above", "below"))
     assert (row.held, row.state) == (False, "LEFT: was below 100 N/m")
@@ -201,7 +201,7 @@ def test_a_bad_limit_is_told(tmp_path: Path, state: str, said: str) -> None:
         finding(tmp_path, state)
 
 
-def test_a_finding_without_an_evaluator_is_refused() -> None:
+def test_a_finding_that_calls_nothing_is_refused() -> None:
     row = next(row for row in TABLE_6_6.rows if isinstance(row.state, Bound))
     with pytest.raises(ValidationError, match="needs to be evaluated"):
         type(row).model_validate({**row.model_dump(), "evaluate": None})

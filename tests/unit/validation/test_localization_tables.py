@@ -10,8 +10,8 @@ import pytest
 from tactsim.errors import InputError
 from tactsim.validation import compare, load_tables
 from tactsim.validation.comparison import compare_row
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.section_value import SectionValue
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.views import section_value
 from tactsim.validation.table import Bound, OutsideBy, Row
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
@@ -48,4 +48,4 @@ def test_another_deviation_is_noticed(row: Row) -> None:
 
 def test_a_pixel_beyond_the_picture_is_refused() -> None:
     with pytest.raises(InputError, match="pixel"):
-        SectionValue(pixel=(6, 1)).found(Inputs())
+        section_value(pixel=(6, 1))

@@ -6,14 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from thesis_tables import TABLE as TABLE_OF_ROWS
+from thesis_tables import write_tables
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.validation import compare, load_tables
 from tactsim.validation.comparison import compare_row
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.filter_transfer import FilterTransfer
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.film import filter_transfer
 from tactsim.validation.table import Bound, Row
 
+FILTER = "{kind: filter_transfer, cutoff: 40 Hz, sampling_rate: 80 Hz}"
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
 TABLE = load_tables(SHIPPED).tables["section_2_2"]
 
@@ -37,6 +40,11 @@ def test_a_finding_on_the_wrong_side_is_noticed(row: Row) -> None:
     assert not compare_row(row.model_copy(update={"state": turned}), Inputs()).held
 
 
-def test_a_filter_that_cannot_be_sampled_is_refused() -> None:
-    with pytest.raises((InvalidQuantity, ValueError), match="half the sampling_rate"):
-        FilterTransfer(cutoff=40.0, sampling_rate=80.0)
+def test_a_filter_that_cannot_be_sampled_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InvalidQuantity, match="half the sampling_rate"):
+        filter_transfer(cutoff=40.0, sampling_rate=80.0)
+    text = TABLE_OF_ROWS.replace("{kind: stiffness_resolution, force: 0.1 N, displacement: 0.8 mm}", FILTER).replace(
+        "125 N/m", "0.5"
+    )
+    with pytest.raises(CaseError, match=r"small\.yaml:10: rows\.0\.evaluate: cutoff 40 Hz of the low pass must be below half"):
+        load_tables(write_tables(tmp_path, text))

@@ -1,4 +1,4 @@
-"""The evaluators of the simulated Table 3.3, and that a wrong number leaves its row."""
+"""The numbers of Table 3.3, measured and simulated, and that a wrong one leaves its row."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ import pytest
 
 from tactsim.errors import InputError, InvalidQuantity, UnknownName
 from tactsim.validation import compare, load_tables
-from tactsim.validation.evaluator import Inputs
-from tactsim.validation.evaluators.elastomer_value import ElastomerValue
-from tactsim.validation.evaluators.hertz_durometer_modulus import HertzDurometerModulus
+from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities.elastomers import elastomer_value, hertz_durometer_modulus, ranking_agreement
 from tactsim.validation.study import RunOutcome
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
@@ -22,25 +21,24 @@ def inputs(status="converged"):
     return Inputs(studies={"s": (run,)})
 
 
-def value(shape=2, elastomer=1, **changes):
-    return ElastomerValue(**({"study": "s", "run": "a", "shape": shape, "elastomer": elastomer} | changes))
+def value(shape=2, elastomer=1, status="converged", **changes):
+    return elastomer_value(inputs(status), "s", "a", shape, elastomer, **changes)
 
 
 def test_the_value_of_a_shape_and_an_elastomer():
-    assert value().found(inputs()) == 22.9
-    assert value(1, 2).found(inputs()) == 17.5
-    assert value(quantity="modulus_of_reading").found_unit == "Pa"
+    assert value() == 22.9
+    assert value(1, 2) == 17.5
 
 
 def test_what_is_not_there_is_told():
     with pytest.raises(InputError, match="no elastomer 3 with a shape 2"):
-        value(elastomer=3).found(inputs())
+        value(elastomer=3)
     with pytest.raises(UnknownName, match="did you mean 'predicted_reading'"):
-        value(quantity="predicted_readings").found(inputs())
+        value(quantity="predicted_readings")
     with pytest.raises(InputError, match="did not converge: it gave up"):
-        value().found(inputs("failed"))
+        value(status="failed")
     with pytest.raises(InvalidQuantity, match="Shore reading 100"):
-        HertzDurometerModulus(reading=100).found(Inputs())
+        hertz_durometer_modulus(100)
 
 
 def test_the_rows_of_hertz_hold_and_a_wrong_reading_leaves_them():
@@ -48,6 +46,13 @@ def test_the_rows_of_hertz_hold_and_a_wrong_reading_leaves_them():
     rows = tuple(row for row in table.rows if row.id.startswith("hertz."))
     held = compare("a", table.model_copy(update={"rows": rows}), SHIPPED, {}).rows
     assert [row.held for row in held] == [True, True]
-    wrong = rows[0].model_copy(update={"evaluate": HertzDurometerModulus(reading=36.6)})  # 1.8 % in the modulus
+    wrong = rows[0].model_copy(update={"evaluate": rows[0].evaluate.model_copy(update={"reading": 36.6})})  # 1.8 % in the modulus
     (left,) = compare("a", table.model_copy(update={"rows": (wrong,)}), SHIPPED, {}).rows
     assert not left.held
+
+
+def test_a_pair_in_another_order_lowers_the_agreement():
+    assert ranking_agreement((1, 2, 3), (10, 30, 20)) == pytest.approx(1 / 3, rel=1e-12)  # by hand: 2 of 3 pairs alike
+    assert ranking_agreement((1, 2, 2), (10, 30, 20)) == pytest.approx(2 / 3, rel=1e-12)  # a tie counts nothing
+    with pytest.raises(InputError, match="2 numbers cannot be ranked against 3"):
+        ranking_agreement((1, 2), (1, 2, 3))

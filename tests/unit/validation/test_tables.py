@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
-from thesis_tables import MANIFEST, TABLE, Doubled, write_tables
+from thesis_tables import MANIFEST, TABLE, write_tables
 
 from tactsim.errors import CaseError, StorageError, UnknownName
-from tactsim.validation import compare, load_tables
-from tactsim.validation.table import table_class
+from tactsim.validation import load_tables
 
 
 def test_a_table_is_read_in_si(tmp_path: Path) -> None:
@@ -74,12 +73,3 @@ def test_a_deleted_or_uncounted_file_is_a_fault(tmp_path: Path) -> None:
 def test_a_table_of_another_chapter_is_a_fault(tmp_path: Path) -> None:
     faults = load_tables(write_tables(tmp_path, manifest=MANIFEST.replace('"3"', '"4"'))).faults
     assert faults == ("small: the table names chapter 3, the manifest chapter 4",)
-
-
-def test_an_evaluator_is_all_that_a_new_kind_of_row_needs(tmp_path: Path) -> None:
-    text = TABLE.split("  - id: known", maxsplit=1)[0]
-    text = text.replace("kind: stiffness_resolution, force: 0.1 N, displacement: 0.8 mm", "kind: doubled, length: 0.5")
-    folder = write_tables(tmp_path, text.replace("125 N/m", "1000 mm"), MANIFEST.replace("small: 3", "small: 1"))
-    table = load_tables(folder, model=table_class(Doubled)).tables["small"]
-    (outcome,) = compare("small", table, folder, {}).rows
-    assert (outcome.found, outcome.held) == (1.0, True)

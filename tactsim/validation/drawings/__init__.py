@@ -1,1 +1,0 @@
-"""What figures of thesis tables can show; one kind per file."""

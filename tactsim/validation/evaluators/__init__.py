@@ -1,1 +1,0 @@
-"""What rows of thesis tables can compute; one kind per file."""

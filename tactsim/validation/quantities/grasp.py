@@ -1,0 +1,188 @@
+"""What the taxels of simulated grasps read of lumps, arteries and pulses: thesis, section 6.6."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.interfaces import Array, quantity
+from tactsim.units import Length, NonNegative, Time, format_quantity
+from tactsim.validation.inputs import Inputs, RunName, StudyName
+from tactsim.validation.study import RunOutcome
+
+Side = Literal["upper", "lower"]
+SIDES: tuple[Side, ...] = get_args(Side)
+Sides = Side | Literal["upper less lower"]
+"""A jaw, or the difference of both."""
+Taxel = tuple[int, int]
+"""Row and column, counted from 1."""
+SAME = 1e-9
+"""Largest relative difference of two closings or times that is round-off."""
+
+
+def taxel_history(outcome: RunOutcome, side: Side) -> Array:
+    """Forces (steps, rows, columns) in N that press on the taxels of a jaw.
+
+    Raises
+    ------
+    InputError
+        If the run has no taxels.
+    """
+    name = re.compile(rf"taxel_force_{side}_(\d+)_(\d+)")
+    forces = {(int(m[1]), int(m[2])): values for key, values in outcome.history.items() if (m := name.fullmatch(key))}
+    if not forces:
+        raise InputError(f"{outcome.id} has no taxels of the {side} jaw")
+    rows, columns = (max(place[k] for place in forces) for k in range(2))
+    matrix = [[forces[row, column] for column in range(1, columns + 1)] for row in range(1, rows + 1)]
+    return np.array(matrix).transpose(2, 0, 1)
+
+
+def _taxels_at(inputs: Inputs, run: tuple[str, str], side: Side, closing: float | None = None) -> Array:
+    """Forces (rows, columns) in N on the taxels of a jaw at the end of a run, or at a closing in m that a step ended with."""
+    outcome = inputs.converged(*run)
+    forces = taxel_history(outcome, side)
+    if closing is None:
+        return forces[-1]
+    away = np.abs(np.array(outcome.history["displacement"]) - closing)
+    if away.min() > SAME * closing:
+        raise InputError(f"no step of {', '.join(run)} ended at a closing of {format_quantity(closing, 'm')}")
+    return forces[int(away.argmin())]
+
+
+def _force_on(forces: Array, taxel: Taxel) -> float:
+    """The force in N on a taxel."""
+    row, column = taxel
+    if not (1 <= row <= forces.shape[0] and 1 <= column <= forces.shape[1]):
+        raise InputError(f"taxel {row}, {column} of a matrix of {forces.shape[0]} rows and {forces.shape[1]} columns")
+    return float(forces[row - 1, column - 1])
+
+
+@quantity(unit="1")
+def taxel_asymmetry(
+    inputs: Inputs, study: StudyName, run: RunName, mirror: Literal["left_right", "front_back", "upper_lower"]
+) -> float:
+    """Largest difference of mirrored taxels over the largest force of a taxel, dimensionless.
+
+    Parameters
+    ----------
+    mirror : columns, rows or jaws that are exchanged
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no taxels.
+    """
+    forces = np.stack([_taxels_at(inputs, (study, run), side) for side in SIDES])
+    axis = {"upper_lower": 0, "front_back": 1, "left_right": 2}[mirror]
+    return float(np.abs(forces - np.flip(forces, axis)).max() / np.abs(forces).max())
+
+
+def _forces_on(
+    inputs: Inputs, study: StudyName, runs: tuple[str, ...], *, side: Sides, taxel: Taxel, closing: float | None
+) -> Array:
+    """Force in N on a taxel in each of some runs, shape (runs,)."""
+    if side == "upper less lower":
+        upper, lower = (_forces_on(inputs, study, runs, side=jaw, taxel=taxel, closing=closing) for jaw in SIDES)
+        return upper - lower
+    return np.array([_force_on(_taxels_at(inputs, (study, run), side, closing), taxel) for run in runs])
+
+
+def _comparable(change: str, runs: tuple[str, ...], bases: tuple[str, ...]) -> None:
+    if len(bases) not in (0, 1, len(runs)):
+        raise InvalidQuantity(f"{len(bases)} bases for {len(runs)} runs; give none, one, or one for each")
+    if "base" in change and not bases:
+        raise InvalidQuantity(f"change {change}: there is no base")
+    if "along" in change and len(runs) < 2:
+        raise InvalidQuantity(f"change {change}: one run makes no change")
+
+
+@quantity(unit="N", check=_comparable)
+def taxel_change(
+    inputs: Inputs,
+    study: StudyName,
+    change: Literal["least along", "greatest along", "least from base", "greatest from base"],
+    runs: Annotated[tuple[str, ...], Field(min_length=1)],
+    bases: tuple[str, ...] = (),
+    *,
+    side: Sides = "upper",
+    taxel: Taxel = (2, 2),
+    closing: Length | None = None,
+) -> float:
+    """Least or greatest change of the force in N on a taxel from simulation to simulation.
+
+    ``along`` compares each run with the one before it, the force of its base taken off; ``from base`` each with its base.
+    A claim that the force rises holds if the least change is positive; that it falls, if the greatest is negative.
+
+    Parameters
+    ----------
+    change : which of the changes
+    runs : runs in the order of the change
+    bases : runs without the inclusion: one for each run (on the same mesh, whose error is then taken off), or one for all
+    side : jaw, or the difference of both
+    taxel : row and column, counted from 1
+    closing : closing of each jaw at an accepted step; by default the last
+
+    Raises
+    ------
+    InvalidQuantity
+        If the runs and bases do not make such a change.
+    UnknownName, InputError
+        If there is no such run, or one did not converge, has no such taxel, or no step that ended at the closing.
+    """
+    _comparable(change, runs, bases)
+    forces = partial(_forces_on, inputs, study, side=side, taxel=taxel, closing=closing)
+    excess = forces(runs) - (forces(bases) if bases else 0.0)
+    changes = excess if "base" in change else np.diff(excess)
+    return float(changes.min() if "least" in change else changes.max())
+
+
+@quantity(unit="N")
+def taxel_contrast(
+    inputs: Inputs,
+    study: StudyName,
+    run: RunName,
+    *,
+    side: Side = "lower",
+    taxel: Taxel,
+    others: Annotated[tuple[Taxel, ...], Field(min_length=1)],
+) -> float:
+    """Greatest difference in N of the force on a taxel from that on any of some others: negative if it reads less than each.
+
+    Parameters
+    ----------
+    side : jaw
+    taxel : row and column, counted from 1
+    others : rows and columns of those that it is compared with
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no such taxel.
+    """
+    forces = _taxels_at(inputs, (study, run), side)
+    return max(_force_on(forces, taxel) - _force_on(forces, other) for other in others)
+
+
+@quantity(unit="N")
+def taxel_pulse(inputs: Inputs, study: StudyName, run: RunName, start: NonNegative[Time]) -> float:
+    """Largest difference in N between the greatest and the least force of a taxel, over all taxels of both jaws, from a time on.
+
+    Parameters
+    ----------
+    start : time at which the pulse begins
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge, has no taxels, or fewer than two steps from this time on.
+    """
+    outcome = inputs.converged(study, run)
+    beating = np.array(outcome.history["time"]) >= start * (1 - SAME)
+    if beating.sum() < 2:
+        raise InputError(f"{run} has {beating.sum()} steps from {start:g} s on; a change needs two")
+    return max(float(np.ptp(taxel_history(outcome, side)[beating], axis=0).max()) for side in SIDES)

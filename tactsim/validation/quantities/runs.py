@@ -1,0 +1,256 @@
+"""What the simulations of a table's studies give: quantities, ratios, brackets, and how far the closed forms carry."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.errors import InputError
+from tactsim.interfaces import Array, drawing, quantity
+from tactsim.materials.any_material import AnyMaterial
+from tactsim.units import FrozenModel, Length, Positive, parse_quantity
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+from tactsim.validation.inputs import Inputs, RunName, StudyName
+from tactsim.validation.quantities.annulus import OUTER_RADIUS
+from tactsim.validation.study import RunOutcome
+
+StudyAndRun = tuple[str, str]
+"""Study and run."""
+Area = Literal["annulus", "disc", "both"]
+ClosedForm = Literal["half_space", "layer"]
+
+
+def _value(inputs: Inputs, run: StudyAndRun, quantity: str) -> float:
+    """A quantity of a run in SI."""
+    outcome = inputs.run(*run)
+    if not outcome.converged or quantity not in outcome.quantities:
+        raise InputError(f"{', '.join(run)} has no {quantity}: {outcome.reason}")
+    return outcome.quantities[quantity]
+
+
+@quantity(unit=lambda si_unit: si_unit)
+def run_quantity(inputs: Inputs, study: StudyName, run: RunName, quantity: str, si_unit: str = "1") -> float:
+    """A quantity of a simulation in SI.
+
+    Parameters
+    ----------
+    quantity : name of the quantity
+    si_unit : SI unit of the quantity
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no such quantity.
+    """
+    return _value(inputs, (study, run), quantity)
+
+
+@quantity(unit="1")
+def run_ratio(inputs: Inputs, run: StudyAndRun, over: StudyAndRun, quantity: str = "threshold_pressure") -> float:
+    """A quantity of a simulation over that of another, dimensionless.
+
+    Parameters
+    ----------
+    run, over : study and run of the numerator and of the denominator
+    quantity : name of the quantity
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or one did not converge or has no such quantity.
+    """
+    return _value(inputs, run, quantity) / _value(inputs, over, quantity)
+
+
+@quantity(unit="1")
+def converged_runs(inputs: Inputs, study: StudyName) -> float:
+    """Number of runs of a study that converged: a bracket must not become narrower unnoticed.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such study.
+    """
+    return float(sum(outcome.converged for outcome in inputs.study(study)))
+
+
+def _readings(outcome: RunOutcome, quantity: str, area: Area = "both") -> list[float]:
+    """The quantity in SI; a pressure over the annulus, over the full disc, or both (erratum E16).
+
+    Source: the annular area is what turns the pressures of Table 3.3 into its forces; "total area, on the larger sensor" in 3.2
+    may mean the disc.
+    """
+    value = outcome.quantities[quantity]
+    if quantity != "threshold_pressure":
+        return [value]
+    over_disc = value * outcome.disc_share
+    return {"annulus": [value], "disc": [over_disc], "both": [over_disc, value]}[area]
+
+
+@quantity(unit=lambda quantity: "Pa" if quantity == "threshold_pressure" else "m")
+def bracket(
+    inputs: Inputs,
+    studies: Annotated[tuple[str, ...], Field(min_length=1)],
+    quantity: Literal["threshold_pressure", "threshold_displacement"],
+    area: Area = "both",
+) -> float:
+    """The printed number, in Pa or m, if it lies between the smallest and largest simulated one, else the nearer of the two.
+
+    Only runs that converged count. For ``threshold_pressure`` the bracket spans the pressures over both areas of erratum E16.
+
+    Parameters
+    ----------
+    studies : studies of the table that make the bracket
+    quantity : quantity of the runs
+    area : which area a pressure refers to
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such study, or the row prints no number or no run converged.
+    """
+    if inputs.expected is None:
+        raise InputError("a bracket needs a printed number to compare")
+    outcomes = [outcome for study in studies for outcome in inputs.study(study) if outcome.converged]
+    if not outcomes:
+        raise InputError(f"no run of {', '.join(studies)} converged")
+    values = [value for outcome in outcomes for value in _readings(outcome, quantity, area)]
+    return min(max(inputs.expected, min(values)), max(values))
+
+
+class PrintedLine(FrozenModel):
+    """A printed number drawn across the runs of a study."""
+
+    label: str
+    """What it is."""
+    value: str
+    """The number with its unit."""
+
+
+class Panel(FrozenModel):
+    """The runs of one study."""
+
+    study: str
+    """Study of the table."""
+    title: str
+    """What it simulates."""
+    printed: tuple[PrintedLine, ...]
+    """Printed numbers to compare with."""
+
+
+@drawing
+def range_bars(inputs: Inputs, title: Title, panels: Annotated[tuple[Panel, ...], Field(min_length=1)]) -> Data:
+    """Form ``ranges``: the threshold pressures in Pa of each run over both areas beside the printed numbers, as Table 3.2.
+
+    A run that has not converged has no values.
+
+    Parameters
+    ----------
+    panels : studies from left to right
+
+    Raises
+    ------
+    UnknownName
+        If there is no such study.
+    """
+
+    def bar(outcome: RunOutcome) -> Data:
+        return {"label": outcome.id, "values": _readings(outcome, "threshold_pressure") if outcome.converged else []}
+
+    drawn = [
+        {
+            "title": compared.title,
+            "bars": [bar(outcome) for outcome in inputs.study(compared.study)],
+            "lines": [{"label": line.label, "value": parse_quantity(line.value, "Pa")} for line in compared.printed],
+        }
+        for compared in panels
+    ]
+    return {"form": "ranges", "title": title, "axis": "threshold pressure", "unit": "Pa", "panels": drawn}
+
+
+class ComparedRun(FrozenModel):
+    """A simulation of an annulus pressed into an elastic layer, and what a closed form must know of it."""
+
+    run: str
+    """Run of the study."""
+    material: AnyMaterial
+    """Material of the layer."""
+    thickness: Positive[Length]
+    """Thickness of the layer on its fixed base."""
+    inner_radius: Positive[Length] = 1.5e-3
+    """Inner radius of the annulus."""
+    outer_radius: Positive[Length] = OUTER_RADIUS
+    """Outer radius of the annulus."""
+
+    def departure(self, outcome: RunOutcome, form: ClosedForm) -> tuple[Array, Array]:
+        """Displacement over the outer radius, and force over that of the closed form minus one, at the accepted steps.
+
+        Raises
+        ------
+        InputError
+            If the run has no history.
+        """
+        if not outcome.history:
+            raise InputError(f"{self.run} has no history: {outcome.reason}")
+        depth = np.array(outcome.history["displacement"]) / self.outer_radius
+        slenderness = self.outer_radius / self.thickness if form == "layer" else 0.0
+        solved = solve_annular_punch(self.inner_radius / self.outer_radius, radius_over_thickness=slenderness)
+        stiffness = 8 * self.material.shear_modulus * self.outer_radius**2 * solved.force_factor
+        return depth, np.array(outcome.history["reaction_force"]) / (stiffness * depth) - 1
+
+
+@quantity(unit="1")
+def closed_form_depth(
+    inputs: Inputs, study: StudyName, compared: ComparedRun, form: ClosedForm = "layer", part: Positive[float] = 0.1
+) -> float:
+    """Displacement over the outer radius from which on force and closed form differ by more than a part.
+
+    Zero if they differ from the beginning, the largest displacement if they never do.
+
+    Parameters
+    ----------
+    compared : the simulation
+    form : closed form
+    part : relative difference of the force
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it has no history.
+    """
+    depth, departure = compared.departure(inputs.run(study, compared.run), form)
+    difference = np.abs(departure)
+    beyond = np.flatnonzero(difference > part)
+    if not beyond.size:
+        return float(depth[-1])
+    first = int(beyond[0])
+    if first == 0:
+        return 0.0
+    return float(np.interp(part, difference[first - 1 : first + 1], depth[first - 1 : first + 1]))
+
+
+@drawing
+def closed_form_limits(
+    inputs: Inputs, title: Title, study: StudyName, runs: Annotated[tuple[ComparedRun, ...], Field(min_length=1)]
+) -> Data:
+    """Force of the simulations over that of both closed forms, over displacement over outer radius; all dimensionless.
+
+    Parameters
+    ----------
+    runs : the simulations
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or one has no history.
+    """
+    panels = []
+    forms: tuple[tuple[ClosedForm, str], ...] = (("layer", "layer"), ("half_space", "half-space"))
+    for form, words in forms:
+        departures = {run.run: run.departure(inputs.run(study, run.run), form) for run in runs}
+        curves = [series(name, depth, 1 + departure) for name, (depth, departure) in departures.items()]
+        panels.append(panel(f"force over the closed form of the {words}", "", curves, logarithmic=True))
+    return curves_figure(title, "displacement over the outer radius", "", panels, x_logarithmic=True, even_panels=True)
