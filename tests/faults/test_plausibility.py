@@ -71,7 +71,7 @@ def test_the_result_of_a_run_tells_them():
     soft = {"kind": "neo_hookean", "c10": 1e-9}
     case = Grasp.example().model_dump()
     case["block"]["tissue"], case["mesh"]["cells"] = soft, (2, 2, 2)
-    result = Grasp.model_validate(case).run(lambda step: None)
+    result = Grasp.model_validate(case).run()
     assert any("block.tissue has a shear modulus of 2 nPa" in warning for warning in result.warnings)
 
 

@@ -65,11 +65,11 @@ def differences(result, reference):
 
 @pytest.fixture(scope="module")
 def quarter():
-    return posed().run(lambda step: None)
+    return posed().run()
 
 
 def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
-    section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run(lambda step: None)
+    section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run()
     assert quarter.status == section.status == "converged"
     assert quarter.details["symmetry"] == "quarter"
     apart = np.abs(differences(quarter, section)[-1])
@@ -91,7 +91,7 @@ def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
 
 @pytest.mark.slow
 def test_half_a_body_is_two_quarters(quarter):
-    half = posed(Half).run(lambda step: None)
+    half = posed(Half).run()
     assert half.details["unknowns"] > 1.7 * quarter.details["unknowns"]
     assert len(half.steps) == len(quarter.steps)
     np.testing.assert_allclose(histories(half), histories(quarter), rtol=1e-6)  # Newton's tolerance, and steps that add it up
@@ -118,7 +118,7 @@ def test_a_leaning_annulus_is_held_in_balance_by_the_base():
 
 @pytest.mark.slow
 def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
-    half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run(lambda step: None) for axis in ("tilt_y", "tilt_x"))
+    half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run() for axis in ("tilt_y", "tilt_x"))
     assert (half.details["symmetry"], whole.details["symmetry"]) == ("half", "whole")
     for name in ("force_vector", "moment_vector"):
         x, y, z = half.quantities[name].value
@@ -130,9 +130,7 @@ def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
 
 @pytest.mark.slow
 def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
-    space, section = (
-        load_case(CASES / name).experiment.run(lambda step: None) for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml")
-    )
+    space, section = (load_case(CASES / name).experiment.run() for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml"))
     assert space.status == section.status == "converged"
     apart = np.abs(differences(space, section))
     assert apart.max() < DEMANDED, apart.max(axis=0)

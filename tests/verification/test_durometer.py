@@ -36,7 +36,7 @@ def pressed():
         penetration_tolerance=1e-2 * DEPTH,
         mesh=MeshSettings(finest=4e-3 * RADIUS, growth=0.5, adaptive=False),
         steps=StepSettings(first=DEPTH / 2, largest=DEPTH / 2),
-    ).run(lambda step: None)
+    ).run()
     assert result.status == "converged", result.reason
     return {name: quantity.value for name, quantity in result.quantities.items()}
 

@@ -18,7 +18,7 @@ RADIUS = 3e-3
 
 
 def pressed(case, *overrides):
-    return load_case(f"cases/{case}.yaml", overrides).experiment.run(lambda step: None)
+    return load_case(f"cases/{case}.yaml", overrides).experiment.run()
 
 
 def threshold_pressure(case, *overrides):

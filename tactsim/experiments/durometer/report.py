@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.section_model import IndentationModel
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -36,12 +35,11 @@ class DurometerRecord(IndentationRecord):
         self,
         experiment: IndentationSetup,
         model: IndentationModel,
-        begin: float,
         *,
         scale: DurometerScale,
         spring_tolerance: float,
     ):
-        super().__init__(experiment, model, begin)
+        super().__init__(experiment, model)
         self.scale, self.spring_tolerance = scale, spring_tolerance
         self.balance: dict[str, float] = {}
         specimen = experiment.specimen
@@ -60,22 +58,18 @@ class DurometerRecord(IndentationRecord):
             self.balance = record.values
         return record
 
-    def told(self) -> str:
-        """How a run ended that went its way."""
+    def _verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
         if self.balance:
             reading = float(self.scale.reading(self.balance["displacement"]))
-            return f"tissue and spring balance at a reading of {reading:.2f}"
-        borne, asked = self.steps[-1].values["reaction_force"], self.scale.force_at_zero
+            return Status.CONVERGED, f"tissue and spring balance at a reading of {reading:.2f}"
+        borne, asked = self.steps[-1].values["reaction_force"] if self.steps else 0.0, self.scale.force_at_zero
         words = f"the tissue bears {format_quantity(borne, 'N')} of {format_quantity(asked, 'N')} at the whole travel"
-        return f"the indentor bottoms out: {words}, the reading is below 0"
+        return Status.CONVERGED, f"the indentor bottoms out: {words}, the reading is below 0"
 
     def _values(self, state: ContactEquilibrium) -> dict[str, float]:
         hertz = float(hertz_force(state.load, self.experiment.body.radius, self.youngs_modulus))
         return super()._values(state) | {"spring_force": float(self.scale.spring_force(state.load)), "hertz_force": hertz}
-
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
-        return replace(super().result(status, reason), kind="durometer")
 
     def _quantities(self) -> dict[str, Quantity]:
         found = super()._quantities()

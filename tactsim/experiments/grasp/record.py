@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,6 +16,7 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely, unstable
+from tactsim.interfaces.run import Findings
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.block_model import SIDES, GraspModel
 from tactsim.mechanics.block_source import SourcedBlock
@@ -26,7 +26,7 @@ from tactsim.mechanics.history_path import TimedPath, TimedState
 from tactsim.mechanics.penetration_effect import bonded_block_rate
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.success import judged
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
@@ -58,14 +58,13 @@ class GraspRecord:
         },
     }
 
-    def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath, begin: float):
-        self.experiment, self.model, self._sourced, self._path, self._begin = experiment, model, sourced, path, begin
+    def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
+        self.experiment, self.model, self._sourced, self._path = experiment, model, sourced, path
         self.steps: list[StepRecord] = []
         self.readings: list[dict[str, JawReading]] = []
         self._kept: dict[str, TimedState] = {}
         self._quality = ContactQuality(_stiffest(experiment))
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._setup_time = time.perf_counter() - begin
         self._read: MatrixReading | None = None
         self._unread: str | None = None
 
@@ -112,9 +111,9 @@ class GraspRecord:
             self._kept["strongest"] = state
         self._kept["last"] = state
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if the last state is none."""
-        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
+    def findings(self) -> Findings:
+        """What everything that was accepted says; no success if the last state is none."""
+        status, reason = judged(Status.CONVERGED, "end of the history", self.steps[-1:], self.experiment.tolerance)
         readout, layout = self.experiment.readout, self.experiment.matrix
         if readout is not None and self.steps:
             times = np.array([step.values["time"] for step in self.steps])
@@ -123,20 +122,14 @@ class GraspRecord:
                 self._read = readout.read(times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
-        return Result(
-            kind="grasp",
+        return Findings(
+            reason,
+            self.steps,
             status=status,
-            reason=reason,
             quantities=self._quantities(),
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings()),
-            timing={
-                "meshing": self._sourced.block.seconds,
-                "setup": self._setup_time,
-                "total": time.perf_counter() - self._begin,
-            },
-            steps=tuple(self.steps),
-            units=self.UNITS,
+            assumptions=self._assumptions(),
+            warnings=self._warnings(),
+            timing={"meshing": self._sourced.block.seconds},
             frames=self._frames(),
             details=self._details(),
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import ClassVar, Literal, Self
 
@@ -12,16 +11,15 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.contact.punch import Punch
 from tactsim.contact.tilted import Tilted
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.indentation.path import EVENT_TOLERANCE, PAST_PEAK, SWITCH_LENGTH
 from tactsim.experiments.indentation.record_3d import SpaceIndentationRecord
 from tactsim.experiments.indentation.setup_3d import SpaceIndentationSetup, SpaceMeshSettings
 from tactsim.fem.loading import Event, PathFollower
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.solid_model import SpaceIndentationModel
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
 from tactsim.units import format_quantity
 
 
@@ -39,19 +37,12 @@ class SpaceIndentation(SpaceIndentationSetup, Experiment):
         mesh = SpaceMeshSettings(finest=0.25e-3, growth=1.0, sectors=2)
         return cls(specimen=specimen, recess=0.8e-3, displacement=0.5e-3, stop="displacement", mesh=mesh)
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Press until the threshold or the displacement; see ``SpaceIndentationRecord`` for what is reported."""
-        begin = time.perf_counter()
         model = self.space_model()
-        record = SpaceIndentationRecord(self, model, begin)
+        record = SpaceIndentationRecord(self, model)
         states = space_indentation_path(self, model, record)
-        early = ended_early(record, (record.accept(state, threshold=event) for state, event in states), progress)
-        if early is not None:
-            return early
-        if self.stop == "threshold" and not record.has_threshold:
-            reached = format_quantity(self.displacement, "m")
-            return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")
-        return record.result(Status.CONVERGED, "threshold reached" if self.stop == "threshold" else "displacement reached")
+        return Course((record.accept(state, threshold=event) for state, event in states), record.findings, setup_is_timed=True)
 
 
 def space_indentation_path(

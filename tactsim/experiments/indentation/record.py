@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,12 +15,13 @@ from tactsim.experiments.indentation.contact_record import (
     tissue_rise,
 )
 from tactsim.experiments.indentation.setup import IndentationSetup
+from tactsim.interfaces.run import Findings
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.section_model import IndentationModel
 from tactsim.mechanics.success import judged
 from tactsim.mesh.adaptation import Refinement
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -44,8 +44,8 @@ class IndentationRecord:
         **ContactQuality.UNITS,
     }
 
-    def __init__(self, experiment: IndentationSetup, model: IndentationModel, begin: float):
-        self.experiment, self.model, self.begin = experiment, model, begin
+    def __init__(self, experiment: IndentationSetup, model: IndentationModel):
+        self.experiment, self.model = experiment, model
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
         self.reported: dict[str, StepRecord] = {}
@@ -56,7 +56,6 @@ class IndentationRecord:
         self.adaptations = 0
         self.rejected_steps = 0
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._setup_time = time.perf_counter() - begin
 
     @property
     def has_threshold(self) -> bool:
@@ -104,23 +103,27 @@ class IndentationRecord:
         kept = sorted([*self._at_threshold, *self._last], key=lambda pair: pair[1].load)
         return tuple(section_frame(model, state, time=state.load) for model, state in kept)
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if a reported state is none."""
-        status, reason = judged(status, reason, self.reported.values(), self.experiment.tolerance)
-        total = time.perf_counter() - self.begin
-        return Result(
-            kind="indentation",
+    def findings(self) -> Findings:
+        """What everything that was accepted says; no success if a reported state is none."""
+        status, reason = judged(*self._verdict(), self.reported.values(), self.experiment.tolerance)
+        return Findings(
+            reason,
+            self.steps,
             status=status,
-            reason=reason,
             quantities=self._quantities(),
-            assumptions=tuple(contact_assumptions(self.experiment)),
-            warnings=tuple(self._warnings()),
-            timing={"setup": self._setup_time, "total": total},
-            steps=tuple(self.steps),
-            units=self.UNITS,
+            assumptions=contact_assumptions(self.experiment),
+            warnings=self._warnings(),
             frames=self._frames(),
             details=self._details(),
         )
+
+    def _verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
+        stop = self.experiment.stop
+        if stop == "threshold" and not self.has_threshold:
+            reached = format_quantity(self.experiment.displacement, "m")
+            return Status.FAILED, f"the threshold was not reached within the displacement of {reached}"
+        return Status.CONVERGED, f"{stop} reached"
 
     def _quantities(self) -> dict[str, Quantity]:
         last = self.steps[-1].values if self.steps else {}

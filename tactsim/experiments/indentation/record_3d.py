@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any, ClassVar
 
 import numpy as np
 
 from tactsim.experiments.indentation.contact_record import contact_assumptions, contact_oddities
 from tactsim.experiments.indentation.setup_3d import SpaceIndentationSetup
+from tactsim.interfaces.run import Findings
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.ellipticity import elliptic_in
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.solid_model import SpaceIndentationModel
 from tactsim.mechanics.success import judged
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -56,8 +56,8 @@ class SpaceIndentationRecord:
         **ContactQuality.UNITS,
     }
 
-    def __init__(self, experiment: SpaceIndentationSetup, model: SpaceIndentationModel, begin: float):
-        self.experiment, self.model, self.begin = experiment, model, begin
+    def __init__(self, experiment: SpaceIndentationSetup, model: SpaceIndentationModel):
+        self.experiment, self.model = experiment, model
         self.starting_height = 0.0
         self.steps: list[StepRecord] = []
         self.reported: dict[str, StepRecord] = {}
@@ -66,7 +66,6 @@ class SpaceIndentationRecord:
         self.rejected_steps = 0
         self._kept: dict[str, ContactEquilibrium] = {}
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._setup_time = time.perf_counter() - begin
 
     @property
     def has_threshold(self) -> bool:
@@ -112,23 +111,28 @@ class SpaceIndentationRecord:
             values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": further}
         return values
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if a reported state is none."""
-        status, reason = judged(status, reason, self.reported.values(), self.experiment.tolerance)
+    def findings(self) -> Findings:
+        """What everything that was accepted says; no success if a reported state is none."""
+        status, reason = judged(*self._verdict(), self.reported.values(), self.experiment.tolerance)
         kept = sorted(self._kept.values(), key=lambda state: state.load)
-        return Result(
-            kind="indentation_3d",
+        return Findings(
+            reason,
+            self.steps,
             status=status,
-            reason=reason,
             quantities=self._quantities(kept[-1]) if kept else {},
-            assumptions=tuple(contact_assumptions(self.experiment)),
-            warnings=tuple(self._warnings()),
-            timing={"setup": self._setup_time, "total": time.perf_counter() - self.begin},
-            steps=tuple(self.steps),
-            units=self.UNITS,
-            frames=tuple(solid_frame(self.model.mesh, self.model.body, state, time=state.load) for state in kept),
+            assumptions=contact_assumptions(self.experiment),
+            warnings=self._warnings(),
+            frames=(solid_frame(self.model.mesh, self.model.body, state, time=state.load) for state in kept),
             details=self._details(),
         )
+
+    def _verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
+        stop = self.experiment.stop
+        if stop == "threshold" and not self.has_threshold:
+            reached = format_quantity(self.experiment.displacement, "m")
+            return Status.FAILED, f"the threshold was not reached within the displacement of {reached}"
+        return Status.CONVERGED, f"{stop} reached"
 
     def _quantities(self, state: ContactEquilibrium) -> dict[str, Quantity]:
         last = self.steps[-1].values

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from typing import ClassVar, Literal, Self
 
 from tactsim.contact.coulomb import Coulomb
-from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.indentation.timed_path import TimedIndentationPath
 from tactsim.experiments.indentation.timed_record import TimedRecord
 from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
 from tactsim.fem.time_steps import TimeEvent
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
 from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.loading import DisplacementLoading
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
 
 
 class TimedIndentation(TimedIndentationSetup, Experiment):
@@ -35,19 +33,14 @@ class TimedIndentation(TimedIndentationSetup, Experiment):
         specimen = Specimen(material=named_material("atrial").material, thickness=10e-3, radius=15e-3)
         return cls(specimen=specimen, contact=Coulomb(friction=0.0), loading=held)
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Follow the history to its end or to the touch; see ``TimedRecord`` for what is reported."""
-        begin = time.perf_counter()
         model = self.model()
         path = TimedIndentationPath(self, model)
-        record = TimedRecord(self, model, path, begin)
+        record = TimedRecord(self, model, path)
         event = None
         if self.stop == "touch":
             recess = float(self.recess or 0.0)
             event = TimeEvent[TimedState](lambda state: record.rise(state)[0] - recess)
-        early = ended_early(record, (record.accept(state, touched=touched) for state, touched in path.states(event)), progress)
-        if early is not None:
-            return early
-        if self.stop == "touch" and not record.touched:
-            return record.result(Status.FAILED, "the tissue did not touch the inner sensor within the history")
-        return record.result(Status.CONVERGED, "touched the inner sensor" if record.touched else "end of the history")
+        steps = (record.accept(state, touched=touched) for state, touched in path.states(event))
+        return Course(steps, record.findings, setup_is_timed=True)

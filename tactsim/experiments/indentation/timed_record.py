@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,12 +18,13 @@ from tactsim.experiments.indentation.contact_record import (
 )
 from tactsim.experiments.indentation.timed_path import TimedIndentationPath
 from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
+from tactsim.interfaces.run import Findings
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.section_model import IndentationModel
 from tactsim.mechanics.success import judged
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 
 SMALL = 0.01
@@ -51,8 +51,8 @@ class TimedRecord:
         "closed_form_difference": "1",
     }
 
-    def __init__(self, experiment: TimedIndentationSetup, model: IndentationModel, path: TimedIndentationPath, begin: float):
-        self.experiment, self.model, self._path, self._begin = experiment, model, path, begin
+    def __init__(self, experiment: TimedIndentationSetup, model: IndentationModel, path: TimedIndentationPath):
+        self.experiment, self.model, self._path = experiment, model, path
         self.steps: list[StepRecord] = []
         self._quality = ContactQuality()
         self.touched = False
@@ -60,7 +60,6 @@ class TimedRecord:
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._closed_form = closed_form_of(experiment)
         self._history = experiment.loading.history()
-        self._setup_time = time.perf_counter() - begin
 
     def rise(self, state: TimedState) -> tuple[float, float]:
         """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m."""
@@ -101,22 +100,25 @@ class TimedRecord:
             difference = values["displacement"] / displacement - 1 if displacement else math.nan
         return {"closed_form_displacement": displacement, "closed_form_force": force, "closed_form_difference": difference}
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if the last state is none."""
-        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
-        return Result(
-            kind="timed_indentation",
+    def findings(self) -> Findings:
+        """What everything that was accepted says; no success if the last state is none."""
+        status, reason = judged(*self._verdict(), self.steps[-1:], self.experiment.tolerance)
+        return Findings(
+            reason,
+            self.steps,
             status=status,
-            reason=reason,
             quantities=self._quantities(),
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings()),
-            timing={"setup": self._setup_time, "total": time.perf_counter() - self._begin},
-            steps=tuple(self.steps),
-            units=self.UNITS,
+            assumptions=self._assumptions(),
+            warnings=self._warnings(),
             frames=self._frames(),
             details=self._details(),
         )
+
+    def _verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
+        if self.experiment.stop == "touch" and not self.touched:
+            return Status.FAILED, "the tissue did not touch the inner sensor within the history"
+        return Status.CONVERGED, "touched the inner sensor" if self.touched else "end of the history"
 
     def _quantities(self) -> dict[str, Quantity]:
         if not self.steps:

@@ -49,7 +49,7 @@ class ThresholdAtLevel(Evaluator):
             outer_radius=self.outer_radius,
             recess=self.recess,
         )
-        approach = source.tissue(lambda step: None).approach(1e-3)
+        approach = source.tissue().approach(1e-3)
 
         def beyond(time: float) -> float:
             return float(approach.at(np.array(time))[1]) - self.level

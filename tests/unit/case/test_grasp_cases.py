@@ -66,7 +66,7 @@ def test_the_irregular_lump_is_closed_and_listed(monkeypatch, tmp_path):
 @by_name
 def test_the_case_converges(path):
     case = load_case(path)
-    result = case.experiment.run(lambda step: None)
+    result = case.experiment.run()
     assert result.status == "converged", result.reason
     found = {name: quantity.value for name, quantity in result.quantities.items()}
     assert found["max_penetration"] <= case.experiment.tolerance

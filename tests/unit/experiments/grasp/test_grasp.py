@@ -45,7 +45,7 @@ def grasp(**changes):
 
 
 def run(**changes):
-    return grasp(**changes).run(lambda step: None)
+    return grasp(**changes).run()
 
 
 def values(result):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from pydantic import ValidationError
@@ -35,7 +33,7 @@ def thin(**changes):
 
 
 def run(**changes):
-    return thin(**changes).run(lambda step: None)
+    return thin(**changes).run()
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +95,7 @@ def test_same_case_same_numbers(plain):
 def test_refined_state_is_the_same_state():
     experiment = thin(contact=Coulomb(friction=0.0))
     model = experiment.model()
-    record = IndentationRecord(experiment, model, time.perf_counter())
+    record = IndentationRecord(experiment, model)
     states = [state for state, _ in indentation_path(experiment, model, record)]
     state, marked = states[-1], np.arange(0, len(model.mesh.elements), 4)
     finer, same, _ = model.refined(state, marked)
