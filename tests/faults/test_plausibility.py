@@ -7,8 +7,8 @@ import pytest
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.warnings import unlikely
-from tactsim.experiments.indentation.contact_record import contact_oddities
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.record import contact_oddities
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +10,10 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.case import load_case
 from tactsim.contact.annulus import Annulus
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, space_indentation_path
-from tactsim.experiments.indentation.record_3d import SpaceIndentationRecord
-from tactsim.experiments.indentation.setup_3d import SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.solid_model import SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
@@ -102,10 +100,10 @@ def test_half_a_body_is_two_quarters(quarter):
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base():
     experiment = posed(tilt_y=TILT, displacement=0.04e-3)
-    model = experiment.space_model()
-    record = SpaceIndentationRecord(experiment, model, time.perf_counter())
-    *_, (state, _) = space_indentation_path(experiment, model, record)
-    force, moment = model.load_on(state.contacts[0], state.unknowns)
+    model = experiment.model()
+    *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)
+    state, contact = last.contact, last.contact.contacts[0]
+    force, moment = model.force(contact.at(model.displacement(state.unknowns)).traction), model.moment(contact, state.unknowns)
     u, _ = model.space.split(state.unknowns)
     internal = model.body.residual(state.unknowns)[: u.size].reshape(-1, 3)[model.base_nodes]
     arms = (model.mesh.nodes + u)[model.base_nodes] - state.contacts[0].place

@@ -8,8 +8,8 @@ from tactsim.analytic.durometer import DurometerScale, hertz_force
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.experiments.indentation.displaced import StepSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.specimen import Specimen
 

@@ -11,9 +11,9 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.specimen import Specimen
 

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.annulus import Annulus
+from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
 from tactsim.errors import Unfinished
@@ -16,8 +17,8 @@ from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.elastomer_report import RankingReport, ShapeFinding
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3, Elastomer, Reading, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.experiments.indentation.contact_setup import AnyLaw, MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.materials.moduli import youngs_modulus

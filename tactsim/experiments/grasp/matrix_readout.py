@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.taxel_voltages import SIDES, readout_assumptions, readout_quantities, readout_warnings
+from tactsim.experiments.grasp.taxel_voltages import JAWS, readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -32,7 +32,7 @@ class MatrixReadoutRun(Experiment):
     """Sensors and electronics."""
 
     history_units: ClassVar[dict[str, str]] = {"time": "s"} | {
-        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in SIDES
+        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in JAWS
     }
 
     @classmethod
@@ -51,7 +51,7 @@ class MatrixReadoutRun(Experiment):
             raise StorageError(told) from None
         reading = self.readout.read(times, forces, area)
         voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
-        true = {name: stored.quantities[name] for side in SIDES for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
+        true = {name: stored.quantities[name] for side in JAWS for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
         return Course.computed(
             Findings(
                 "end of the grasp",
@@ -68,7 +68,7 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     """Times (n,) in s and forces (n, jaw, row, column) in N of a stored grasp."""
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
-    names: Any = [f"taxel_force_{side}" for side in SIDES]
+    names: Any = [f"taxel_force_{side}" for side in JAWS]
     if len(stored.steps) > 1:
         times = np.asarray(stored.quantities["time_history"].value, dtype=float)
         forces = [np.asarray(stored.quantities[f"{name}_history"].value, dtype=float) for name in names]

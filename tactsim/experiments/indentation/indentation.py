@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal, Self
 
-from tactsim.experiments.indentation.path import indentation_path
-from tactsim.experiments.indentation.record import IndentationRecord
-from tactsim.experiments.indentation.setup import IndentationSetup
+from tactsim.experiments.indentation.course import indentation_course
+from tactsim.experiments.indentation.displaced import DisplacedSetup
+from tactsim.experiments.indentation.record import history_units
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.mechanics.specimen import Specimen
 
 
-class Indentation(IndentationSetup, Experiment):
+class Indentation(DisplacedSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen along its axis."""
 
     kind: Literal["indentation"] = "indentation"
 
-    history_units: ClassVar[dict[str, str]] = IndentationRecord.UNITS
+    history_units: ClassVar[dict[str, str]] = history_units(clock=False, space=False)
 
     @classmethod
     def example(cls) -> Self:
@@ -26,7 +26,4 @@ class Indentation(IndentationSetup, Experiment):
 
     def begin(self) -> Course:
         """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
-        model = self.model()
-        record = IndentationRecord(self, model)
-        states = indentation_path(self, model, record)
-        return Course((record.accept(state, threshold=event) for state, event in states), record.findings, setup_is_timed=True)
+        return indentation_course(self)

@@ -79,7 +79,7 @@ class CatheterReport:
     def __init__(self, experiment: CatheterTip):
         self._experiment = experiment
         ring = experiment.ring
-        self._area = float(np.pi * (ring.outer_radius**2 - ring.inner_radius**2))
+        self._area = ring.area
         self._shares = experiment.surface.shares(ring, experiment.place)
         self._readings: list[Reading] = []
         self._contacts: list[SensorContact] = []

@@ -105,9 +105,8 @@ class CatheterTip(Experiment):
         depth = self.press - lag
         if depth <= 0:
             return Reading.nothing(lag, self.trials)
-        area = np.pi * (self.ring.outer_radius**2 - self.ring.inner_radius**2)
         approach = contact.approach(self.speed, depth)
         noise, low_pass = self.sensor.chain.noise, self.sensor.chain.low_pass
-        sampling = ApproachSampling.settled(self.sensor, approach, float(area), self.lead + lag / self.speed, [low_pass])
+        sampling = ApproachSampling.settled(self.sensor, approach, self.ring.area, self.lead + lag / self.speed, [low_pass])
         (trials,) = sampling.trials(noise, [low_pass], [trigger], trials=self.trials, seed=(self.seed, 1, index))
         return Reading.of_trials(lag, trials, reached=bool(np.isfinite(approach.touch)), trials=self.trials)

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.experiments.threshold.report import SIGNAL_UNITS, TrialReport
 from tactsim.experiments.threshold.sampling import FINER, SILENT, ApproachSampling
@@ -56,7 +56,7 @@ class ThresholdTrial(Experiment):
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 
-    history_units: ClassVar[dict[str, str]] = {**IndentationRecord.UNITS, **SIGNAL_UNITS}
+    history_units: ClassVar[dict[str, str]] = {**Indentation.history_units, **SIGNAL_UNITS}
 
     @model_validator(mode="after")
     def _possible(self) -> Self:

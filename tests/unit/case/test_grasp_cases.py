@@ -10,7 +10,7 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
-from tactsim.mechanics.block_model import SIDES
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.block_source import TetrahedraSource
 from tactsim.mesh.inclusions.surface import read_surface
 from tactsim.mesh.inclusions.triangulated import check_closed
@@ -72,7 +72,7 @@ def test_the_case_converges(path):
     assert found["max_penetration"] <= case.experiment.tolerance
     assert found["unstable_volume_fraction"] == 0
     net = np.add(found["jaw_force_upper"], found["jaw_force_lower"])
-    largest = max(abs(found[f"jaw_force_{side}"][2]) for side in SIDES)
+    largest = max(abs(found[f"jaw_force_{side}"][2]) for side in JAWS)
     assert abs(net[2]) <= 2e-3 * largest  # the weak hold, and the lean of an open end under pressure, take the rest
     if "lumen_pressure" not in found:  # the pressure on one closed end of an artery pushes the block sideways
         assert np.abs(net).max() <= 1e-4 * largest

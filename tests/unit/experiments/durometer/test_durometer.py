@@ -11,7 +11,7 @@ from tactsim.case import load_case
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.specimen import Specimen

@@ -8,8 +8,7 @@ from pydantic import ValidationError
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation
-from tactsim.experiments.indentation.setup_3d import SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.solid_model import SweepSymmetry
 from tactsim.mechanics.specimen import Specimen

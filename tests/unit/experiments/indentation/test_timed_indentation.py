@@ -9,12 +9,12 @@ from pydantic import ValidationError
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
-from tactsim.experiments.indentation.timed_setup import TimeSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.specimen import Layer, Specimen
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 

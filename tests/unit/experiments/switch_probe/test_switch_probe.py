@@ -12,14 +12,14 @@ from pydantic import ValidationError
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe import switch_probe
 from tactsim.experiments.switch_probe.figures import switch_panel_figure
 from tactsim.experiments.switch_probe.run import force_noise, touched
 from tactsim.experiments.switch_probe.setup import ProbeTissue
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 from tactsim.results import Status
