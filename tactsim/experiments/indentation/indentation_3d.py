@@ -49,7 +49,7 @@ class SpaceMeshSettings(MeshSettings):
 
 
 class SpaceIndentation(DisplacedSetup, Experiment):
-    """A rigid body pressed down into a cylindrical specimen in space, off its axis and leaning if so wished."""
+    """A rigid body pressed into a cylindrical specimen in space, its axis anywhere and leaning."""
 
     measure: ClassVar[Measure] = "solid"
     kind: Literal["indentation_3d"] = "indentation_3d"
