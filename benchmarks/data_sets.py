@@ -104,7 +104,7 @@ def _taxels(number: int, fine: bool) -> np.ndarray:
         mesh = FINE | {"inclusion_size": FINE_SHARE * grasp.inclusions[0].shape.radius}
         time = grasp.time.model_copy(update={"steps": FINE_STEPS})
         grasp = grasp.model_copy(update={"mesh": grasp.mesh.model_copy(update=mesh), "time": time})
-    result = grasp.run(lambda record: None)
+    result = grasp.run()
     if result.status is not Status.CONVERGED:
         return np.array(np.nan)
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])

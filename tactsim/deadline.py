@@ -16,8 +16,11 @@ _LIMIT: ContextVar[tuple[float, float] | None] = ContextVar("limit", default=Non
 
 @contextmanager
 def time_limit(seconds: float | None) -> Iterator[None]:
-    """The computation inside ends with an error once so many seconds have passed; None means no limit."""
-    token = _LIMIT.set(None if seconds is None else (time.monotonic() + seconds, seconds))
+    """The computation inside ends with an error once so many seconds have passed; None leaves the limit that stands."""
+    if seconds is None:
+        yield
+        return
+    token = _LIMIT.set((time.monotonic() + seconds, seconds))
     try:
         yield
     finally:

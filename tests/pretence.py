@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.errors import InvalidQuantity, UnknownName
-from tactsim.interfaces import Experiment, Progress
+from tactsim.errors import InvalidQuantity, Unfinished, UnknownName
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import FrozenModel, Length, Pressure, Time
 
@@ -77,7 +79,7 @@ class Pretence(Experiment):
     fail_at: int | None = None
     """Step that does not converge."""
     stubborn: bool = False
-    """Whether an interruption takes its time."""
+    """Whether what was found takes its time."""
     named: str = "known"
     """A name that must be 'known'."""
 
@@ -87,23 +89,33 @@ class Pretence(Experiment):
             raise UnknownName("pretended name", self.named, ["known", "other"])
         return self
 
-    def run(self, progress: Progress) -> Result:
-        """A result with one quantity per kind of value."""
+    def begin(self) -> Course:
+        """One quantity per kind of value."""
         records: list[StepRecord] = []
-        status, reason = Status.CONVERGED, "all steps accepted"
-        try:
-            for step in range(1, self.steps + 1):
-                if step == self.fail_at:
-                    status, reason = Status.FAILED, "residual 1.0 after 25 iterations"
-                    break
-                time.sleep(self.pause)
-                values = {"displacement": step * 1e-4, "reaction_force": step * 0.01}
-                records.append(StepRecord(step, 4, 1e-11, values))
-                progress(records[-1])
-        except KeyboardInterrupt:
-            status, reason = Status.INTERRUPTED, "stopped by the user"
-            time.sleep(60 if self.stubborn else 0)
-        return pretended_result(status, reason, tuple(records))
+        return Course(self._counted(records), lambda: self._findings(records), "the steps counted before are kept")
+
+    def _counted(self, records: list[StepRecord]) -> Iterator[StepRecord]:
+        for step in range(1, self.steps + 1):
+            if step == self.fail_at:
+                raise Unfinished("residual 1.0 after 25 iterations")
+            time.sleep(self.pause)
+            records.append(StepRecord(step, 4, 1e-11, {"displacement": step * 1e-4, "reaction_force": step * 0.01}))
+            yield records[-1]
+
+    def _findings(self, records: list[StepRecord]) -> Findings:
+        if self.stubborn:
+            time.sleep(60)
+        result = pretended_result(Status.CONVERGED, "all steps accepted", tuple(records))
+        return Findings(
+            result.reason,
+            result.steps,
+            quantities=result.quantities,
+            assumptions=result.assumptions,
+            warnings=result.warnings,
+            frames=result.frames,
+            details=result.details,
+            timing=result.timing,
+        )
 
     @classmethod
     def example(cls) -> Pretence:

@@ -65,7 +65,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
-    from tactsim.experiments.collecting import run_within
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import claimed
 
@@ -77,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         directory = arguments.out or Path("results") / arguments.case.stem
         with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
             with collected_warnings() as said:
-                result = run_within(seconds, case.experiment, _progress(case, arguments))
+                result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *told, *said.lines()))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
@@ -104,13 +103,12 @@ def _time_limit(text: str | None) -> float | None:
     return seconds
 
 
-def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None]:
+def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None] | None:
     from tactsim.cli.report import step_line
 
     if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
-        return lambda record: None
-    units = getattr(case.experiment, "history_units", {})
-    return lambda record: console.note(step_line(record, units))
+        return None
+    return lambda record: console.note(step_line(record, case.experiment.history_units))
 
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:

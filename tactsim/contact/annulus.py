@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.annular_area import annular_area
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.units import Length, format_quantity
 
@@ -46,7 +47,7 @@ class Annulus(Revolved):
     @property
     def area(self) -> float:
         """Annular area in m^2 that the thesis divides the threshold force by."""
-        return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
+        return annular_area(self.inner_radius, self.outer_radius)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

@@ -15,7 +15,6 @@ from tactsim.dataset.layout import Layout, layout_of, split_of
 from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.dataset.variable import DONE, FAILED
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
-from tactsim.experiments.collecting import run_within
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.results.result import Status
 
@@ -81,7 +80,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
     """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
     assert drawn.case is not None
     try:
-        result = run_within(sweep.settings.time_limit, drawn.case.experiment, lambda record: None)
+        result = drawn.case.experiment.run(time_limit=sweep.settings.time_limit)
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from inspect import isabstract
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, final
 
 import numpy as np
 
@@ -14,10 +14,10 @@ from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
 
 if TYPE_CHECKING:
-    from tactsim.results.result import Result, StepRecord
+    from tactsim.interfaces.run import Course, Progress
+    from tactsim.results.result import Result
 
 Array = np.ndarray
-Progress = Callable[["StepRecord"], None]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -121,20 +121,57 @@ class Sensor(CaseKind):
 
 
 class Experiment(CaseKind):
-    """What a case can ask for: receives its parts, returns a result."""
+    """What a case can ask for: receives its parts, computes step by step, says what it found.
+
+    A kind gives `begin`; how a run is timed, limited, ended and made a result is decided here, once for all kinds::
+
+        class Squeeze(Experiment):
+            kind: Literal["squeeze"] = "squeeze"
+            closings: tuple[Length, ...]
+            history_units: ClassVar[dict[str, str]] = {"closing": "m", "force": "N"}
+
+            def begin(self) -> Course:
+                record = SqueezeRecord(self)
+                return Course((record.accept(closing) for closing in self.closings), record.findings)
+
+    ``accept`` computes a step and returns its `StepRecord`; ``findings`` returns the `Findings` of all steps accepted until then.
+    """
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$)\w+"
 
-    history_units: ClassVar[dict[str, str]]
+    history_units: ClassVar[dict[str, str]] = {}
     """Unit of every value that an accepted step records."""
 
     @abstractmethod
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
+        """What computes the steps and knows what they found; what is made before the first step, such as a mesh, is made here.
+
+        Raises
+        ------
+        InputError
+            If something that the experiment names, such as a file, cannot be used.
+        Unfinished
+            If it cannot begin: there is nothing to keep yet.
+        """
+
+    @final
+    def run(self, progress: Progress | None = None, *, time_limit: float | None = None) -> Result:
         """Run to the end, calling ``progress`` after each accepted step.
 
-        A run that does not converge or is interrupted returns a result with that status, the reason, and what was accepted.
+        A run that does not converge, lacks memory, takes longer than ``time_limit`` in s (None: as long as it needs) or is
+        interrupted returns a result with that status, the reason, and what was accepted.
+
+        Raises
+        ------
+        InputError
+            If something that the experiment names, such as a file, cannot be used.
+        Unfinished
+            If it ended before its first step was begun: there is nothing to keep.
         """
+        from tactsim.interfaces.run import run_experiment
+
+        return run_experiment(self, progress, time_limit)
 
 
 def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | None = None) -> Callable[[Function], Function]:

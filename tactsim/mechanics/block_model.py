@@ -18,26 +18,24 @@ from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.first_touch import first_touch
 from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.solid import FACES
+from tactsim.results.result import FieldFrame
 
 Array = np.ndarray
 
-SIDES = ("upper", "lower")
 CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0])}
 """Directions in which the jaws close."""
-TOUCH = 1e-15
-"""Gap at touch over the size of the block."""
 START_PATIENCE = 6
 """Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""
 LEAST_STRETCH = 0.5
 """Of a first guess."""
-MOST_APPROACHES = 1000
-"""Steps of the approach; each is as long as the gap, which shrinks fast unless the jaw misses the block."""
 
 
 class GraspModel:
@@ -62,14 +60,14 @@ class GraspModel:
         jaws: Sequence[Jaw],
         offsets: Array,
     ):
-        self.mesh, self.jaws, self.facets = mesh, dict(zip(SIDES, jaws, strict=True)), facets
+        self.mesh, self.jaws, self.facets = mesh, dict(zip(JAWS, jaws, strict=True)), facets
         self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
         self.body = Body(self.space, materials, mesh.regions)
         self.touchable = touchable_facets(mesh.nodes, facets)
-        points = {side: self.space.surface_points(self.touchable[side]) for side in SIDES}
-        self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in SIDES}
-        self.references = {side: points[side].interpolate(mesh.nodes) for side in SIDES}
-        self.offsets = {side: np.asarray(offset, float) for side, offset in zip(SIDES, offsets, strict=True)}
+        points = {side: self.space.surface_points(self.touchable[side]) for side in JAWS}
+        self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in JAWS}
+        self.references = {side: points[side].interpolate(mesh.nodes) for side in JAWS}
+        self.offsets = {side: np.asarray(offset, float) for side, offset in zip(JAWS, offsets, strict=True)}
         options = NewtonOptions(start_patience=START_PATIENCE)
         self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
         self.hold = WeakHold(self.body)
@@ -85,13 +83,9 @@ class GraspModel:
         direction, size = CLOSING[side], float(np.ptp(self.mesh.nodes, axis=0).max())
         samples = np.hstack([self.mesh.nodes[np.unique(self.touchable[side])].T, self.references[side]])
         begin = np.array([*self.offsets[side], self.mesh.nodes[:, 2].mean()]) - 2 * size * direction
-        travel = 0.0
-        for _ in range(MOST_APPROACHES):
-            place = begin + travel * direction
-            gap = float(self.jaws[side].signed_distance(samples - place[:, None])[0].min())
-            if gap <= TOUCH * size:
-                return place
-            travel += gap
+        place = first_touch(self.jaws[side], samples, begin=begin, direction=direction, size=size)
+        if place is not None:
+            return place
         raise InputError(f"the {side} jaw does not meet the block; its middle is at {self.offsets[side].tolist()} m in x and y")
 
     def start(self, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
@@ -103,7 +97,7 @@ class GraspModel:
                 ContactPair(self.jaws[side], law, grip=self._grip(side)),
                 self.touching_place(side),
             )
-            for side in SIDES
+            for side in JAWS
         )
         unknowns = np.zeros(self.space.size)
         return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
@@ -150,7 +144,7 @@ class GraspModel:
             state,
             closing,
             guess,
-            directions=[CLOSING[side] for side in SIDES],
+            directions=[CLOSING[side] for side in JAWS],
             force=None if force is None else 2 * force,
             past=past,
             loads=[self.hold, *loads],
@@ -168,13 +162,17 @@ class GraspModel:
         forces = (traction * surface.points.weights).reshape(3, -1, count)
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0]
         facets = self.touchable[side]
-        place = state.contacts[SIDES.index(side)].place
+        place = state.contacts[JAWS.index(side)].place
         faces = jaw.face_coordinates(deformed[facets.ravel()].T - place[:, None])
         return taxel_forces(layout, faces.T.reshape(-1, 6, 2), forces, FACET_POINTS)
 
+    def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
+        """Fields of a state for ParaView."""
+        return solid_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
+
     def _traction(self, state: ContactEquilibrium, side: str) -> Array:
         """Traction (3, n) in Pa on the tissue at the surface points, that of the accepted state."""
-        contact = state.contacts[SIDES.index(side)].state
+        contact = state.contacts[JAWS.index(side)].state
         return contact.pressure * contact.normals + contact.tangential
 
 

@@ -46,9 +46,14 @@ class Stretch:
         return min((2 * np.pi / wave.angular_frequency for wave in waves), default=np.inf)
 
     @property
+    def ramped(self) -> bool:
+        """Whether a prescribed value has a slope on it."""
+        return any(segment.slope != 0 for segment in self.segments)
+
+    @property
     def changes(self) -> bool:
         """Whether a prescribed value changes on it."""
-        return any(segment.slope != 0 or segment.harmonics for segment in self.segments)
+        return self.ramped or any(segment.harmonics for segment in self.segments)
 
     def at(self, time: float) -> tuple[float, ...]:
         """The prescribed values at a time in s."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -41,6 +42,14 @@ class StepRecord:
     newton_iterations: int
     residual: float
     values: dict[str, float]
+
+
+def rows(units: Iterable[str], columns: Iterable[Iterable[float]]) -> tuple[StepRecord, ...]:
+    """The history of what is computed without load steps: a record for each row of ``columns``, named as ``units`` are."""
+    return tuple(
+        StepRecord(number, 0, 0.0, dict(zip(units, map(float, values), strict=True)))
+        for number, values in enumerate(zip(*columns, strict=True), 1)
+    )
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.annular_area import annular_area
 from tactsim.interfaces import Array
 from tactsim.units import Angle, FrozenModel, Length, format_quantity
 
@@ -33,6 +34,11 @@ class SensorRing(FrozenModel):
     """Depth L of its small sensor."""
     orientation: Angle = 0.0
     """Angle of the first sensor, from the x axis, counter-clockwise."""
+
+    @property
+    def area(self) -> float:
+        """Annular area of the face of a sensor in m^2."""
+        return annular_area(self.inner_radius, self.outer_radius)
 
     @model_validator(mode="after")
     def _apart(self) -> Self:

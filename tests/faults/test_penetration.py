@@ -32,7 +32,7 @@ def changed(kind, **changes):
 
 
 def run(kind, **changes):
-    return changed(kind, **changes).run(lambda step: None)
+    return changed(kind, **changes).run()
 
 
 def force_and_error(kind, tolerance, **changes):
@@ -177,7 +177,7 @@ def layered(control, value):
 def test_a_closed_form_does_not_press_through_its_layer():
     with pytest.raises(ValidationError, match=r"displacement 30 mm must be smaller than the thickness of the layer, 1 mm"):
         layered("displacement", 30e-3)
-    result = layered("force", 1e5).run(lambda step: None)
+    result = layered("force", 1e5).run()
     assert result.status is Status.FAILED
     assert "allowed: less than the thickness of the layer, 1 mm" in result.reason
-    assert layered("displacement", 0.1e-3).run(lambda step: None).status is Status.CONVERGED
+    assert layered("displacement", 0.1e-3).run().status is Status.CONVERGED

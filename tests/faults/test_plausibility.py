@@ -7,8 +7,8 @@ import pytest
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.warnings import unlikely
-from tactsim.experiments.indentation.contact_record import contact_oddities
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.record import contact_oddities
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
@@ -71,7 +71,7 @@ def test_the_result_of_a_run_tells_them():
     soft = {"kind": "neo_hookean", "c10": 1e-9}
     case = Grasp.example().model_dump()
     case["block"]["tissue"], case["mesh"]["cells"] = soft, (2, 2, 2)
-    result = Grasp.model_validate(case).run(lambda step: None)
+    result = Grasp.model_validate(case).run()
     assert any("block.tissue has a shear modulus of 2 nPa" in warning for warning in result.warnings)
 
 

@@ -140,7 +140,7 @@ def test_a_course_of_too_many_steps_is_refused_before_the_first_one():
     sine = "{kind: sine, amplitude: 0.1 mm, frequency: 9 kHz, duration: 1 s}"
     case = load_case(CASES / "grasp_plain.yaml", [coarse, f"experiment.loading.pieces=[{RAMP}, {sine}]"])
     with pytest.raises(InvalidQuantity, match=r"loading, with the steps .* asks for 7\.2e\+04 steps; allowed: up to 50000"):
-        case.experiment.run(lambda step: None)
+        case.experiment.run()
 
 
 def test_forces_found_go_into_the_multipliers_by_a_share():
@@ -185,7 +185,7 @@ def test_grasps_that_crept_end(name: str, settings: tuple[str, ...], monkeypatch
         return found
 
     monkeypatch.setattr(Problem, "solve", counted)
-    result = load_case(CASES / f"{name}.yaml", list(settings)).experiment.run(lambda step: None)
+    result = load_case(CASES / f"{name}.yaml", list(settings)).experiment.run()
     assert sum(spent) < MOST_FURTHER
     if result.status is not Status.CONVERGED:
         assert result.status is Status.FAILED

@@ -41,7 +41,7 @@ def test_a_signal_writes_what_was_accepted(start: Start, tmp_path: Path, number:
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Traceback" not in err
-    assert out.splitlines()[-1].startswith("interrupted: stopped by the user; ")
+    assert out.splitlines()[-1].startswith("interrupted; the steps counted before are kept; ")
     assert status(tmp_path / "results/case") == "interrupted"
     assert len(read_result(tmp_path / "results/case").result.steps) >= 1
     assert os.listdir(tmp_path / "results") == ["case"]

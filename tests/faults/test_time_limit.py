@@ -4,77 +4,41 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from pretence import CASE_TEXT, Pretence, pretended_result
+from pretence import CASE_TEXT, Pretence
 
 from tactsim.cli import main
 from tactsim.deadline import check_time, seconds_left, time_limit
-from tactsim.errors import OutOfMemory, OutOfTime
-from tactsim.experiments.collecting import ended_early, run_within
+from tactsim.errors import OutOfTime
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.tetrahedra import block_mesh
-from tactsim.results.result import Result, Status, StepRecord
+from tactsim.results.result import Status, StepRecord
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
-class Kept:
-    """Collects steps."""
-
-    def __init__(self) -> None:
-        self.steps: list[StepRecord] = []
-
-    def path(self, end: Exception) -> Iterator[StepRecord]:
-        """Two steps, then an error."""
-        for number in (1, 2):
-            self.steps.append(StepRecord(number, 3, 1e-11, {"displacement": 1e-4 * number}))
-            yield self.steps[-1]
-        raise end
-
-    def result(self, status: Status, reason: str) -> Result:
-        """What was collected."""
-        return pretended_result(status, reason, tuple(self.steps))
-
-
-@pytest.mark.parametrize(
-    ("end", "reason"),
-    [
-        (
-            OutOfTime("took longer than the 5 s that it was given"),
-            "took longer than the 5 s that it was given",
-        ),
-        (MemoryError(), "the memory does not suffice: take larger elements"),
-        (OutOfMemory("the memory does not suffice for a factor"), "the memory does not suffice for a factor"),
-    ],
-)
-def test_a_run_out_of_time_or_memory_keeps_what_it_accepted(end: Exception, reason: str):
-    kept = Kept()
-    result = ended_early(kept, kept.path(end), lambda step: None)
-    assert result is not None
-    assert result.status is Status.FAILED
-    assert result.status.exit_code == 3
-    assert result.reason.startswith(reason)
-    assert len(result.steps) == 2
-
-
 def test_every_step_heeds_the_limit():
     slow = Pretence.example().model_copy(update={"steps": 100, "pause": 0.01})
-    with pytest.raises(OutOfTime, match=r"took longer than the 0\.05 s"):
-        run_within(0.05, slow, lambda step: None)
-    assert run_within(60.0, slow.model_copy(update={"steps": 2}), lambda step: None).status is Status.CONVERGED
-    assert run_within(None, slow.model_copy(update={"steps": 2}), lambda step: None).status is Status.CONVERGED
+    stopped = slow.run(time_limit=0.05)
+    assert (stopped.status, stopped.status.exit_code) == (Status.FAILED, 3)
+    assert stopped.reason == "took longer than the 0.05 s that it was given"
+    assert 1 <= len(stopped.steps) < 100
+    few = slow.model_copy(update={"steps": 2})
+    assert few.run(time_limit=60.0).status is Status.CONVERGED
+    assert few.run().status is Status.CONVERGED
 
 
 def test_a_run_without_memory_is_no_internal_error():
     def exhausted(step: StepRecord) -> None:
         np.empty((1_000_000_000, 1_000_000_000))
 
-    with pytest.raises(OutOfMemory, match="the memory does not suffice: take larger elements"):
-        run_within(None, Pretence.example(), exhausted)
+    result = Pretence.example().run(exhausted)
+    assert (result.status, len(result.steps)) == (Status.FAILED, 1)
+    assert result.reason.startswith("the memory does not suffice: take larger elements")
 
 
 def test_the_time_left():
@@ -82,6 +46,8 @@ def test_the_time_left():
     with time_limit(60.0):
         assert 50 < seconds_left() <= 60
         check_time()
+        with time_limit(None):
+            assert 50 < seconds_left() <= 60
     with time_limit(0.0), pytest.raises(OutOfTime):
         check_time()
 

@@ -21,7 +21,7 @@ def grasp(**changes):
 
 
 def run(**changes):
-    return grasp(**changes).run(lambda step: None)
+    return grasp(**changes).run()
 
 
 def closing(to):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +10,10 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.case import load_case
 from tactsim.contact.annulus import Annulus
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, space_indentation_path
-from tactsim.experiments.indentation.record_3d import SpaceIndentationRecord
-from tactsim.experiments.indentation.setup_3d import SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.solid_model import SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
@@ -65,11 +63,11 @@ def differences(result, reference):
 
 @pytest.fixture(scope="module")
 def quarter():
-    return posed().run(lambda step: None)
+    return posed().run()
 
 
 def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
-    section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run(lambda step: None)
+    section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run()
     assert quarter.status == section.status == "converged"
     assert quarter.details["symmetry"] == "quarter"
     apart = np.abs(differences(quarter, section)[-1])
@@ -91,7 +89,7 @@ def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
 
 @pytest.mark.slow
 def test_half_a_body_is_two_quarters(quarter):
-    half = posed(Half).run(lambda step: None)
+    half = posed(Half).run()
     assert half.details["unknowns"] > 1.7 * quarter.details["unknowns"]
     assert len(half.steps) == len(quarter.steps)
     np.testing.assert_allclose(histories(half), histories(quarter), rtol=1e-6)  # Newton's tolerance, and steps that add it up
@@ -102,10 +100,10 @@ def test_half_a_body_is_two_quarters(quarter):
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base():
     experiment = posed(tilt_y=TILT, displacement=0.04e-3)
-    model = experiment.space_model()
-    record = SpaceIndentationRecord(experiment, model, time.perf_counter())
-    *_, (state, _) = space_indentation_path(experiment, model, record)
-    force, moment = model.load_on(state.contacts[0], state.unknowns)
+    model = experiment.model()
+    *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)
+    state, contact = last.contact, last.contact.contacts[0]
+    force, moment = model.force(contact.at(model.displacement(state.unknowns)).traction), model.moment(contact, state.unknowns)
     u, _ = model.space.split(state.unknowns)
     internal = model.body.residual(state.unknowns)[: u.size].reshape(-1, 3)[model.base_nodes]
     arms = (model.mesh.nodes + u)[model.base_nodes] - state.contacts[0].place
@@ -118,7 +116,7 @@ def test_a_leaning_annulus_is_held_in_balance_by_the_base():
 
 @pytest.mark.slow
 def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
-    half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run(lambda step: None) for axis in ("tilt_y", "tilt_x"))
+    half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run() for axis in ("tilt_y", "tilt_x"))
     assert (half.details["symmetry"], whole.details["symmetry"]) == ("half", "whole")
     for name in ("force_vector", "moment_vector"):
         x, y, z = half.quantities[name].value
@@ -130,9 +128,7 @@ def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
 
 @pytest.mark.slow
 def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
-    space, section = (
-        load_case(CASES / name).experiment.run(lambda step: None) for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml")
-    )
+    space, section = (load_case(CASES / name).experiment.run() for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml"))
     assert space.status == section.status == "converged"
     apart = np.abs(differences(space, section))
     assert apart.max() < DEMANDED, apart.max(axis=0)

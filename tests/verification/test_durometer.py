@@ -8,8 +8,8 @@ from tactsim.analytic.durometer import DurometerScale, hertz_force
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.experiments.indentation.displaced import StepSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.specimen import Specimen
 
@@ -36,7 +36,7 @@ def pressed():
         penetration_tolerance=1e-2 * DEPTH,
         mesh=MeshSettings(finest=4e-3 * RADIUS, growth=0.5, adaptive=False),
         steps=StepSettings(first=DEPTH / 2, largest=DEPTH / 2),
-    ).run(lambda step: None)
+    ).run()
     assert result.status == "converged", result.reason
     return {name: quantity.value for name, quantity in result.quantities.items()}
 

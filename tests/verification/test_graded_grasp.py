@@ -36,7 +36,7 @@ def taxels(size: float, least: int) -> np.ndarray:
                 "mesh": {"kind": "graded", "inclusion_size": size, "edge_size": 2.2e-3},
                 "time": {"steps": 1},
             }
-        ).run(lambda step: None)
+        ).run()
     finally:
         graded_lines.LEAST_ALONG, graded_lines.PAIRED = before
     assert result.status == "converged"

@@ -142,6 +142,6 @@ FAR = {
 
 
 def test_a_far_closing_on_a_hard_lump_ends_in_one_step():
-    result = Grasp.model_validate(FAR).run(lambda step: None)
+    result = Grasp.model_validate(FAR).run()
     assert result.status == "converged"
     assert len(result.steps) == 1

@@ -38,7 +38,7 @@ def plain():
 
 
 def forces(grasp):
-    result = grasp.run(lambda step: None)
+    result = grasp.run()
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 
 

@@ -39,7 +39,7 @@ def random_grasp(number):
 def outcome(number):
     """ "refused" or "converged", the reason, and the result if there is one."""
     try:
-        result = Grasp.model_validate(random_grasp(number)).run(lambda step: None)
+        result = Grasp.model_validate(random_grasp(number)).run()
     except (InputError, ValidationError) as error:
         return "refused", str(error), None
     return str(result.status), result.reason, result

@@ -11,9 +11,9 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.specimen import Specimen
 
@@ -60,7 +60,7 @@ def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=
         mesh=MeshSettings(finest=finest, growth=0.3),
         steps=StepSettings(first=displacement, largest=displacement),
     )
-    result = experiment.run(lambda step: None)
+    result = experiment.run()
     assert result.status == "converged", result.reason
     values = {name: quantity.value for name, quantity in result.quantities.items()}
     assert values["max_penetration"] <= 1e-2 * displacement, "only at the singular edge; a hundredth of it elsewhere"

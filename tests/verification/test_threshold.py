@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
 from tactsim.case import load_case
-from tactsim.experiments.indentation.path import indentation_path
+from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.record import IndentationRecord
 
 MESH_TOLERANCE = 0.01
@@ -18,7 +16,7 @@ RADIUS = 3e-3
 
 
 def pressed(case, *overrides):
-    return load_case(f"cases/{case}.yaml", overrides).experiment.run(lambda step: None)
+    return load_case(f"cases/{case}.yaml", overrides).experiment.run()
 
 
 def threshold_pressure(case, *overrides):
@@ -38,20 +36,21 @@ def in_root(request):
 def icf():
     experiment = load_case("cases/annulus_icf.yaml").experiment
     model = experiment.model()
-    record = IndentationRecord(experiment, model, time.perf_counter())
+    path = DisplacementPath(experiment, experiment.drive(), model)
+    record = IndentationRecord(experiment, model, path)
     states = []
-    for state, touched in indentation_path(experiment, model, record):
-        record.accept(state, threshold=touched)
-        states.append(state)
+    for state, touched in path.states(record.adapted):
+        record.accept(state, event=touched)
+        states.append(state.contact)
     return record, states
 
 
 def test_threshold_is_located(icf):
     record, states = icf
-    assert record.has_threshold
-    rise = record.rise(states[-1])[0]
+    assert record.event is record.steps[-1]
+    before, rise = (record.model.rise(state, record.setup.body.inner_radius)[0] for state in states[-2:])
     assert abs(rise - RECESS) < 1e-4 * RECESS
-    assert abs(record.rise(states[-2])[0] - RECESS) > 3e-4 * RECESS, "the step before is no threshold"
+    assert abs(before - RECESS) > 3e-4 * RECESS, "the step before is no threshold"
 
 
 def test_penetration_and_balance_hold_at_every_step(icf):

@@ -86,7 +86,7 @@ def test_sampling_adds_half_an_interval():
 
 def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
     source = ClosedFormSource(material=NeoHookean(c10=5e3), recess=0.1e-3)
-    tissue = source.tissue(lambda step: None)
+    tissue = source.tissue()
     approach = tissue.approach(2e-3)
     time = np.array([0.0, approach.touch, approach.duration])
     plate, small = approach.at(time)
@@ -99,7 +99,7 @@ def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
     assert small[2] == pytest.approx(8 * 1e4 * 1.5e-3 * excess, rel=1e-6), "a solid punch has 8 G b"
     assert small[2] != pytest.approx(1.00001 * 8 * 1e4 * 1.5e-3 * excess, rel=1e-6)
     trial = ThresholdTrial(source=source, speeds=(1e-3, 4e-3), noises=(1e-4, 5e-4), cutoffs=(10.0, 30.0), trials=20)
-    quantities = trial.run(lambda step: None).quantities
+    quantities = trial.run().quantities
     parts = [quantities[f"{name}_error"].value for name in ("level", "film", "filter", "sampling", "noise")]
     total = np.array(quantities["force_error"].value, dtype=float)
     np.testing.assert_allclose(np.sum(parts, axis=0), total, rtol=1e-9, err_msg="differences of the same numbers")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -13,10 +12,9 @@ from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
-from tactsim.errors import Unfinished
-from tactsim.experiments.collecting import failure
-from tactsim.interfaces import Experiment, Progress
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, FrozenModel, Length, Time, check_increasing, format_quantity
 
 Array = np.ndarray
@@ -126,32 +124,27 @@ class AnnulusDesign(Experiment):
             base=self.base,
         )
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """The map: one step for every radius ratio and recess, in which the force to touch is that within the longest time."""
-        begin = time.perf_counter()
-        steps: list[StepRecord] = []
-        try:
-            annuli = [self.annulus(ratio) for ratio in self.ratios]
-            for number, values in enumerate(self._rows(annuli), start=1):
-                steps.append(StepRecord(number, 0, 0.0, values))
-                progress(steps[-1])
-            status, quantities = Status.CONVERGED, {**self._point(), **self._map(annuli)}
-            reason = f"map complete; {_judged(quantities)}"
-        except Unfinished as error:
-            status, quantities, reason = Status.FAILED, {}, failure(error)
-        except KeyboardInterrupt:
-            status, quantities = Status.INTERRUPTED, {}
-            reason = "interrupted; the accepted rows are kept, the map is incomplete"
-        return Result(
-            kind=self.kind,
-            status=status,
-            reason=reason,
+        steps, quantities = list[StepRecord](), dict[str, Quantity]()
+        kept = "the accepted rows are kept, the map is incomplete"
+        return Course(self._mapped(steps, quantities), lambda: self._findings(steps, quantities), kept)
+
+    def _mapped(self, steps: list[StepRecord], quantities: dict[str, Quantity]) -> Iterator[StepRecord]:
+        """Adds every row to ``steps``, and what the complete map says to ``quantities``."""
+        annuli = [self.annulus(ratio) for ratio in self.ratios]
+        for number, values in enumerate(self._rows(annuli), start=1):
+            steps.append(StepRecord(number, 0, 0.0, values))
+            yield steps[-1]
+        quantities |= self._point() | self._map(annuli)
+
+    def _findings(self, steps: list[StepRecord], quantities: dict[str, Quantity]) -> Findings:
+        return Findings(
+            f"map complete; {_judged(quantities)}" if quantities else "",
+            steps,
             quantities=quantities,
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(_warnings(quantities)),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
+            assumptions=self._assumptions(),
+            warnings=_warnings(quantities),
             details={**self.model_dump(mode="json"), "small_displacement": SMALL_DISPLACEMENT},
         )
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
-from tactsim.interfaces import Experiment, Material, Progress
+from tactsim.interfaces import Experiment, Material
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.mechanics.loading import AnyLoading, ForceLoading
 from tactsim.mechanics.plausibility import oddities
 from tactsim.mechanics.success import within_layer
-from tactsim.results.result import Quantity, Result, StepRecord
+from tactsim.results.result import Quantity, rows
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -100,9 +100,8 @@ class ClosedForm(Experiment):
         loading = ForceLoading.model_validate({"control": "force", "pieces": pieces})
         return cls(material=named_material("atrial").material, loading=loading)
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Evaluate at the sampled times."""
-        begin = time.perf_counter()
         annulus = ViscoelasticAnnulus(
             self.outer_radius,
             self.inner_radius / self.outer_radius,
@@ -118,23 +117,17 @@ class ClosedForm(Experiment):
             force, displacement = annulus.force(history, times), history.value(times)
         status, reason = within_layer("end of the history", float(np.abs(displacement).max()), self.thickness)
         columns = (times, displacement, force, annulus.rise(displacement))
-        steps = [
-            StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, values), strict=True)))
-            for number, values in enumerate(zip(*columns, strict=True), 1)
-        ]
-        for step in steps:
-            progress(step)
-        return Result(
-            kind=self.kind,
-            status=status,
-            reason=reason,
-            quantities=self._quantities(annulus, steps[-1].values, columns),
-            assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
-            warnings=tuple(self._warnings(times, force, displacement)),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
-            details={"body": {"kind": "annulus"}, "control": self.loading.control},
+        steps = rows(self.history_units, columns)
+        return Course.computed(
+            Findings(
+                reason,
+                steps,
+                status=status,
+                quantities=self._quantities(annulus, steps[-1].values, columns),
+                assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
+                warnings=self._warnings(times, force, displacement),
+                details={"body": {"kind": "annulus"}, "control": self.loading.control},
+            )
         )
 
     def _times(self) -> Array:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.errors import Unfinished
-from tactsim.experiments.collecting import failure
 from tactsim.experiments.dma.report import HISTORY_UNITS, DmaFinding, DmaReport
 from tactsim.experiments.dma.source import MeasuredDma, Seed, SignalsDma, SyntheticDma
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
@@ -17,8 +15,9 @@ from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_determined import determination
 from tactsim.identification.dma_genetic import GeneticSettings, fit_genetic
 from tactsim.identification.dma_least_squares import fit_least_squares
-from tactsim.interfaces import Experiment, Progress
-from tactsim.results.result import Result, Status
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, timed
+from tactsim.results.result import StepRecord
 
 CURVE_POINTS = 50
 """Frequencies of the curves, evenly spaced in the logarithm, beside those of the data."""
@@ -69,23 +68,20 @@ class DmaIdentification(Experiment):
         """The eight frequencies of the thesis, least squares alone."""
         return cls(methods=("least_squares",), replicates=100)
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Fit by every method; one step per frequency of the curves, with data, fits and bands."""
         data = self.data.measured()
         spaced = np.geomspace(data.frequencies[0], data.frequencies[-1], CURVE_POINTS)
-        report = DmaReport(data, np.union1d(spaced, data.frequencies), self.data.model, self.kind)
-        status, reason = Status.CONVERGED, f"fitted by {' and '.join(name.replace('_', ' ') for name in self.methods)}"
-        try:
-            for method in self.methods:
-                begin = time.perf_counter()
-                report.add(self._finding(method, data, report.frequencies), time.perf_counter() - begin)
-        except Unfinished as error:
-            status, reason = Status.FAILED, failure(error)
-        except KeyboardInterrupt:
-            status, reason = Status.INTERRUPTED, "interrupted; the fits made before are kept, the run is incomplete"
-        for step in report.steps():
-            progress(step)
-        return report.result(status, reason, tuple(self._assumptions()))
+        report = DmaReport(data, np.union1d(spaced, data.frequencies), self.data.model)
+        reason = f"fitted by {' and '.join(name.replace('_', ' ') for name in self.methods)}"
+        kept = "the fits made before are kept, the run is incomplete"
+        return Course(self._fitted(report), lambda: report.findings(reason, self._assumptions()), kept)
+
+    def _fitted(self, report: DmaReport) -> Iterator[StepRecord]:
+        for method in self.methods:
+            with timed(report.timing, method):
+                report.fits[method] = self._finding(method, report.data, report.frequencies)
+        yield from report.steps()
 
     def _finding(self, method: Method, data: DmaData, frequencies: np.ndarray) -> DmaFinding:
         """A fit with its band and what the data tell of its constants."""

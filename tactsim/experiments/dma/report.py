@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +13,8 @@ from tactsim.identification.dma_data import PARTS, DmaData, parts_of
 from tactsim.identification.dma_determined import Determination
 from tactsim.identification.dma_least_squares import DmaFit, fit_least_squares
 from tactsim.identification.dma_spectrum import relative_noise
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces.run import Findings
+from tactsim.results.result import Quantity, StepRecord
 
 METHODS = ("least_squares", "genetic")
 HISTORY_UNITS = {
@@ -41,21 +41,16 @@ class DmaFinding:
 class DmaReport:
     """Collects the fits of one set of data and turns them into a result."""
 
-    def __init__(self, data: DmaData, frequencies: np.ndarray, model: GeneralizedKelvin | None, kind: str):
-        self.data, self.frequencies, self.kind = data, frequencies, kind
+    def __init__(self, data: DmaData, frequencies: np.ndarray, model: GeneralizedKelvin | None):
+        self.data, self.frequencies = data, frequencies
         self.truth = None if model is None else parts_of(model.complex_compliance(2 * np.pi * frequencies))
-        self.findings: dict[str, DmaFinding] = {}
+        self.fits: dict[str, DmaFinding] = {}
         self.timing: dict[str, float] = {}
-        self._begin = time.perf_counter()
-
-    def add(self, finding: DmaFinding, seconds: float) -> None:
-        """Record a fit and how long it took."""
-        self.findings[finding.fit.method] = finding
-        self.timing[finding.fit.method] = seconds
+        """How long each fit took, in s."""
 
     def steps(self) -> tuple[StepRecord, ...]:
         """One step per frequency; data stand only at theirs, no step without a fit."""
-        if not self.findings:
+        if not self.fits:
             return ()
         return tuple(StepRecord(k + 1, 0, 0.0, self._row(k)) for k in range(self.frequencies.size))
 
@@ -64,7 +59,7 @@ class DmaReport:
         values = {"frequency": float(self.frequencies[k])}
         for row in np.flatnonzero(self.data.frequencies == self.frequencies[k]):
             values |= {f"measured_{part}_compliance": float(self.data.parts[i, row]) for i, part in enumerate(PARTS)}
-        for method, finding in self.findings.items():
+        for method, finding in self.fits.items():
             band = finding.band
             for i, part in enumerate(PARTS):
                 name = f"{method}_{part}_compliance"
@@ -74,32 +69,29 @@ class DmaReport:
             values |= {f"true_{part}_compliance": float(self.truth[i, k]) for i, part in enumerate(PARTS)}
         return values
 
-    def result(self, status: Status, reason: str, assumptions: tuple[str, ...]) -> Result:
-        """The result with every fit that was made."""
+    def findings(self, reason: str, assumptions: list[str]) -> Findings:
+        """What every fit that was made says."""
         quantities = self._quantities()
-        return Result(
-            kind=self.kind,
-            status=status,
-            reason=reason,
+        return Findings(
+            reason,
+            self.steps(),
             quantities=quantities,
             assumptions=assumptions,
-            warnings=tuple(self._warnings(quantities)),
-            timing={**self.timing, "total": time.perf_counter() - self._begin},
-            steps=self.steps(),
-            units=HISTORY_UNITS,
+            warnings=self._warnings(quantities),
+            timing=self.timing,
             details=self._details(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
         found: dict[str, Quantity] = {}
-        for method, finding in self.findings.items():
+        for method, finding in self.fits.items():
             found |= self._constants(finding, prefix="" if not found else f"{method}_")
-        for method, finding in self.findings.items():
+        for method, finding in self.fits.items():
             found |= self._errors(method, finding)
-        if self.findings:
+        if self.fits:
             least = fit_least_squares(self.data, self._units, weighting="objective").objective
             found["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
-            told = next(iter(self.findings.values())).determination
+            told = next(iter(self.fits.values())).determination
             found["relative_noise"] = Quantity(told.noise, "1", "relative standard deviation of each number, known or estimated")
             found["determined_combinations"] = Quantity(
                 told.determined_combinations, "1", f"combinations of the {len(told.names)} constants that the data determine"
@@ -108,7 +100,7 @@ class DmaReport:
 
     @property
     def _units(self) -> int:
-        return len(next(iter(self.findings.values())).fit.constants.moduli)
+        return len(next(iter(self.fits.values())).fit.constants.moduli)
 
     @staticmethod
     def _constants(finding: DmaFinding, prefix: str) -> dict[str, Quantity]:
@@ -139,8 +131,8 @@ class DmaReport:
         return found
 
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
-        warnings = [finding.determination.statement() for finding in list(self.findings.values())[:1]]
-        if "genetic" in self.findings:
+        warnings = [finding.determination.statement() for finding in list(self.fits.values())[:1]]
+        if "genetic" in self.fits:
             reached, least = quantities["genetic_objective"].value, quantities["least_objective"].value
             if reached > FAR_FROM_LEAST * least:
                 times = f"{reached / least:.3g} times" if reached < 1e6 * least else "more than a million times"
@@ -149,7 +141,7 @@ class DmaReport:
 
     def _details(self) -> dict[str, Any]:
         found: dict[str, Any] = {"data_frequencies": self.data.frequencies}
-        for method, finding in self.findings.items():
+        for method, finding in self.fits.items():
             told, band, fit = finding.determination, finding.band, finding.fit
             found[method] = {
                 "evaluations": fit.evaluations,

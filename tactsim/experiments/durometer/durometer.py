@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tactsim.analytic.durometer import DurometerScale
+from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.durometer.report import DurometerRecord
-from tactsim.experiments.indentation.contact_setup import AnyLaw, MeshSettings
+from tactsim.experiments.indentation.course import Adapted, DisplacementPath
+from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.path import started
-from tactsim.experiments.indentation.setup import StepSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.fem.loading import Event
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
 from tactsim.units import Force, Length, format_quantity
 
 LEAST_THICKNESS = 6e-3
@@ -97,25 +97,24 @@ class Durometer(Experiment):
         """A specimen of the hard elastomer of chapter 3."""
         return cls(specimen=Specimen(material="b1a_stable"))
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Press until tissue and spring balance; see ``DurometerRecord`` for what is reported."""
-        begin = time.perf_counter()
         setup = self.indentation
         model = setup.model()
-        record = DurometerRecord(setup, model, begin, scale=self.scale, spring_tolerance=self.spring_tolerance)
-        early = ended_early(
-            record, (record.accept(state, threshold=balanced) for state, balanced in self._path(record)), progress
-        )
-        if early is not None:
-            return early
-        return record.result(Status.CONVERGED, record.told())
+        path = DisplacementPath(setup, setup.drive(), model)
+        record = DurometerRecord(setup, model, path, scale=self.scale, spring_tolerance=self.spring_tolerance)
+        steps = (record.accept(state, event=balanced) for state, balanced in self._balanced(path, record.adapted))
+        return Course(steps, record.findings, setup_is_timed=True)
 
-    def _path(self, record: DurometerRecord) -> Iterator[tuple[ContactEquilibrium, bool]]:
+    def _balanced(self, path: DisplacementPath, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether tissue and spring balance in it."""
-        first, course = started(record.experiment, record.model, record)
-        event = Event[ContactEquilibrium](record.surplus, tolerance=EVENT_TOLERANCE * self.scale.travel)
-        state, balanced = first, False
-        for state, balanced in course.follow(first, event):
+
+        def surplus(state: ContactEquilibrium) -> float:
+            traction = state.contacts[0].at(path.model.displacement(state.unknowns)).traction
+            return float(path.model.force(traction)[-1]) - float(self.scale.spring_force(state.load))
+
+        event = Event[ContactEquilibrium](surplus, tolerance=EVENT_TOLERANCE * self.scale.travel)
+        for state, balanced in path.follow(path.start, event, adapted):
             yield state, balanced
         if balanced and self.stop == "travel":
-            yield from course.follow(state, None)
+            yield from path.follow(state.contact, None, adapted)

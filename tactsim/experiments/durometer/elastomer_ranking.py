@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.annulus import Annulus
+from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.errors import ConvergenceError, Unfinished
+from tactsim.errors import Unfinished
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.elastomer_report import RankingReport, ShapeFinding
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3, Elastomer, Reading, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.experiments.indentation.contact_setup import AnyLaw, MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.interfaces import Experiment, Progress
+from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
+from tactsim.results.result import Result, Status, StepRecord
 from tactsim.units import FrozenModel, Length, Time, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
@@ -154,36 +155,30 @@ class ElastomerRanking(Experiment):
         """Table 3.3 with a neo-Hookean energy alone."""
         return cls(shapes=STABLE_SHAPES[2:])
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Two simulations per shape, then one step per shape and elastomer."""
-        begin = time.perf_counter()
         report = RankingReport(self.elastomers, self.durometer.scale, self.durometer.indentor.radius)
-        status, reason = Status.CONVERGED, f"{len(self.elastomers)} elastomers by {len(self.shapes)} shapes of energy"
-        try:
-            for shape in self.shapes:
-                for step in report.add(self._finding(shape)):
-                    progress(step)
-            shapes = [shape.name for shape in self.shapes]
-            report.add_atrium(self.atrium.reading, self.atrium.times, shapes.index(self.atrium.shape or shapes[-1]))
-        except Unfinished as error:
-            status, reason = Status.FAILED, str(error)
-        except KeyboardInterrupt:
-            status, reason = Status.INTERRUPTED, "interrupted; the shapes that were finished are kept, the run is incomplete"
-        result = report.result(status, reason, time.perf_counter() - begin)
-        return replace(result, assumptions=tuple(self._assumptions()))
+        kept = "the shapes that were finished are kept, the run is incomplete"
+        return Course(self._ranked(report), lambda: report.findings(self._assumptions()), kept)
+
+    def _ranked(self, report: RankingReport) -> Iterator[StepRecord]:
+        for shape in self.shapes:
+            yield from report.add(self._finding(shape))
+        shapes = [shape.name for shape in self.shapes]
+        report.add_atrium(self.atrium.reading, self.atrium.times, shapes.index(self.atrium.shape or shapes[-1]))
 
     def _finding(self, shape: Shape) -> ShapeFinding:
         """Threshold and force-depth curve of a shape.
 
         Raises
         ------
-        ConvergenceError
+        Unfinished
             If the threshold was not reached, or the durometer made no curve.
         """
         sensor, durometer = self.sensor.of(shape), self.durometer.of(shape)
         pressed, indented = (_finished(experiment) for experiment in (sensor, durometer))
         if pressed.status is not Status.CONVERGED or len(indented.steps) < 2:
-            raise ConvergenceError(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
+            raise Unfinished(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
         modulus = youngs_modulus(shape.material.shear_modulus, None)
         found = {name: float(pressed.quantities[f"threshold_{name}"].value) for name in ("pressure", "displacement")}
         told = "" if indented.status is Status.CONVERGED else indented.reason
@@ -214,7 +209,7 @@ class ElastomerRanking(Experiment):
 
 def _finished(experiment: Experiment) -> Result:
     """The result of a simulation that the user did not interrupt."""
-    result = experiment.run(lambda step: None)
+    result = experiment.run()
     if result.status is Status.INTERRUPTED:
         raise KeyboardInterrupt
     return result

@@ -15,7 +15,8 @@ from tactsim.analytic.durometer import DurometerScale, hertz_modulus, hertz_read
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.durometer.elastomers import Elastomer, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces.run import Findings
+from tactsim.results.result import Quantity, StepRecord
 
 Array = np.ndarray
 TIMES = (1e-6, 1e6)
@@ -205,17 +206,14 @@ class RankingReport:
                 told.append(f"{finding.shape.name}: the durometer bottoms out on {', '.join(lost)}; they share the rank of 0")
         return told
 
-    def result(self, status: Status, reason: str, seconds: float) -> Result:
-        """The result with every shape that was finished."""
-        return Result(
-            kind="elastomer_ranking",
-            status=status,
-            reason=reason,
+    def findings(self, assumptions: Sequence[str]) -> Findings:
+        """What every shape that was finished says."""
+        return Findings(
+            f"{len(self._elastomers)} elastomers by {len(self._found)} shapes of energy",
+            self._steps,
             quantities=self._quantities() if self._found else {},
-            warnings=tuple(self._warnings()),
-            timing={"total": seconds},
-            steps=tuple(self._steps),
-            units=self.UNITS,
+            assumptions=assumptions,
+            warnings=self._warnings(),
             details=self._details(),
         )
 

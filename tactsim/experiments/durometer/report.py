@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
-from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.record import IndentationRecord, StartedPath, history_units
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.section_model import IndentationModel
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.mechanics.history_path import TimedState
+from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -28,58 +27,56 @@ class DurometerRecord(IndentationRecord):
 
     UNITS: ClassVar[dict[str, str]] = {
         name: unit
-        for name, unit in IndentationRecord.UNITS.items()
+        for name, unit in history_units(clock=False, space=False).items()
         if name not in ("tissue_rise", "tissue_rise_axis", "sensor_force")
     } | {"spring_force": "N", "hertz_force": "N"}
 
     def __init__(
         self,
-        experiment: IndentationSetup,
-        model: IndentationModel,
-        begin: float,
+        setup: IndentationSetup,
+        model: PressedModel,
+        path: StartedPath,
         *,
         scale: DurometerScale,
         spring_tolerance: float,
     ):
-        super().__init__(experiment, model, begin)
+        super().__init__(setup, model, path)
         self.scale, self.spring_tolerance = scale, spring_tolerance
-        self.balance: dict[str, float] = {}
-        specimen = experiment.specimen
+        specimen = setup.specimen
         self.youngs_modulus = youngs_modulus(specimen.materials[0].shear_modulus, specimen.materials[0].bulk_modulus)
 
-    def surplus(self, state: ContactEquilibrium) -> float:
-        """Force in N of the tissue on the indentor above that of the spring."""
-        contact = state.contacts[0]
-        traction = contact.at(self.model.displacement(state.unknowns)).traction
-        return -float(self.model.surface.total(traction)[1]) - float(self.scale.spring_force(state.load))
+    @property
+    def balance(self) -> dict[str, float]:
+        """History values of the balance of tissue and spring; empty if there is none."""
+        return {} if self.event is None else self.event.values
 
-    def accept(self, state: ContactEquilibrium, *, threshold: bool) -> StepRecord:
-        """Record an accepted state, and whether tissue and spring balance in it."""
-        record = super().accept(state, threshold=False)
-        if threshold:
-            self.balance = record.values
-        return record
+    def kept_as(self, state: TimedState, event: bool) -> tuple[str, ...]:
+        """The last state."""
+        return ("last",)
 
-    def told(self) -> str:
-        """How a run ended that went its way."""
+    def verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
         if self.balance:
             reading = float(self.scale.reading(self.balance["displacement"]))
-            return f"tissue and spring balance at a reading of {reading:.2f}"
-        borne, asked = self.steps[-1].values["reaction_force"], self.scale.force_at_zero
+            return Status.CONVERGED, f"tissue and spring balance at a reading of {reading:.2f}"
+        borne, asked = self.steps[-1].values["reaction_force"] if self.steps else 0.0, self.scale.force_at_zero
         words = f"the tissue bears {format_quantity(borne, 'N')} of {format_quantity(asked, 'N')} at the whole travel"
-        return f"the indentor bottoms out: {words}, the reading is below 0"
+        return Status.CONVERGED, f"the indentor bottoms out: {words}, the reading is below 0"
 
-    def _values(self, state: ContactEquilibrium) -> dict[str, float]:
-        hertz = float(hertz_force(state.load, self.experiment.body.radius, self.youngs_modulus))
-        return super()._values(state) | {"spring_force": float(self.scale.spring_force(state.load)), "hertz_force": hertz}
+    def threshold(self) -> dict[str, Quantity]:
+        """None: the event is the balance."""
+        return {}
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted."""
-        return replace(super().result(status, reason), kind="durometer")
+    def values(self, state: TimedState) -> dict[str, float]:
+        """History values of a state in SI, those of the spring and of Hertz beside them."""
+        depth = state.contact.load
+        hertz = float(hertz_force(depth, self.setup.body.radius, self.youngs_modulus))
+        return super().values(state) | {"spring_force": float(self.scale.spring_force(depth)), "hertz_force": hertz}
 
-    def _quantities(self) -> dict[str, Quantity]:
-        found = super()._quantities()
-        radius = self.experiment.body.radius
+    def quantities(self) -> dict[str, Quantity]:
+        """Reading and modulus, then those of an indentation."""
+        found = super().quantities()
+        radius = self.setup.body.radius
         hertz = hertz_reading(self.youngs_modulus, self.scale, radius)
         told = {
             "hertz_reading": Quantity(
@@ -102,7 +99,7 @@ class DurometerRecord(IndentationRecord):
         depth, force = self.balance["displacement"], self.balance["reaction_force"]
         reading = float(self.scale.reading(depth))
         width = self.spring_tolerance / (self._slope(depth, force) * self.scale.travel / FULL + self.scale.force_per_unit)
-        modulus = hertz_modulus(reading, self.scale, self.experiment.body.radius)
+        modulus = hertz_modulus(reading, self.scale, self.setup.body.radius)
         tolerance = format_quantity(self.spring_tolerance, "N")
         return {
             "reading": Quantity(reading, "1", "reading at which tissue and spring balance"),
@@ -123,14 +120,16 @@ class DurometerRecord(IndentationRecord):
         exponent = np.log(force / last["reaction_force"]) / np.log(depth / last["displacement"])
         return float(exponent * force / depth)
 
-    def _warnings(self) -> list[str]:
-        warnings = super()._warnings()
+    def warnings(self) -> list[str]:
+        """Those of an indentation, and what ASTM D2240 says of the reading and of the specimen."""
+        warnings = super().warnings()
         if self._went_all_the_way() and not self.balance:
             warnings.append("the reading is below 0: off the scale; the force at the whole travel tells more")
-        if self.experiment.specimen.radius < WIDE:
-            given, asked = (format_quantity(value, "m") for value in (self.experiment.specimen.radius, WIDE))
+        if self.setup.specimen.radius < WIDE:
+            given, asked = (format_quantity(value, "m") for value in (self.setup.specimen.radius, WIDE))
             warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")
         return warnings
 
-    def _details(self) -> dict[str, Any]:
-        return super()._details() | {"scale": self.scale.model_dump(mode="json"), "youngs_modulus": self.youngs_modulus}
+    def details(self) -> dict[str, Any]:
+        """Those of an indentation, with the scale."""
+        return super().details() | {"scale": self.scale.model_dump(mode="json"), "youngs_modulus": self.youngs_modulus}

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
-from tactsim.errors import Unfinished
-from tactsim.experiments.collecting import failure
 from tactsim.identification.film_creep import (
     COEFFICIENTS,
     CoefficientLine,
@@ -20,9 +18,10 @@ from tactsim.identification.film_creep import (
     read_creep,
     synthetic_creep,
 )
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.composite import AnyComposite
 from tactsim.sensors.composite_library import named_composite
 from tactsim.sensors.response_errors import root_mean_square
@@ -98,33 +97,26 @@ class FilmCreep(Experiment):
         """The forces of the thesis."""
         return cls()
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Fit each test, one step each, then the lines."""
-        begin = time.perf_counter()
-        tests = self.data.tests()
-        fits: list[CreepFit] = []
-        steps: list[StepRecord] = []
-        status, reason, lines = Status.CONVERGED, f"fitted creep at {len(tests)} forces", {}
-        try:
-            for test in tests:
-                fits.append(fit_creep(test, self.data.area, confidence=self.confidence))
-                steps.append(StepRecord(len(fits), 0, 0.0, _told(fits[-1])))
-                progress(steps[-1])
-            lines = coefficient_lines(fits, confidence=self.confidence)
-        except Unfinished as error:
-            status, reason = Status.FAILED, failure(error)
-        except KeyboardInterrupt:
-            status, reason = Status.INTERRUPTED, "interrupted; the fits made before are kept, the run is incomplete"
-        return Result(
-            kind=self.kind,
-            status=status,
-            reason=reason,
+        tests, fits = self.data.tests(), list[CreepFit]()
+        kept = "the fits made before are kept, the run is incomplete"
+        return Course(self._fitted(tests, fits), lambda: self._findings(tests, fits), kept)
+
+    def _fitted(self, tests: list[CreepTest], fits: list[CreepFit]) -> Iterator[StepRecord]:
+        """A step for each test, its fit added to ``fits``."""
+        for test in tests:
+            fits.append(fit_creep(test, self.data.area, confidence=self.confidence))
+            yield _step(len(fits), fits[-1])
+
+    def _findings(self, tests: list[CreepTest], fits: list[CreepFit]) -> Findings:
+        lines = coefficient_lines(fits, confidence=self.confidence) if len(fits) == len(tests) else {}
+        return Findings(
+            f"fitted creep at {len(tests)} forces",
+            [_step(number, fit) for number, fit in enumerate(fits, 1)],
             quantities=_quantities(lines),
             assumptions=self._assumptions(),
             warnings=self._warnings(fits),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
             details={"tests": [_curve(test) for test in tests], "area": self.data.area},
         )
 
@@ -143,11 +135,11 @@ class FilmCreep(Experiment):
         )
 
 
-def _told(fit: CreepFit) -> dict[str, float]:
+def _step(number: int, fit: CreepFit) -> StepRecord:
     values: dict[str, float] = {"force": fit.force}
     for k, name in enumerate(COEFFICIENTS):
         values |= {name: float(fit.coefficients[k]), f"{name}_half_width": float(fit.half_widths[k])}
-    return values | {"strain_rms_error": root_mean_square(fit.residuals)}
+    return StepRecord(number, 0, 0.0, values | {"strain_rms_error": root_mean_square(fit.residuals)})
 
 
 def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:

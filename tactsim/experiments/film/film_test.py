@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import itertools
-import time
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.interfaces import Experiment, Progress
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.film import HOLM, Film
 from tactsim.sensors.film_calibration import least_squares_line
 from tactsim.sensors.film_report import film_assumptions, film_quantities, film_warnings
@@ -53,9 +53,8 @@ class FilmTest(Experiment):
         """The identified Lingstat at three forces."""
         return cls(forces=(1.0, 2.0, 4.0), times=(1.0, 10.0))
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """One step for every force and time, all times of a force together."""
-        begin = time.perf_counter()
         times = np.concatenate([[0.0], self.times])
         forces = np.array(self.forces)
         held = np.tile(forces, (len(times), 1))
@@ -64,19 +63,16 @@ class FilmTest(Experiment):
         for number, (j, i) in enumerate(itertools.product(range(len(forces)), range(len(times))), start=1):
             reached = (forces[j], times[i], strain[i, j], 1 / conductance[i, j], conductance[i, j])
             steps.append(StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, reached), strict=True))))
-            progress(steps[-1])
         read = self.film.conductance([0.0, self.reading_time], np.tile(forces, (2, 1)))[-1]
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason="all forces held",
-            quantities=film_quantities(self.film) | self._readings(times, conductance) | self._line(forces, read),
-            assumptions=film_assumptions(self.film),
-            warnings=film_warnings(self.film, float(forces.max())),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
-            details=self._details(forces),
+        return Course.computed(
+            Findings(
+                "all forces held",
+                steps,
+                quantities=film_quantities(self.film) | self._readings(times, conductance) | self._line(forces, read),
+                assumptions=film_assumptions(self.film),
+                warnings=film_warnings(self.film, float(forces.max())),
+                details=self._details(forces),
+            )
         )
 
     def _readings(self, times: Array, conductance: Array) -> dict[str, Quantity]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -11,8 +10,9 @@ from pydantic import Field
 
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
-from tactsim.interfaces import Array, Experiment, Progress
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces import Array, Experiment
+from tactsim.interfaces.run import Course, Findings
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.signal_chain import SignalChain
 from tactsim.units import Force, format_quantity
 
@@ -55,9 +55,8 @@ class ForceCalibration(Experiment):
         """The line of 3.1.2 through a chain without noise."""
         return cls()
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Fit the line of every sensor; one step per reading of a sensor."""
-        begin = time.perf_counter()
         force, voltage, saturated = self.data.readings(self.chain)
         fit = fit_calibration_line(
             force,
@@ -68,21 +67,16 @@ class ForceCalibration(Experiment):
             confidence=self.confidence,
             full_scale=self.full_scale,
         )
-        steps = tuple(self._steps(force, voltage, fit))
-        for step in steps:
-            progress(step)
         lines = "line" if fit.slope.size == 1 else f"{fit.slope.size} lines"
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason=f"{lines} through {np.count_nonzero(fit.used)} readings",
-            quantities=self._quantities(fit),
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings(force, fit)),
-            timing={"total": time.perf_counter() - begin},
-            steps=steps,
-            units=self.history_units,
-            details={"full_scale": float(fit.full_scale.max()), "confidence": self.confidence, "sensors": fit.slope.size},
+        return Course.computed(
+            Findings(
+                f"{lines} through {np.count_nonzero(fit.used)} readings",
+                tuple(self._steps(force, voltage, fit)),
+                quantities=self._quantities(fit),
+                assumptions=self._assumptions(),
+                warnings=self._warnings(force, fit),
+                details={"full_scale": float(fit.full_scale.max()), "confidence": self.confidence, "sensors": fit.slope.size},
+            )
         )
 
     def _steps(self, force: Array, voltage: Array, fit: CalibrationFit) -> Iterator[StepRecord]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -10,8 +9,9 @@ from pydantic import Field, model_validator
 
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.film.force_signal import AnyForceSignal, Square
-from tactsim.interfaces import Experiment, Progress
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
+from tactsim.results.result import Quantity, rows
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_report import film_assumptions, film_warnings
@@ -66,9 +66,8 @@ class SensorResponse(Experiment):
         """Two periods of the square wave of Fig. 3.5b."""
         return cls(force=Square(kind="square", duration=2.0), chain=SignalChain(sampling_rate=200.0))
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """One step for every sample."""
-        begin = time.perf_counter()
         times = self._times()
         force = self.force.sampled(times)
         conductance = self.film.conductance(times, force)
@@ -76,21 +75,15 @@ class SensorResponse(Experiment):
         read, raw = (self._linear(voltage) for voltage in (recording.filtered, recording.voltage))
         model = self._modelled(times, recording)
         columns = (times, force, conductance, recording.voltage, recording.filtered, read, raw, model, recording.saturated)
-        steps = []
-        for number, values in enumerate(zip(*columns, strict=True), start=1):
-            steps.append(StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, values), strict=True))))
-            progress(steps[-1])
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason="end of the record",
-            quantities=self._quantities(force, conductance, recording, {"read": read, "raw": raw, "model": model}),
-            assumptions=(*film_assumptions(self.film), "one straight line as calibration, without regard to history"),
-            warnings=self._warnings(force, recording),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
-            details={"ranges": list(self.ranges), "seed": self.seed},
+        return Course.computed(
+            Findings(
+                "end of the record",
+                rows(self.history_units, columns),
+                quantities=self._quantities(force, conductance, recording, {"read": read, "raw": raw, "model": model}),
+                assumptions=(*film_assumptions(self.film), "one straight line as calibration, without regard to history"),
+                warnings=self._warnings(force, recording),
+                details={"ranges": list(self.ranges), "seed": self.seed},
+            )
         )
 
     def _times(self) -> Array:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from typing import ClassVar, Literal, Self
 
-from tactsim.experiments.collecting import ended_early
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.record import GraspRecord
 from tactsim.experiments.grasp.setup import Block, GraspSetup
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
 from tactsim.mechanics.block_source import StructuredSource
 from tactsim.mechanics.loading import DisplacementLoading
-from tactsim.results.result import Result, Status
 
 
 class Grasp(GraspSetup, Experiment):
@@ -36,14 +34,10 @@ class Grasp(GraspSetup, Experiment):
             mesh=StructuredSource(kind="structured", cells=(4, 4, 2)),
         )
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
-        begin = time.perf_counter()
         sourced = self.sourced()
         model = self.model(sourced)
         path = grasp_path(self, model)
-        record = GraspRecord(self, model, sourced, path, begin)
-        early = ended_early(record, (record.accept(state) for state, _ in path.states()), progress)
-        if early is not None:
-            return early
-        return record.result(Status.CONVERGED, "end of the history")
+        record = GraspRecord(self, model, sourced, path)
+        return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import ValidationError
 
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.taxel_voltages import SIDES, readout_assumptions, readout_quantities, readout_warnings
-from tactsim.interfaces import Experiment, Progress
+from tactsim.experiments.grasp.taxel_voltages import JAWS, readout_assumptions, readout_quantities, readout_warnings
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
-from tactsim.results.result import Result, Status, StepRecord
-from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
+from tactsim.results.result import Result, Status, rows
+from tactsim.sensors.matrix_readout import MatrixReadout
 
 Array = np.ndarray
 KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
@@ -32,7 +32,7 @@ class MatrixReadoutRun(Experiment):
     """Sensors and electronics."""
 
     history_units: ClassVar[dict[str, str]] = {"time": "s"} | {
-        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in SIDES
+        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in JAWS
     }
 
     @classmethod
@@ -40,9 +40,8 @@ class MatrixReadoutRun(Experiment):
         """The main grasp, wherever it was written."""
         return cls(grasp="results/grasp_lump_icf")
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Read the stored forces; one step for every sample."""
-        begin = time.perf_counter()
         stored = read_result(self.grasp, fields=False).result
         try:
             times, forces = _history(stored, self.grasp)
@@ -51,21 +50,17 @@ class MatrixReadoutRun(Experiment):
             told = f"{self.grasp}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again"
             raise StorageError(told) from None
         reading = self.readout.read(times, forces, area)
-        steps = _steps(reading, self.history_units)
-        for step in steps:
-            progress(step)
-        true = {name: stored.quantities[name] for side in SIDES for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason="end of the grasp",
-            quantities=readout_quantities(reading) | true,
-            assumptions=readout_assumptions(self.readout, area),
-            warnings=readout_warnings(self.readout, reading, area) + _unfinished(stored),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
-            details={name: stored.details[name] for name in KEPT if name in stored.details},
+        voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
+        true = {name: stored.quantities[name] for side in JAWS for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
+        return Course.computed(
+            Findings(
+                "end of the grasp",
+                rows(self.history_units, (reading.time, *voltage.T, *force.T)),
+                quantities=readout_quantities(reading) | true,
+                assumptions=readout_assumptions(self.readout, area),
+                warnings=readout_warnings(self.readout, reading, area) + _unfinished(stored),
+                details={name: stored.details[name] for name in KEPT if name in stored.details},
+            )
         )
 
 
@@ -73,7 +68,7 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     """Times (n,) in s and forces (n, jaw, row, column) in N of a stored grasp."""
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
-    names: Any = [f"taxel_force_{side}" for side in SIDES]
+    names: Any = [f"taxel_force_{side}" for side in JAWS]
     if len(stored.steps) > 1:
         times = np.asarray(stored.quantities["time_history"].value, dtype=float)
         forces = [np.asarray(stored.quantities[f"{name}_history"].value, dtype=float) for name in names]
@@ -81,15 +76,6 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
         times = np.array([stored.quantities["time"].value], dtype=float)
         forces = [np.asarray(stored.quantities[name].value, dtype=float)[None] for name in names]
     return times, np.stack(forces, axis=1)
-
-
-def _steps(reading: MatrixReading, units: dict[str, str]) -> list[StepRecord]:
-    voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
-    columns = (reading.time, voltage[:, 0], voltage[:, 1], force[:, 0], force[:, 1])
-    return [
-        StepRecord(number, 0, 0.0, dict(zip(units, map(float, values), strict=True)))
-        for number, values in enumerate(zip(*columns, strict=True), 1)
-    ]
 
 
 def _unfinished(stored: Result) -> tuple[str, ...]:

@@ -6,8 +6,7 @@ import numpy as np
 
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.block_model import SIDES
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 
 Array = np.ndarray
 
@@ -32,7 +31,7 @@ def covered_areas(jaw: Jaw, middle: Array, size: Array, layout: TaxelLayout) -> 
 def overhang_warnings(grasp: GraspSetup) -> list[str]:
     """What a user is told of taxels that reach beyond the block, jaw by jaw."""
     size, layout, told = np.array(grasp.block.size[:2]), grasp.matrix, []
-    for side in SIDES:
+    for side in JAWS:
         areas = covered_areas(grasp.jaw(side), size / 2 + getattr(grasp, side).offset, size, layout)
         beyond = areas < COVERED * layout.area
         if beyond.any():

@@ -41,12 +41,8 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
     if experiment.lumens:
         pressures = [last[f"lumen_pressure_{number}"] for number in experiment.lumens]
         found["lumen_pressure"] = Quantity(pressures, "Pa", "pressure in each lumen, by the order of the inclusions" + LAST)
-    deepest = max(step["max_penetration"] for step in values)
     least = min(step["min_volume_ratio"] for step in values)
-    found["max_penetration"] = Quantity(deepest, "m", "largest penetration at any surface point in any step")
     found["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
-    share = last["unstable_volume_fraction"]
-    found["unstable_volume_fraction"] = Quantity(share, "1", "part of the volume outside strong ellipticity at any accepted step")
     return found
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.errors import ConvergenceError
-from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.surface_forces import TaxelForces
 
@@ -41,7 +41,7 @@ def jaw_readings(model: GraspModel, state: ContactEquilibrium, layout: TaxelLayo
     ConvergenceError
         If the forces on taxels, in gaps and outside do not add up to the force on the jaw.
     """
-    readings = {side: JawReading(model.taxels(state, side, layout), model.jaw_force(state, side)) for side in SIDES}
+    readings = {side: JawReading(model.taxels(state, side, layout), model.jaw_force(state, side)) for side in JAWS}
     extent = np.ptp(model.mesh.nodes, axis=0)
     least = NOTHING * model.body.materials[0].shear_modulus * float(extent[0] * extent[1])
     for side, reading in readings.items():

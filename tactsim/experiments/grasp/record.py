@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import time
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,17 +16,17 @@ from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, 
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely, unstable
+from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely
+from tactsim.interfaces.run import Findings
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import SourcedBlock
 from tactsim.mechanics.contact_quality import ContactQuality
-from tactsim.mechanics.ellipticity import elliptic_in
+from tactsim.mechanics.contact_record import ContactRecord
 from tactsim.mechanics.history_path import TimedPath, TimedState
 from tactsim.mechanics.penetration_effect import bonded_block_rate
-from tactsim.mechanics.solid_fields import solid_frame
-from tactsim.mechanics.success import judged
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Status
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
@@ -36,15 +36,15 @@ MOST_LUMENS = 32
 AXES = "xyz"
 
 
-class GraspRecord:
-    """Collects accepted steps and turns them into a result."""
+class GraspRecord(ContactRecord):
+    """Collects the accepted steps of a grasp, with what the taxels of both jaws read."""
 
     UNITS: ClassVar[dict[str, str]] = {
         "time": "s",
         "displacement": "m",
         "reaction_force": "N",
-        **{f"jaw_force_{side}_{axis}": "N" for side in SIDES for axis in AXES},
-        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in SIDES},
+        **{f"jaw_force_{side}_{axis}": "N" for side in JAWS for axis in AXES},
+        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in JAWS},
         "max_penetration": "m",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
@@ -52,51 +52,37 @@ class GraspRecord:
         **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
         **{
             f"taxel_force_{side}_{row}_{column}": "N"
-            for side in SIDES
+            for side in JAWS
             for row in range(1, MOST_COLUMNS + 1)
             for column in range(1, MOST_COLUMNS + 1)
         },
     }
 
-    def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath, begin: float):
-        self.experiment, self.model, self._sourced, self._path, self._begin = experiment, model, sourced, path, begin
-        self.steps: list[StepRecord] = []
+    def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
+        super().__init__(model, path, tolerance=experiment.tolerance, stiffest=_stiffest(experiment))
+        self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
-        self._kept: dict[str, TimedState] = {}
-        self._quality = ContactQuality(_stiffest(experiment))
-        self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._setup_time = time.perf_counter() - begin
         self._read: MatrixReading | None = None
         self._unread: str | None = None
 
-    def accept(self, state: TimedState) -> StepRecord:
-        """Record an accepted state.
+    def values(self, state: TimedState) -> dict[str, float]:
+        """History values of a state in SI; its readings are kept.
 
         Raises
         ------
         ConvergenceError
             If the forces of the taxels do not add up to that of the jaw.
         """
-        readings = jaw_readings(self.model, state.contact, self.experiment.matrix)
-        values = self._values(state, readings)
-        record = StepRecord(len(self.steps) + 1, state.iterations, state.contact.residual, values)
-        self.steps.append(record)
+        layout = self.experiment.matrix
+        readings = jaw_readings(self.model, state.contact, layout)
         self.readings.append(readings)
-        self._keep(state)
-        return record
-
-    def _values(self, state: TimedState, readings: dict[str, JawReading]) -> dict[str, float]:
-        self._unstable |= ~elliptic_in(self.model.body, state.contact.kinematics)
-        weights, layout = self.model.body.points.weights, self.experiment.matrix
         values = {"time": state.time, "displacement": state.contact.load, "reaction_force": readings["upper"].normal}
         for side, reading in readings.items():
             values |= {f"jaw_force_{side}_{axis}": float(part) for axis, part in zip(AXES, reading.force, strict=True)}
             values[f"gap_force_{side}"] = float(reading.taxels.gaps[2])
             values[f"outside_force_{side}"] = float(reading.taxels.outside[2])
         values["max_penetration"] = deepest_penetration(self.model, state.contact)
-        values["min_volume_ratio"] = float(state.contact.kinematics.J.min())
-        values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
-        values |= self._quality.values(self.model.body, state.contact)
+        values |= self.body_values(state.contact)
         values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
         if max(layout.rows, layout.columns) <= MOST_COLUMNS:
             for side, reading in readings.items():
@@ -104,60 +90,49 @@ class GraspRecord:
                     values[f"taxel_force_{side}_{row + 1}_{column + 1}"] = float(force)
         return values
 
-    def _keep(self, state: TimedState) -> None:
+    def kept_as(self, state: TimedState, event: bool) -> list[str]:
         """The first and the last state, and that of the largest sum of all pressures in lumens."""
-        self._kept.setdefault("first", state)
-        strongest = self._kept.get("strongest", state)
+        names = ["last"] if self._kept else ["first", "last"]
+        _, strongest = self._kept.get("strongest", (None, state))
         if self.experiment.lumens and sum(state.loads[1:]) >= sum(strongest.loads[1:]):
-            self._kept["strongest"] = state
-        self._kept["last"] = state
+            names.append("strongest")
+        return names
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if the last state is none."""
-        status, reason = judged(status, reason, self.steps[-1:], self.experiment.tolerance)
+    def verdict(self) -> tuple[Status, str]:
+        """Success: a grasp looks for nothing on its way."""
+        return Status.CONVERGED, "end of the history"
+
+    def findings(self) -> Findings:
+        """What everything that was accepted says, the voltages included."""
         readout, layout = self.experiment.readout, self.experiment.matrix
         if readout is not None and self.steps:
             times = np.array([step.values["time"] for step in self.steps])
-            forces = np.array([[reading[side].taxels.taxels[2] for side in SIDES] for reading in self.readings])
+            forces = np.array([[reading[side].taxels.taxels[2] for side in JAWS] for reading in self.readings])
             try:
                 self._read = readout.read(times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
-        return Result(
-            kind="grasp",
-            status=status,
-            reason=reason,
-            quantities=self._quantities(),
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings()),
-            timing={
-                "meshing": self._sourced.block.seconds,
-                "setup": self._setup_time,
-                "total": time.perf_counter() - self._begin,
-            },
-            steps=tuple(self.steps),
-            units=self.UNITS,
-            frames=self._frames(),
-            details=self._details(),
-        )
-
-    def _quantities(self) -> dict[str, Quantity]:
         unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
-        if not self.steps:
-            return unknowns
+        found = super().findings()
+        return replace(found, quantities=found.quantities or unknowns, timing={"meshing": self._sourced.block.seconds})
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Quantities at the last step, of all steps, and of the readout."""
+        unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
         values = [step.values for step in self.steps]
-        found = final_quantities(values, self.readings[-1], self.experiment) | self._quality.quantities(self.steps)
+        found = final_quantities(values, self.readings[-1], self.experiment) | super().quantities()
         if (asymmetry := self._asymmetry()) is not None:
             text = "largest difference of a taxel's force from that on its mirror image, over the largest force" + LAST
             found["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
         found |= history_quantities(values, self.readings, self.experiment) | unknowns
         return found if self._read is None else found | readout_quantities(self._read)
 
-    def _assumptions(self) -> list[str]:
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
         experiment, block = self.experiment, self._sourced.block
         size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
         told = [f"block of {size} (the thesis prints no size)"]
-        for side in SIDES:
+        for side in JAWS:
             jaw = experiment.jaw(side)
             width, depth = format_quantity(jaw.width, "m"), format_quantity(jaw.depth, "m")
             edges = format_quantity(jaw.fillet, "m")
@@ -182,43 +157,26 @@ class GraspRecord:
             told += readout_assumptions(experiment.readout, experiment.matrix.area)
         return told
 
-    def _warnings(self) -> list[str]:
+    def warnings(self) -> list[str]:
+        """What a user is told of readout, mesh, readings, overhang, volumes, sizes and materials."""
         readout, told = self.experiment.readout, []
         if readout is not None and self._read is not None:
             told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         if self._unread:
             told.append(self._unread)
         told += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
-        told += [*overhang_warnings(self.experiment), *self._quality.warnings(), *unlikely(self.experiment)]
-        return [*told, *unstable(self.steps)]
+        told += [*overhang_warnings(self.experiment), *self.quality.warnings(), *unlikely(self.experiment)]
+        return [*told, *self.unstable("a closing of {} per jaw")]
 
     def _asymmetry(self) -> float | None:
         """How far the last forces are from their mirror images, None if the grasp is not its own."""
         axes = mirror_axes(self.experiment)
         return mirror_asymmetry(self.readings[-1], axes) if axes and self.readings else None
 
-    def _frames(self) -> tuple[FieldFrame, ...]:
-        """Fields of the kept states, by time."""
-        kept = sorted({id(state): state for state in self._kept.values()}.values(), key=lambda state: state.time)
-        return tuple(
-            solid_frame(
-                self.model.mesh,
-                self.model.body,
-                state.contact,
-                time=state.time,
-                isochoric=None if state.memory is None else state.memory.stress,
-            )
-            for state in kept
-        )
-
-    def _details(self) -> dict[str, Any]:
+    def details(self) -> dict[str, Any]:
+        """The parts of the grasp and where they stand."""
         block, experiment = self._sourced.block, self.experiment
-        return {
-            "unknowns": self.model.space.size,
-            "elements": len(self.model.space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self._path.rejected,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
+        return super().details() | {
             "mesh": {
                 "content": self._sourced.content,
                 "origin": self._sourced.origin,
@@ -232,7 +190,7 @@ class GraspRecord:
             "block_size": list(experiment.block.size),
             "inclusions": [shape.model_dump(mode="json") for shape in experiment.shapes],
             "unlike_tissue": [one.unlike(experiment.block.tissue) for one in experiment.inclusions],
-            "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in SIDES},
+            "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in JAWS},
             "jaw_places": self._places(),
             "matrix": experiment.matrix.model_dump(mode="json"),
             "control": experiment.loading.control,
@@ -240,10 +198,10 @@ class GraspRecord:
 
     def _places(self) -> dict[str, list[float]]:
         """Where the middle of each jaw's face stands in m at the last accepted step."""
-        last = self._kept.get("last")
-        if last is None:
-            return {side: self.model.touching_place(side).tolist() for side in SIDES}
-        return {side: contact.place.tolist() for side, contact in zip(SIDES, last.contact.contacts, strict=True)}
+        if "last" not in self._kept:
+            return {side: self.model.touching_place(side).tolist() for side in JAWS}
+        _, last = self._kept["last"]
+        return {side: contact.place.tolist() for side, contact in zip(JAWS, last.contact.contacts, strict=True)}
 
 
 def _stiffest(experiment: GraspSetup) -> float:

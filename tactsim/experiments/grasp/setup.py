@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Annotated, Self
 
@@ -10,21 +9,21 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import History
+from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
-from tactsim.experiments.indentation.contact_setup import AnyLaw
-from tactsim.experiments.indentation.timed_setup import TimeSettings
 from tactsim.interfaces import Material
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
 from tactsim.mechanics.loading import AnyLoading, check_periods
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.sensors.matrix_readout import MatrixReadout
@@ -40,6 +39,8 @@ PENETRATION_OF_CLOSING = 1e-2
 """That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
+MANY_ITERATIONS = 60
+"""Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
 SWITCH_LENGTH = 1e-3
 """Length in m over which the state of a surface point may change its mind."""
 
@@ -172,10 +173,17 @@ class GraspSetup(FrozenModel):
         """Whether a material relaxes."""
         return any(material.relaxation is not None for material in self.materials)
 
-    @property
-    def shortest_time(self) -> float:
-        """Shortest relaxation time of the materials in s, infinite if none relaxes."""
-        return min((min(m.relaxation.times) for m in self.materials if m.relaxation is not None), default=math.inf)
+    def policy(self) -> StepPolicy:
+        """Lengths of the steps."""
+        time = self.time
+        return StepPolicy(
+            time,
+            shortest_relaxation_time(self.materials),
+            per_ramp=time.steps,
+            per_period=time.per_period,
+            many_iterations=MANY_ITERATIONS,
+            sparing=True,
+        )
 
     @property
     def lumens(self) -> dict[int, AnyLumenPressure]:
@@ -204,7 +212,7 @@ class GraspSetup(FrozenModel):
     def sourced(self) -> SourcedBlock:
         """The mesh, finer at the edges of jaws that are smaller than the block and in its middle."""
         source, size = self.mesh, self.block.size
-        jaws = [self.jaw(side) for side in SIDES]
+        jaws = [self.jaw(side) for side in JAWS]
         widths = {(jaw.width, jaw.depth) for jaw in jaws}
         covered = all(jaw.width >= size[0] and jaw.depth >= size[1] for jaw in jaws)
         centred = len(widths) == 1 and not any(self.upper.offset + self.lower.offset)
@@ -219,7 +227,7 @@ class GraspSetup(FrozenModel):
             sourced.block.mesh,
             self.materials,
             sourced.block.facets,
-            jaws=[self.jaw(side) for side in SIDES],
+            jaws=[self.jaw(side) for side in JAWS],
             offsets=np.array([middle + self.upper.offset, middle + self.lower.offset]),
         )
 
@@ -247,7 +255,7 @@ class GraspSetup(FrozenModel):
 
     @model_validator(mode="after")
     def _jaws_meet_the_block(self) -> Self:
-        for side in SIDES:
+        for side in JAWS:
             jaw, settings = self.jaw(side), getattr(self, side)
             for axis, (name, extent) in enumerate((("width", jaw.width), ("depth", jaw.depth))):
                 most = (self.block.size[axis] + extent) / 2 - jaw.fillet
@@ -272,7 +280,7 @@ class GraspSetup(FrozenModel):
 
     @model_validator(mode="after")
     def _kept_out(self) -> Self:
-        fillets = {f"{side} jaw's fillet": getattr(self, side).fillet for side in SIDES}
+        fillets = {f"{side} jaw's fillet": getattr(self, side).fillet for side in JAWS}
         lengths = {"closing": self._closing, "block's height": self.block.size[2]}
         check_penetration(self.penetration_tolerance, lengths | fillets)
         return self

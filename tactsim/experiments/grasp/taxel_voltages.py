@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.mechanics.block_model import SIDES
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.result import Quantity
 from tactsim.sensors.film_report import film_assumptions, film_warnings
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
@@ -19,7 +19,7 @@ OVER_TIME = "at each of readout_time, [time][row][column]"
 def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
     """Readings with the channels (jaw, row, column), upper jaw first."""
     found = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels")}
-    for k, side in enumerate(SIDES):
+    for k, side in enumerate(JAWS):
         of = f"of each taxel of the {side} jaw"
         voltage, force = reading.filtered[:, k], reading.force[:, k]
         found |= {

@@ -8,11 +8,10 @@ import numpy as np
 
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.mechanics.block_model import SIDES
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.plausibility import oddities
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh
-from tactsim.results.result import StepRecord
 from tactsim.units import format_quantity
 
 RAGGED, SUCTION = 0.05, 0.01
@@ -32,7 +31,7 @@ def ragged(block: BlockMesh) -> list[str]:
 
 def suction(readings: Sequence[Mapping[str, JawReading]]) -> list[str]:
     """Taxels that are pulled, which contact without adhesion cannot do."""
-    forces = [reading[side].taxels.taxels[2] for reading in readings for side in SIDES]
+    forces = [reading[side].taxels.taxels[2] for reading in readings for side in JAWS]
     least, most = (min(map(np.min, forces)), max(map(np.max, forces))) if forces else (0.0, 0.0)
     if least >= -SUCTION * most:
         return []
@@ -50,24 +49,11 @@ def uneven(asymmetry: float | None) -> list[str]:
     ]
 
 
-def unstable(steps: Sequence[StepRecord]) -> list[str]:
-    """Volume outside strong ellipticity."""
-    share = steps[-1].values["unstable_volume_fraction"] if steps else 0.0
-    if share == 0:
-        return []
-    first = next(step for step in steps if step.values["unstable_volume_fraction"] > 0)
-    at = format_quantity(first.values["displacement"], "m")
-    return [
-        f"{share:.1%} of the volume left strong ellipticity, first at a closing of {at} per jaw: "
-        "there the answer depends on the mesh; take a stable material set"
-    ]
-
-
 def unlikely(grasp: GraspSetup) -> list[str]:
     """Sizes and materials that look like a wrong unit."""
     materials = {"block.tissue": grasp.block.tissue}
     materials |= {f"the material of {inclusion_name(k, e.shape)}": e.material for k, e in enumerate(grasp.inclusions, 1)}
     tissue = {f"block.size along {axis}": side for axis, side in zip("xyz", grasp.block.size, strict=True)}
-    jaws = {side: grasp.jaw(side) for side in SIDES}
+    jaws = {side: grasp.jaw(side) for side in JAWS}
     bodies = {f"{name} of the {side} jaw": getattr(jaw, name) for side, jaw in jaws.items() for name in ("width", "depth")}
     return oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})

@@ -2,35 +2,67 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator
-from typing import ClassVar, Literal, Self
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
-from tactsim.contact.penalty import Regularisation
-from tactsim.contact.punch import Punch
-from tactsim.contact.tilted import Tilted
-from tactsim.errors import ConvergenceError
-from tactsim.experiments.collecting import ended_early
-from tactsim.experiments.indentation.path import EVENT_TOLERANCE, PAST_PEAK, SWITCH_LENGTH
-from tactsim.experiments.indentation.record_3d import SpaceIndentationRecord
-from tactsim.experiments.indentation.setup_3d import SpaceIndentationSetup, SpaceMeshSettings
-from tactsim.fem.loading import Event, PathFollower
-from tactsim.interfaces import Experiment, Progress
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.solid_model import SpaceIndentationModel
+from tactsim.contact.tilted import Tilt, Tilted
+from tactsim.experiments.indentation.course import indentation_course
+from tactsim.experiments.indentation.displaced import DisplacedSetup
+from tactsim.experiments.indentation.record import history_units
+from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.fem.loading import StepControl
+from tactsim.fem.space import Measure
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
+from tactsim.mechanics.solid_model import SolidModel, SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
-from tactsim.units import format_quantity
+from tactsim.mesh.affordable import check_unknowns
+from tactsim.mesh.revolved import largest_offset, shifted_outside, swept
+from tactsim.units import Length, format_quantity
+
+Array = np.ndarray
+
+COARSENING = 3.0
+"""Element size at the edges of the body over that of the section's own model: a fillet instead of a third of one."""
+LEAST_ACROSS = 6
+"""Elements across the width of the contact, at least, however wide the fillet."""
+UNSHIFTED = 1.2
+"""The mesh keeps its circles within this many radii of the body."""
+FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
+"""Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in space takes more than in a section."""
 
 
-class SpaceIndentation(SpaceIndentationSetup, Experiment):
+class SpaceMeshSettings(MeshSettings):
+    """Size of the elements in the section, and the sectors in which it is swept around the body's axis."""
+
+    finest: Annotated[Length, Field(gt=0)] | None = None
+    """Element size at the edges; by default the fillet, or three fiftieths of the body's radius if its edge is sharp."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 1.0
+    """Growth of the element size per distance from the edges, dimensionless."""
+    adaptive: Literal[False] = False
+    """Elements in space are not split on the way."""
+    sectors: Annotated[int, Field(ge=2, le=90)] = 2
+    """Sectors in a quarter turn about the body's axis, each one quadratic element wide."""
+
+
+class SpaceIndentation(DisplacedSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen in space, its axis anywhere and leaning."""
 
+    measure: ClassVar[Measure] = "solid"
     kind: Literal["indentation_3d"] = "indentation_3d"
+    offset: Annotated[Length, Field(ge=0)] = 0.0
+    """Distance along x of the body's reference point from the axis of the specimen."""
+    tilt_x: Tilt = 0.0
+    """Rotation of the body about the x axis, right-handed, before that about y."""
+    tilt_y: Tilt = 0.0
+    """Rotation of the body about the y axis; a positive one leans its axis towards x and lowers its edge there."""
+    mesh: SpaceMeshSettings = SpaceMeshSettings()
+    """Size of the elements and number of sectors."""
 
-    history_units: ClassVar[dict[str, str]] = SpaceIndentationRecord.UNITS
+    history_units: ClassVar[dict[str, str]] = history_units(clock=False, space=True)
 
     @classmethod
     def example(cls) -> Self:
@@ -39,64 +71,69 @@ class SpaceIndentation(SpaceIndentationSetup, Experiment):
         mesh = SpaceMeshSettings(finest=0.25e-3, growth=1.0, sectors=2)
         return cls(specimen=specimen, recess=0.8e-3, displacement=0.5e-3, stop="displacement", mesh=mesh)
 
-    def run(self, progress: Progress) -> Result:
-        """Press until the threshold or the displacement; see ``SpaceIndentationRecord`` for what is reported."""
-        begin = time.perf_counter()
-        model = self.space_model()
-        record = SpaceIndentationRecord(self, model, begin)
-        states = space_indentation_path(self, model, record)
-        early = ended_early(record, (record.accept(state, threshold=event) for state, event in states), progress)
-        if early is not None:
-            return early
-        if self.stop == "threshold" and not record.has_threshold:
-            reached = format_quantity(self.displacement, "m")
-            return record.result(Status.FAILED, f"the threshold was not reached within the displacement of {reached}")
-        return record.result(Status.CONVERGED, "threshold reached" if self.stop == "threshold" else "displacement reached")
+    def begin(self) -> Course:
+        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
+        return indentation_course(self)
 
+    @model_validator(mode="after")
+    def _placed(self) -> Self:
+        if self.offset == 0:
+            return self
+        given = format_quantity(self.offset, "m")
+        most = largest_offset(self.specimen.radius, UNSHIFTED * self.contact_radius)
+        if self.offset > most:
+            allowed = format_quantity(max(most, 0.0), "m")
+            raise ValueError(f"offset {given} is too close to the side of the specimen: at most {allowed}")
+        if self.specimen.surface != "flat":
+            raise ValueError(f"an offset of {given} needs a flat surface, not a {self.specimen.surface} one")
+        return self
 
-def space_indentation_path(
-    experiment: SpaceIndentationSetup, model: SpaceIndentationModel, record: SpaceIndentationRecord
-) -> Iterator[tuple[ContactEquilibrium, bool]]:
-    """Accepted states, each with whether it is the threshold; past it the inner sensor presses too.
+    @model_validator(mode="after")
+    def _held(self) -> Self:
+        if self.specimen.base == "slipping" and self.symmetry is not SweepSymmetry.QUARTER:
+            raise ValueError("on a slipping base an offset or tilted body pushes the specimen away: set base: fixed")
+        return self
 
-    Raises
-    ------
-    ConvergenceError
-        If the path cannot be followed to its end, or the rise has passed its peak below the threshold.
-    """
-    body, law, recess = experiment.posed_body, experiment.contact, experiment.recess
-    record.starting_height = height = model.touching_height(body)
-    softest = min(material.shear_modulus for material in experiment.specimen.materials)
-    scale = Regularisation(experiment.tolerance, softest, switch_length=SWITCH_LENGTH * experiment.contact_radius)
-    first = model.start([(body, np.array([0.0, 0.0, height]))], law, scale)
-    if recess is None:
-        yield from _followed(experiment, model, record, (first, None))
-        return
-    event = Event[ContactEquilibrium](lambda s: record.rise(s)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
-    peak, peak_load = 0.0, 0.0
-    for state, touched in _followed(experiment, model, record, (first, event)):
-        yield state, touched
-        rise = record.rise(state)[0]
-        peak, peak_load = max((peak, peak_load), (rise, state.load))
-        if experiment.stop == "threshold" and rise < PAST_PEAK * peak and not touched:
-            highest, where = format_quantity(peak, "m"), format_quantity(peak_load, "m")
-            raise ConvergenceError(f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling")
-    if touched and experiment.stop == "displacement":
-        punch = Punch(radius=experiment.body.inner_radius, height=experiment.body.height)
-        sensor = Tilted(body=punch, tilt_x=experiment.tilt_x, tilt_y=experiment.tilt_y)
-        contact = model.contact(sensor, law, state.contacts[0].place + recess * body.rotation[:, 2])
-        yield from _followed(experiment, model, record, (model.with_contact(state, contact), None))
+    @property
+    def symmetry(self) -> SweepSymmetry:
+        """The part of the specimen that is computed: the largest symmetry that offset and tilts leave."""
+        if self.tilt_x != 0:
+            return SweepSymmetry.WHOLE
+        return SweepSymmetry.HALF if self.offset != 0 or self.tilt_y != 0 else SweepSymmetry.QUARTER
 
+    @property
+    def pressed_body(self) -> Tilted:
+        """The body as it leans."""
+        return Tilted(body=self.body, tilt_x=self.tilt_x, tilt_y=self.tilt_y)
 
-def _followed(
-    experiment: SpaceIndentationSetup,
-    model: SpaceIndentationModel,
-    record: SpaceIndentationRecord,
-    leg: tuple[ContactEquilibrium, Event[ContactEquilibrium] | None],
-) -> Iterator[tuple[ContactEquilibrium, bool]]:
-    """Accepted states from the first of a ``leg`` to its event or the displacement; counts the rejected steps."""
-    follower = PathFollower(model.advance, experiment.control())
-    for reached in follower.follow(leg[0], experiment.displacement, leg[1]):
-        record.rejected_steps += follower.rejected
-        follower.rejected = 0
-        yield reached
+    @property
+    def axis(self) -> Array:
+        """Unit vector (3,) along the leaning axis, away from the tissue."""
+        return self.pressed_body.rotation[:, 2]
+
+    @property
+    def inner_sensor(self) -> Tilted:
+        """The sensor in the hole of the annulus, which leans with it."""
+        return Tilted(body=super().inner_sensor, tilt_x=self.tilt_x, tilt_y=self.tilt_y)
+
+    def control(self) -> StepControl:
+        """Lengths of the load steps in m."""
+        return replace(super().control(), few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
+
+    def model(self) -> SolidModel:
+        """The finite element model in space, the body's axis at the origin of x and y."""
+        section, symmetry = self.section(), self.symmetry
+        swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)
+        check_unknowns(3 * swept_nodes, "mesh.finest, mesh.growth, mesh.refinement and mesh.sectors")
+        sweep = swept(section, self.mesh.sectors * symmetry.quarters, np.pi / 2 * symmetry.quarters)
+        top = sweep.facets_from(self.top_edges(section))
+        nodes = sweep.mesh.nodes
+        if self.offset != 0:
+            rest = UNSHIFTED * self.contact_radius
+            nodes = shifted_outside(nodes, -self.offset, radius=self.specimen.radius, rest=rest)
+        return SolidModel(sweep.mesh.moved(nodes), self.specimen.materials, base=self.specimen.base, top=top, symmetry=symmetry)
+
+    def _focus(self) -> tuple[tuple[float, ...], float, float]:
+        """As in the section, with larger elements at the edges."""
+        rims, reach, finest = super()._focus()
+        return rims, reach, max(finest, min(COARSENING * finest, self._narrowest / LEAST_ACROSS))

@@ -1,73 +1,84 @@
-"""What an indentation reports: history, quantities, fields, assumptions and warnings."""
+"""What an indentation reports, in any dimension, with a clock or without: history, quantities, fields, assumptions, warnings."""
 
 from __future__ import annotations
 
-import time
-from typing import Any, ClassVar
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from tactsim.experiments.indentation.contact_record import (
-    contact_assumptions,
-    contact_oddities,
-    contact_values,
-    elliptic_points,
-    section_frame,
-    tissue_rise,
-)
-from tactsim.experiments.indentation.setup import IndentationSetup
+from tactsim.experiments.indentation.comparison import Comparison
+from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.contact_quality import ContactQuality
-from tactsim.mechanics.section_model import IndentationModel
-from tactsim.mechanics.success import judged
+from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.history_path import TimedState
+from tactsim.mechanics.plausibility import oddities
+from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.mechanics.solid_model import SolidModel
 from tactsim.mesh.adaptation import Refinement
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity
 
 Array = np.ndarray
 
+SMALL = 0.01
+"""Displacement over the body's radius up to which a linear closed form is meant."""
+LAST = ", at the last accepted step"
+AT_LAST = {
+    "time": "time",
+    "displacement": "displacement of the body from first touch",
+    "reaction_force": "force of the tissue on the body, along the axis",
+    "base_force": "force on the base, along the axis",
+    "tissue_rise": "largest height of the tissue in the hole above the face of the annulus",
+    "tissue_rise_axis": "height of the tissue on the axis of the annulus above its face",
+    "sensor_force": "force of the tissue on the inner sensor",
+}
+"""Quantities that are history values of the last step, and their words; the axis is that of the specimen."""
+CLOCK = ("time", "closed_form_displacement", "closed_form_force", "closed_form_difference")
+"""History values of a timed indentation alone."""
+SPACE = ("force_x", "force_y", "moment_x", "moment_y", "moment_z")
+"""History values of an indentation in space alone."""
 
-class IndentationRecord:
-    """Collects accepted steps and turns them into a result."""
+
+class StartedPath(FollowedPath, Protocol):
+    """A path that knows where it began."""
+
+    @property
+    def start(self) -> ContactEquilibrium:
+        """The undeformed tissue at first touch."""
+
+
+class IndentationRecord(ContactRecord):
+    """Collects the accepted steps of an indentation."""
 
     UNITS: ClassVar[dict[str, str]] = {
+        "time": "s",
         "displacement": "m",
         "reaction_force": "N",
+        "force_x": "N",
+        "force_y": "N",
+        "moment_x": "N m",
+        "moment_y": "N m",
+        "moment_z": "N m",
         "tissue_rise": "m",
         "tissue_rise_axis": "m",
         "sensor_force": "N",
         "base_force": "N",
-        "max_penetration": "m",
-        "max_pressure": "Pa",
-        "min_volume_ratio": "1",
-        "unstable_volume_fraction": "1",
-        **ContactQuality.UNITS,
+        **ContactRecord.UNITS,
+        "closed_form_displacement": "m",
+        "closed_form_force": "N",
+        "closed_form_difference": "1",
     }
 
-    def __init__(self, experiment: IndentationSetup, model: IndentationModel, begin: float):
-        self.experiment, self.model, self.begin = experiment, model, begin
-        self.starting_height = 0.0
-        self.steps: list[StepRecord] = []
-        self.reported: dict[str, StepRecord] = {}
-        self._quality = ContactQuality()
-        self._at_threshold: list[tuple[IndentationModel, ContactEquilibrium]] = []
-        self._last: list[tuple[IndentationModel, ContactEquilibrium]] = []
-        self.threshold: dict[str, float] = {}
-        self.adaptations = 0
-        self.rejected_steps = 0
-        self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._setup_time = time.perf_counter() - begin
+    def __init__(self, setup: IndentationSetup, model: PressedModel, path: StartedPath):
+        super().__init__(model, path, tolerance=setup.tolerance)
+        drive = setup.drive()
+        self.setup, self.adaptations, self._start = setup, 0, path.start
+        self._clock = drive if isinstance(drive, Timed) else None
+        self._comparison = None if self._clock is None or self._clock.compare is None else Comparison(setup, self._clock)
 
-    @property
-    def has_threshold(self) -> bool:
-        """Whether the tissue has touched the inner sensor."""
-        return bool(self.threshold)
-
-    def rise(self, state: ContactEquilibrium) -> tuple[float, float]:
-        """Largest height of the tissue in the hole above the annulus's face, and the height on the axis, in m."""
-        return tissue_rise(self.model, state, self.experiment.body, self.starting_height)
-
-    def adapted(self, model: IndentationModel, split: Refinement) -> None:
+    def adapted(self, model: PressedModel, split: Refinement) -> None:
         """Go on with a refined model: a child has left ellipticity where the nearest point of its parent has."""
         old = model.body.points.pressure_values.T
         new = np.einsum("ekv,kq->evq", split.barycentric, old)
@@ -76,102 +87,168 @@ class IndentationRecord:
         self.model = model
         self.adaptations += 1
 
-    def accept(self, state: ContactEquilibrium, *, threshold: bool) -> StepRecord:
-        """Record an accepted state."""
-        values = self._values(state)
-        record = StepRecord(len(self.steps) + 1, state.iterations, state.residual, values)
-        self.steps.append(record)
-        self.reported = {"threshold": record} if threshold else self.reported | {"last": record}
-        if threshold:
-            self.threshold, self._at_threshold = values, [(self.model, state)]
-        else:
-            self._last = [(self.model, state)]
-        return record
-
-    def _values(self, state: ContactEquilibrium) -> dict[str, float]:
-        self._unstable |= ~elliptic_points(self.model, state)
-        weights = self.model.body.points.weights
-        values, forces = contact_values(self.model, state)
-        values["unstable_volume_fraction"] = float(weights[self._unstable].sum() / weights.sum())
-        values |= self._quality.values(self.model.body, state)
-        if self.experiment.recess is not None:
-            rise, axis = self.rise(state)
-            values |= {"tissue_rise": rise, "tissue_rise_axis": axis, "sensor_force": sum(forces[1:])}
-        return values
-
-    def _frames(self) -> tuple[FieldFrame, ...]:
-        """Fields at the threshold and at the last accepted step, in the order of the displacement."""
-        kept = sorted([*self._at_threshold, *self._last], key=lambda pair: pair[1].load)
-        return tuple(section_frame(model, state, time=state.load) for model, state in kept)
-
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was accepted; no success if a reported state is none."""
-        status, reason = judged(status, reason, self.reported.values(), self.experiment.tolerance)
-        total = time.perf_counter() - self.begin
-        return Result(
-            kind="indentation",
-            status=status,
-            reason=reason,
-            quantities=self._quantities(),
-            assumptions=tuple(contact_assumptions(self.experiment)),
-            warnings=tuple(self._warnings()),
-            timing={"setup": self._setup_time, "total": total},
-            steps=tuple(self.steps),
-            units=self.UNITS,
-            frames=self._frames(),
-            details=self._details(),
-        )
-
-    def _quantities(self) -> dict[str, Quantity]:
-        last = self.steps[-1].values if self.steps else {}
-        told = {
-            "displacement": "displacement of the body from first touch",
-            "reaction_force": "force of the tissue on the body, along the axis",
-            "base_force": "force on the base, along the axis",
-            "tissue_rise": "largest height of the tissue in the hole above the face of the annulus",
-            "tissue_rise_axis": "height of the tissue on the axis above the face of the annulus",
-            "sensor_force": "force of the tissue on the inner sensor",
+    def values(self, state: TimedState) -> dict[str, float]:
+        """History values of a state in SI."""
+        model, contact = self.model, state.contact
+        displacement = model.displacement(contact.unknowns)
+        touches = [one.at(displacement) for one in contact.contacts]
+        forces = [model.force(touch.traction) for touch in touches]
+        found = {} if self._clock is None else {"time": state.time}
+        found |= {
+            "displacement": contact.load,
+            "reaction_force": float(forces[0][-1]),
+            "base_force": float(model.base_force(contact.unknowns, state.past)[-1]),
+            "max_penetration": max(0.0, *(float(-touch.gap.min()) for touch in touches)),
+            "max_pressure": max(float(touch.pressure.max()) for touch in touches),
+            **self.body_values(contact),
         }
-        found = {name: Quantity(last[name], self.UNITS[name], text) for name, text in told.items() if name in last}
-        if self.steps:
-            deepest = max(step.values["max_penetration"] for step in self.steps)
-            found["max_penetration"] = Quantity(deepest, "m", "largest penetration at any surface point in any step")
-            share = last["unstable_volume_fraction"]
-            found["unstable_volume_fraction"] = Quantity(
-                share, "1", "part of the volume outside strong ellipticity at any accepted step"
-            )
-            found |= self._quality.quantities(self.steps)
-        if self.threshold:
-            force, area = self.threshold["reaction_force"], self.experiment.body.area
-            found["threshold_force"] = Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor")
-            found["threshold_pressure"] = Quantity(force / area, "Pa", "threshold force over the annular area")
-            found["threshold_displacement"] = Quantity(self.threshold["displacement"], "m", "displacement at the threshold")
+        if isinstance(model, SolidModel):
+            moment = model.moment(contact.contacts[0], contact.unknowns)
+            found |= dict(zip(SPACE, map(float, (*forces[0][:2], *moment)), strict=True))
+        if self.setup.body.kind == "annulus":
+            found["tissue_rise"], found["tissue_rise_axis"] = model.rise(contact, self.setup.body.inner_radius)
+            if self._clock is None:
+                found["sensor_force"] = float(sum(force[-1] for force in forces[1:]))
+        if self._comparison is not None:
+            found |= self._comparison.values(state.time, state.loads[0], found)
         return found
 
-    def _warnings(self) -> list[str]:
-        if not self.steps:
-            return []
-        warnings = self._quality.warnings() + contact_oddities(self.experiment)
-        share = self.steps[-1].values["unstable_volume_fraction"]
-        if share > 0:
-            first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
-            at = format_quantity(first.values["displacement"], "m")
-            warnings.append(
-                f"{share:.1%} of the volume left strong ellipticity, first at a displacement of {at}: "
-                "there the answer depends on the mesh; take a stable material set"
-            )
-        return warnings
+    def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
+        """The last state, and with a clock the first, without one that of the threshold."""
+        if self._clock is None:
+            return ("threshold",) if event else ("last",)
+        return ("last",) if self._kept else ("first", "last")
 
-    def _details(self) -> dict[str, Any]:
-        space = self.model.space
+    def verdict(self) -> tuple[Status, str]:
+        """As the touch of the inner sensor, or none, ends what the case asks for."""
+        return self.setup.ending(touched=self.event is not None)
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Quantities of at least one step."""
+        last = self.steps[-1].values
+        found = {name: Quantity(last[name], self.UNITS[name], text + LAST) for name, text in AT_LAST.items() if name in last}
+        found |= super().quantities()
+        if isinstance(self.model, SolidModel):
+            found |= self._around(self.model)
+        return found | (self.threshold() if self._clock is None else self._over_time(self._clock))
+
+    def threshold(self) -> dict[str, Quantity]:
+        """What holds when the tissue touches the inner sensor, if it does."""
+        if self.event is None:
+            return {}
+        force, displacement = (self.event.values[name] for name in ("reaction_force", "displacement"))
         return {
-            "unknowns": space.size,
-            "elements": len(space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self.rejected_steps,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "mesh_adaptations": self.adaptations,
-            "starting_height": self.starting_height,
-            "body": self.experiment.body.model_dump(mode="json"),
-            "recess": self.experiment.recess,
+            "threshold_force": Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor"),
+            "threshold_pressure": Quantity(force / self.setup.body.area, "Pa", "threshold force over the annular area"),
+            "threshold_displacement": Quantity(displacement, "m", "displacement at the threshold"),
         }
+
+    def _around(self, model: SolidModel) -> dict[str, Quantity]:
+        """Vectors of force and moment at the last kept state, and the pressure around an annulus."""
+        _, state = max(self._kept.values(), key=lambda kept: kept[1].time)
+        contact, unknowns = state.contact.contacts[0], state.contact.unknowns
+        force = model.force(contact.at(model.displacement(unknowns)).traction)
+        moment = model.moment(contact, unknowns)
+        found = {
+            "force_vector": Quantity(force.tolist(), "N", "force (x, y, z) of the whole tissue on the body"),
+            "moment_vector": Quantity(
+                moment.tolist(), "N m", "moment (x, y, z) of this force about the middle of the body's face"
+            ),
+        }
+        if self.setup.body.kind == "annulus":
+            sectors = 4 * self.setup.mesh.sectors  # type: ignore[attr-defined]
+            around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
+            text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
+            found["pressure_around"] = Quantity(around.tolist(), "Pa", text)
+        return found
+
+    def _over_time(self, clock: Timed) -> dict[str, Quantity]:
+        """Quantities over the whole history."""
+        series, found = [step.values for step in self.steps], {}
+        for name in ("reaction_force", "displacement"):
+            most = max(values[name] for values in series)
+            text = f"{name.replace('_', ' ')}, the largest of any accepted step"
+            found[f"largest_{name}"] = Quantity(most, self.UNITS[name], text)
+        if self.event is not None:
+            time = self.event.values["time"]
+            found["time_of_touch"] = Quantity(time, "s", "time at which the tissue touches the inner sensor")
+        if self._comparison is not None:
+            counted = [v for v in series if v["time"] >= clock.compared_from]
+            worst = max((abs(values["closed_form_difference"]) for values in counted), default=math.nan)
+            words = "largest relative difference from the closed form, from time.earliest on"
+            found["closed_form_difference"] = Quantity(worst, "1", words)
+        return found
+
+    def assumptions(self) -> list[str]:
+        """What the thesis does not print and the case chose."""
+        told = contact_assumptions(self.setup)
+        if self._clock is not None:
+            tolerance = self._clock.policy.settings.tolerance
+            told.append(f"estimated error of the stress in time below {tolerance:g} of its size")
+            if self._clock.compare is not None:
+                told.append(f"closed form: linear, frictionless annulus on a {self._clock.compare.replace('_', '-')}")
+        return told
+
+    def warnings(self) -> list[str]:
+        """What a user is told of volumes, units, ellipticity, and of a history that leaves what it is meant for."""
+        told = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
+        if self._clock is not None:
+            told += self._left_behind([step.values for step in self.steps])
+        return told
+
+    def _left_behind(self, series: Sequence[Mapping[str, float]]) -> list[str]:
+        """Where a history leaves the recess or the closed form behind."""
+        setup, told = self.setup, []
+        highest = max(values.get("tissue_rise", 0.0) for values in series)
+        if setup.recess is not None and not setup.stops_at_touch and highest >= setup.recess:
+            recess = format_quantity(setup.recess, "m")
+            told.append(f"the tissue rose beyond the recess of {recess}; the inner sensor's contact is not part of this run")
+        part = max(values["displacement"] for values in series) / setup.contact_radius
+        if self._comparison is not None and part > SMALL:
+            told.append(f"the displacement reached {part:.2g} of the radius; the closed form is meant for up to {SMALL:g}")
+        return told
+
+    def details(self) -> dict[str, Any]:
+        """The body and where it touched first."""
+        found = super().details() | {
+            "starting_height": float(self._start.contacts[0].place[-1]),
+            "body": self.setup.pressed_body.model_dump(mode="json"),
+            "recess": self.setup.recess,
+        }
+        if isinstance(self.model, SolidModel):
+            found |= {"symmetry": self.model.symmetry.name.lower(), "offset": self.setup.offset}  # type: ignore[attr-defined]
+        elif self._clock is not None:
+            found |= {"control": self._clock.loading.control, "compare": self._clock.compare}
+        else:
+            found["mesh_adaptations"] = self.adaptations
+        return found
+
+
+def history_units(*, clock: bool, space: bool) -> dict[str, str]:
+    """Units of the history of an indentation with or without a clock, in a section or in space."""
+    left = {*(() if clock else CLOCK), *(() if space else SPACE), *(("sensor_force",) if clock else ())}
+    return {name: unit for name, unit in IndentationRecord.UNITS.items() if name not in left}
+
+
+def contact_oddities(setup: IndentationSetup) -> list[str]:
+    """What in the case looks like a wrong unit."""
+    specimen, body = setup.specimen, setup.body
+    layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(specimen.layers)}
+    materials = {f"{name}.material": layer.material for name, layer in layers.items()} | {"specimen.material": specimen.material}
+    tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
+    tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
+    bodies = {f"body.{name}": getattr(body, name) for name in ("radius", "inner_radius", "outer_radius") if hasattr(body, name)}
+    return oddities(materials, tissue=tissue, bodies=bodies)
+
+
+def contact_assumptions(setup: IndentationSetup) -> list[str]:
+    """What the thesis does not print and every case with contact chose."""
+    specimen = setup.specimen
+    radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
+    told = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
+    if hasattr(setup.body, "fillet"):
+        told.append(f"edges of the body filleted by {format_quantity(setup.body.fillet, 'm')} (not printed)")
+    if any(material.bulk_modulus is None for material in specimen.materials):
+        told.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
+    told.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")
+    return told

@@ -1,74 +1,226 @@
-"""What an indentation is given beside the contact: the stop and the steps of its displacement."""
+"""What every indentation is given, and what follows from it: the body, the specimen, the sizes of the elements, the model."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.experiments.indentation.contact_setup import ContactSetup
+from tactsim.contact.annulus import Annulus
+from tactsim.contact.any_law import AnyLaw
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.punch import Punch
 from tactsim.fem.loading import StepControl
-from tactsim.fem.progress import check_steps
+from tactsim.fem.space import Measure
+from tactsim.interfaces import RigidBody
+from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
+from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.mechanics.section_model import SectionModel
+from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.step_policy import StepPolicy
+from tactsim.mesh.axisymmetric import Size, edge_graded
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.registry import Registered
+from tactsim.results.result import Status
 from tactsim.units import FrozenModel, Length, format_quantity
 
-LEAST_STEP = 1e-9
-"""First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""
+Array = np.ndarray
+
+AnyBody: Any = Annotated[RigidBody, Registered(RigidBody, lambda cls: 2 in cls.dimensions)]
+LARGEST_RATIO = 1e5
+"""A specimen this many times larger than the body is a mistake in a unit."""
 
 
-class StepSettings(FrozenModel):
-    """Lengths of the load steps, as displacements of the body."""
+class MeshSettings(FrozenModel):
+    """Size of the elements: finest at the edges of the body, growing with the distance from them."""
 
-    first: Annotated[Length, Field(gt=0)] | None = None
-    """First step; by default a thousandth of the body's radius."""
-    largest: Annotated[Length, Field(gt=0)] | None = None
-    """Largest step; by default a twentieth of the body's radius."""
-    smallest: Annotated[Length, Field(gt=0)] | None = None
-    """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
+    finest: Annotated[Length, Field(gt=0)] | None = None
+    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
+    growth: Annotated[float, Field(gt=0, le=2)] = 0.35
+    """Growth of the element size per distance from the edges, dimensionless."""
+    coarsest: Annotated[Length, Field(gt=0)] | None = None
+    """Largest element size; by default a fifth of the specimen's thickness."""
+    refinement: Annotated[float, Field(gt=0)] = 1.0
+    """Divides every size: 2 halves the elements."""
+    adaptive: bool = True
+    """Whether elements that sliding and stretching make too long are split on the way."""
 
 
-class IndentationSetup(ContactSetup):
-    """A rigid body pressed into a specimen by a displacement, without regard to time."""
+@dataclass(frozen=True)
+class Displaced:
+    """The body moves by ``displacement`` in m in load steps, without regard to time."""
 
-    stop: Literal["threshold", "displacement"] = "threshold"
-    """Whether the run ends at the threshold, or goes on to the displacement with the inner sensor in contact."""
-    displacement: Annotated[Length, Field(gt=0)]
-    """Displacement of the body from first touch; the most that is tried when the run stops at the threshold."""
-    steps: StepSettings = StepSettings()
-    """Length of the load steps."""
+    displacement: float
+    control: StepControl
+
+
+@dataclass(frozen=True)
+class Timed:
+    """The body follows a history of displacement or force."""
+
+    loading: DisplacementLoading | ForceLoading
+    policy: StepPolicy
+    compare: Literal["half_space", "layer"] | None
+    """Closed form that the answer is compared with."""
+    compared_from: float
+    """Time in s from which on it counts."""
 
     @property
+    def by_force(self) -> bool:
+        """Whether the history is that of the force."""
+        return self.loading.control == "force"
+
+
+class IndentationSetup(FrozenModel):
+    """A rigid body, the specimen it is pressed into along its axis, and how finely that is computed."""
+
+    measure: ClassVar[Measure] = "axisymmetric"
+    """What the section stands for."""
+    specimen: Specimen
+    """The tissue."""
+    body: AnyBody = Annulus()
+    """The rigid body; its reference point moves by the displacement."""
+    contact: AnyLaw = Coulomb()
+    """Friction between body and tissue."""
+    recess: Annotated[Length, Field(gt=0)] | None = None
+    """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
+    penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
+    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 2e-3 of a prescribed
+    displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of the thinnest layer."""
+    mesh: MeshSettings = MeshSettings()
+    """Size of the elements."""
+
+    @property
+    @abstractmethod
     def depth(self) -> float:
-        """The displacement in m."""
-        return self.displacement
+        """Displacement in m that the mesh must serve."""
+
+    @abstractmethod
+    def drive(self) -> Displaced | Timed:
+        """What moves the body: the clock of the simulation, or none."""
 
     @property
-    def prescribed(self) -> float:
-        """The displacement in m."""
-        return self.displacement
+    @abstractmethod
+    def stops_at_touch(self) -> bool:
+        """Whether the run is over when the tissue touches the inner sensor."""
+
+    @abstractmethod
+    def ending(self, *, touched: bool) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end, by whether the tissue has touched the inner sensor."""
+
+    @property
+    def pressed_body(self) -> RigidBody:
+        """The body as it stands."""
+        return self.body
+
+    @property
+    def axis(self) -> Array:
+        """Unit vector (d,) along the body's axis, away from the tissue."""
+        return np.array([0.0, 1.0])
+
+    @property
+    def inner_sensor(self) -> RigidBody:
+        """The sensor in the hole of the annulus as it stands."""
+        return Punch(radius=self.body.inner_radius, height=self.body.height)
+
+    @property
+    def prescribed(self) -> float | None:
+        """Largest displacement in m that is prescribed; None if a force is."""
+        return None
 
     @model_validator(mode="after")
-    def _consistent(self) -> Self:
-        if self.displacement >= self.specimen.thickness:
-            given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
-            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
-        if self.body.kind == "annulus" and self.recess is None:
-            raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
-        if self.body.kind != "annulus" and self.stop == "threshold":
-            raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
-        if any(material.relaxation is not None for material in self.specimen.materials):
-            raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
-        self._check_steps()
+    def _fitting(self) -> Self:
+        width = format_quantity(self.specimen.radius, "m")
+        if self.body.kind != "plane" and self.contact_radius >= self.specimen.radius:
+            raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
+        largest = max(self.specimen.radius, self.specimen.thickness)
+        if largest > LARGEST_RATIO * self.contact_radius:
+            big, small = format_quantity(largest, "m"), format_quantity(self.contact_radius, "m")
+            raise ValueError(f"a specimen of {big} under a body of {small}: is one of the units wrong?")
+        finest, narrowest = self.mesh.finest, self._narrowest
+        if finest is not None and finest > narrowest / 2:
+            given, width = format_quantity(finest, "m"), format_quantity(narrowest, "m")
+            raise ValueError(f"mesh.finest {given} is too coarse for the body, whose contact is {width} wide: at most half of it")
+        if self.recess is not None:
+            self._check_recess(self.recess)
+        self._check_penetration()
         return self
 
-    def _check_steps(self) -> None:
-        first, way = self.control().first, self.displacement
-        if first < LEAST_STEP * way:
-            given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * way, "m")
-            raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
-        check_steps(way / self.control().largest, f"steps.largest {format_quantity(self.control().largest, 'm')}")
+    def _check_penetration(self) -> None:
+        fillet, layers = getattr(self.body, "fillet", None), -np.diff(self.specimen.interfaces)
+        lengths = {"displacement": self.prescribed, "width of the contact": self._narrowest, "body's fillet": fillet}
+        check_penetration(self.penetration_tolerance, lengths | {"thickness of the thinnest layer": float(layers.min())})
 
-    def control(self) -> StepControl:
-        """Lengths of the load steps in m."""
-        first = self.steps.first or 1e-3 * self.contact_radius
-        largest = self.steps.largest or 0.05 * self.contact_radius
-        return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first)
+    def _check_recess(self, recess: float) -> None:
+        if self.body.kind != "annulus":
+            raise ValueError(f"only an annulus has a recess; a {self.body.kind} has none")
+        if recess >= self.specimen.thickness:
+            raise ValueError("the recess must be smaller than the specimen's thickness (thesis, end of 3.1.1)")
+        if self.rise_at_touch >= recess:
+            raise ValueError("the curved surface reaches the inner sensor before it touches the annulus")
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius in m that the body's size is measured by."""
+        return float(getattr(self.body, "outer_radius", getattr(self.body, "radius", self.specimen.radius)))
+
+    @property
+    def _narrowest(self) -> float:
+        """Width in m of the contact that the mesh must resolve."""
+        return self.contact_radius - float(getattr(self.body, "inner_radius", 0.0))
+
+    @property
+    def rise_at_touch(self) -> float:
+        """Rise in m of a convex surface into the hole when the annulus touches it, where the fillet meets the face."""
+        inner = self.body.inner_radius + self.body.fillet if self.specimen.surface == "convex" else 0.0
+        return float(self.specimen.depth_of_cap(inner))
+
+    @property
+    def tolerance(self) -> float:
+        """Largest penetration in m."""
+        return self.penetration_tolerance or default_penetration(1e-4 * self.contact_radius, self.prescribed)
+
+    def size(self) -> Size:
+        """Wanted element size in m, at points in the frame of the body at first touch."""
+        settings, (rims, reach, finest) = self.mesh, self._focus()
+        finest = settings.finest or finest
+        coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
+        edges = np.array([(r, 0.0) for r in rims or [0.0]])
+        n = settings.refinement
+        return edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
+
+    def section(self) -> QuadraticMesh:
+        """The mesh of the specimen's section."""
+        return self.specimen.mesh(self.size(), self._focus()[0])
+
+    def top_edges(self, section: QuadraticMesh) -> Array:
+        """Boundary edges (F, 3) of the section that the body may touch, by node numbers."""
+        facets, _ = section.boundary_facets()
+        return facets[self._on_top(section.nodes[facets])]
+
+    def model(self) -> PressedModel:
+        """The finite element model of the tissue."""
+        mesh, specimen = self.section(), self.specimen
+        top = self.top_edges(mesh)
+        return SectionModel(mesh, specimen.materials, base=specimen.base, top=top, measure=self.measure)
+
+    def _focus(self) -> tuple[tuple[float, ...], float, float]:
+        """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
+        if self.body.kind in ("sphere", "rod"):
+            reach = 1.5 * float(np.sqrt(self.contact_radius * self.depth))
+            if self.body.kind == "rod":
+                reach = min(reach, 1.5 * self.contact_radius)
+            return (), min(reach, self.specimen.radius), reach / (20 if self.body.kind == "sphere" else 9)
+        rims = (getattr(self.body, "inner_radius", 0.0), self.contact_radius)
+        fillet = float(getattr(self.body, "fillet", 0.0))
+        finest = fillet / 3 if fillet > 0 else self.contact_radius / 50
+        return tuple(r for r in rims if 0 < r < self.specimen.radius), fillet, finest
+
+    def _on_top(self, corners: Array) -> Array:
+        sign = -1.0 if self.specimen.surface == "concave" else 1.0
+        top = -sign * self.specimen.depth_of_cap(corners[..., 0])
+        return (np.abs(corners[..., 1] - top) < 1e-9 * self.specimen.thickness).all(axis=1)

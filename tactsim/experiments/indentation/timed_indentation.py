@@ -2,29 +2,43 @@
 
 from __future__ import annotations
 
-import time
-from typing import ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
 
 from tactsim.contact.coulomb import Coulomb
-from tactsim.experiments.collecting import ended_early
-from tactsim.experiments.indentation.timed_path import TimedIndentationPath
-from tactsim.experiments.indentation.timed_record import TimedRecord
-from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
-from tactsim.fem.time_steps import TimeEvent
-from tactsim.interfaces import Experiment, Progress
+from tactsim.experiments.indentation.course import indentation_course
+from tactsim.experiments.indentation.record import history_units
+from tactsim.experiments.indentation.setup import IndentationSetup, Timed
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
-from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.mechanics.loading import AnyLoading, DisplacementLoading
 from tactsim.mechanics.specimen import Specimen
-from tactsim.results.result import Result, Status
+from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
+from tactsim.results.result import Status
+from tactsim.units import Length, format_quantity
+
+LOAD_STEPS = 20
+"""Least number of steps of a ramp, and per period of a sine."""
 
 
-class TimedIndentation(TimedIndentationSetup, Experiment):
+class TimedIndentation(IndentationSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen by a prescribed history."""
 
     kind: Literal["timed_indentation"] = "timed_indentation"
+    loading: AnyLoading
+    """The prescribed history."""
+    stop: Literal["end", "touch"] = "end"
+    """Whether the run goes on to the end of the history or stops when the tissue touches the inner sensor."""
+    deepest: Annotated[Length, Field(gt=0)] | None = None
+    """Displacement that the mesh must serve; by default the largest prescribed one, or a tenth of the body's radius."""
+    time: TimeSettings = TimeSettings()
+    """Steps of time."""
+    compare: Literal["half_space", "layer"] | None = None
+    """Closed form to compare with: the annulus or punch on a half-space, or on a layer as thick as the specimen."""
 
-    history_units: ClassVar[dict[str, str]] = TimedRecord.UNITS
+    history_units: ClassVar[dict[str, str]] = history_units(clock=True, space=False)
 
     @classmethod
     def example(cls) -> Self:
@@ -35,19 +49,62 @@ class TimedIndentation(TimedIndentationSetup, Experiment):
         specimen = Specimen(material=named_material("atrial").material, thickness=10e-3, radius=15e-3)
         return cls(specimen=specimen, contact=Coulomb(friction=0.0), loading=held)
 
-    def run(self, progress: Progress) -> Result:
-        """Follow the history to its end or to the touch; see ``TimedRecord`` for what is reported."""
-        begin = time.perf_counter()
-        model = self.model()
-        path = TimedIndentationPath(self, model)
-        record = TimedRecord(self, model, path, begin)
-        event = None
-        if self.stop == "touch":
-            recess = float(self.recess or 0.0)
-            event = TimeEvent[TimedState](lambda state: record.rise(state)[0] - recess)
-        early = ended_early(record, (record.accept(state, touched=touched) for state, touched in path.states(event)), progress)
-        if early is not None:
-            return early
-        if self.stop == "touch" and not record.touched:
-            return record.result(Status.FAILED, "the tissue did not touch the inner sensor within the history")
-        return record.result(Status.CONVERGED, "touched the inner sensor" if record.touched else "end of the history")
+    def begin(self) -> Course:
+        """Follow the history to its end or to the touch; see ``IndentationRecord`` for what is reported."""
+        return indentation_course(self)
+
+    @property
+    def depth(self) -> float:
+        """Displacement in m that the mesh must serve."""
+        if self.deepest is not None:
+            return self.deepest
+        return self.prescribed or 0.1 * self.contact_radius
+
+    @property
+    def prescribed(self) -> float | None:
+        """Largest displacement in m that is prescribed; None if a force is."""
+        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
+
+    def drive(self) -> Timed:
+        """The history, with steps of time."""
+        materials, steps = self.specimen.materials, LOAD_STEPS
+        policy = StepPolicy(self.time, shortest_relaxation_time(materials), per_ramp=steps, per_period=steps)
+        return Timed(self.loading, policy, self.compare, self.time.earliest or 0.0)
+
+    @property
+    def stops_at_touch(self) -> bool:
+        """Whether the run ends at the touch."""
+        return self.stop == "touch"
+
+    def ending(self, *, touched: bool) -> tuple[Status, str]:
+        """Failed where the touch was asked for and did not come."""
+        if self.stops_at_touch and not touched:
+            return Status.FAILED, "the tissue did not touch the inner sensor within the history"
+        return Status.CONVERGED, "touched the inner sensor" if touched else "end of the history"
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        least, most = self.loading.least_and_most()
+        if self.loading.control == "force" and least <= 0:
+            raise ValueError(
+                f"the force falls to {format_quantity(least, 'N')}: it must press all the time, or the contact opens and no "
+                "displacement answers it; preload more (at least 1.5 times the amplitude of a sine)"
+            )
+        if self.loading.control == "displacement" and most <= 0:
+            raise ValueError("the displacement never becomes positive: nothing is pressed; positive is into the tissue")
+        if self.loading.control == "displacement" and most >= self.specimen.thickness:
+            given, thickness = format_quantity(most, "m"), format_quantity(self.specimen.thickness, "m")
+            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {thickness}")
+        if self.stop == "touch" and self.recess is None:
+            raise ValueError("stop: touch needs the recess of the inner sensor, like recess: 0.8 mm")
+        if self.compare is not None:
+            self._check_comparable()
+        return self
+
+    def _check_comparable(self) -> None:
+        if self.body.kind not in ("annulus", "punch"):
+            raise ValueError(f"a closed form exists for an annulus or a punch, not for a {self.body.kind}")
+        if len(self.specimen.materials) > 1 or self.specimen.surface != "flat":
+            raise ValueError("a closed form exists for one material and a flat surface")
+        if self.specimen.material.bulk_modulus is not None:
+            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
-from typing import Annotated, ClassVar, Literal, Self
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -19,14 +19,25 @@ from tactsim.experiments.localization.source import (
     true_inclusions,
     with_reference,
 )
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, format_quantity
+
+
+@dataclass
+class _Counted:
+    """What the grasps that were estimated until now make."""
+
+    table: ConfusionTable = field(default_factory=ConfusionTable)
+    steps: list[StepRecord] = field(default_factory=list)
+    probabilities: list[dict[str, Any]] = field(default_factory=list)
+    """Of each class, for every grasp and draw."""
 
 
 class Confusion(Experiment):
@@ -59,31 +70,30 @@ class Confusion(Experiment):
         """One lump and two, wherever they were written."""
         return cls(grasps=("results/grasp_lump_icf", "results/grasp_two_lumps"), reference="results/grasp_plain")
 
-    def run(self, progress: Progress) -> Result:
-        """One step per grasp, with the share of its draws that were told right."""
-        begin = time.perf_counter()
-        readings = self._readings()
-        table, steps, probabilities = ConfusionTable(), [], []
+    def begin(self) -> Course:
+        """One step per grasp, with the share of its draws whose class was estimated right."""
+        readings, counted = self._readings(), _Counted()
+        return Course(self._estimated(readings, counted), lambda: self._findings(counted))
+
+    def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
         for number, (name, true, one) in enumerate(readings):
-            sub, told = ConfusionTable(), []
-            for draw in range(self.draws):
-                estimate = self.estimator.estimate(self._noisy(one, number, draw))
-                for counted in (table, sub):
-                    counted.add(true, estimated_class(estimate))
-                told.append(estimate.classes)
-            probabilities.append({"grasp": name, "true": true, "classes": told})
-            steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(sub.share_right or 0.0)}))
-            progress(steps[-1])
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason=f"{int(np.trace(table.counts))} of {table.total} estimates told the class right",
+            estimates = [self.estimator.estimate(self._noisy(one, number, draw)) for draw in range(self.draws)]
+            alone = ConfusionTable()
+            for estimate in estimates:
+                for table in (counted.table, alone):
+                    table.add(true, estimated_class(estimate))
+            counted.probabilities.append({"grasp": name, "true": true, "classes": [one.classes for one in estimates]})
+            counted.steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(alone.share_right or 0.0)}))
+            yield counted.steps[-1]
+
+    def _findings(self, counted: _Counted) -> Findings:
+        table = counted.table
+        return Findings(
+            f"{int(np.trace(table.counts))} of {table.total} estimates told the class right",
+            counted.steps,
             quantities=table_quantities(table),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation), seed {self.seed}",),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
-            details={"classes": list(CLASSES), "grasps": probabilities, "estimator": self.estimator.kind},
+            details={"classes": list(CLASSES), "grasps": counted.probabilities, "estimator": self.estimator.kind},
         )
 
     def _readings(self) -> list[tuple[str, str, Readings]]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -12,13 +13,14 @@ from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
 from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import ROUNDING_NOISE
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
 from tactsim.mechanics.loading import DisplacementLoading
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, Length, format_quantity
 
 Array = np.ndarray
@@ -33,6 +35,15 @@ AWAY = (0.0, 0.25, 0.5)
 ROOM = 0.5e-3
 """Least distance of a ball from the faces of the block, in m."""
 NOISES = ("same", "by_area")
+
+
+@dataclass
+class _Found:
+    """What the matrices that were computed until now find."""
+
+    steps: list[StepRecord] = field(default_factory=list)
+    radii: list[dict[str, list[list[float | None]]]] = field(default_factory=list)
+    """Smallest radii in m of each matrix by the name of the noise, [shear ratio][depth]."""
 
 
 class Detectability(Experiment):
@@ -78,31 +89,33 @@ class Detectability(Experiment):
         block = Block(tissue=named_material("icf_stable").material)
         return cls(grasp=GraspSetup(block=block, loading=DisplacementLoading.model_validate(closing)))
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """One step per matrix."""
-        begin = time.perf_counter()
-        radii: dict[str, list[list[list[float | None]]]] = {name: [[] for _ in self.shear_ratios] for name in NOISES}
-        steps = []
-        for number, count in enumerate(self.matrices):
+        found = _Found()
+        return Course(self._matrices(found), lambda: self._findings(found))
+
+    def _matrices(self, found: _Found) -> Iterator[StepRecord]:
+        for number, count in enumerate(self.matrices, 1):
             response = self._response(count)
             templates = unit_templates(response, every=2)
             threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
-            for name in NOISES:
-                sigma = np.sqrt(2) * self._noise(name, count)
-                for row, ratio in zip(radii[name], self.shear_ratios, strict=True):
-                    contrast = float(eshelby_contrast(np.array(ratio)))
-                    row.append(self._over_depth(response, contrast, sigma, threshold))
-            steps.append(StepRecord(number + 1, 0, time.perf_counter() - begin, {"taxels": count, "threshold": threshold}))
-            progress(steps[-1])
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason=f"{len(self.matrices)} matrices",
-            quantities=self._quantities(radii, [step.values["threshold"] for step in steps]),
+            contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
+            deviations = {name: np.sqrt(2) * self._noise(name, count) for name in NOISES}
+            found.radii.append(
+                {
+                    name: [self._over_depth(response, contrast, sigma, threshold) for contrast in contrasts]
+                    for name, sigma in deviations.items()
+                }
+            )
+            found.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
+            yield found.steps[-1]
+
+    def _findings(self, found: _Found) -> Findings:
+        return Findings(
+            f"{len(self.matrices)} matrices",
+            found.steps,
+            quantities=self._quantities(found) if len(found.steps) == len(self.matrices) else {},
             assumptions=self._assumptions(),
-            timing={"total": time.perf_counter() - begin},
-            steps=tuple(steps),
-            units=self.history_units,
             details={"probability": self.probability, "false_alarms": self.false_alarms, "noise": self.noise, "side": self.side},
         )
 
@@ -137,7 +150,9 @@ class Detectability(Experiment):
             found.append(smallest_radius(densities, response.radii, most, **sought))
         return found
 
-    def _quantities(self, radii: dict[str, list[list[list[float | None]]]], thresholds: list[float]) -> dict[str, Quantity]:
+    def _quantities(self, found: _Found) -> dict[str, Quantity]:
+        thresholds = [step.values["threshold"] for step in found.steps]
+        radii = {name: [list(rows) for rows in zip(*(matrix[name] for matrix in found.radii), strict=True)] for name in NOISES}
         order = "[shear ratio][matrix][depth]; null where none that fits is found"
         words = {"same": "the same noise on every reading", "by_area": "noise in proportion to the area of a taxel"}
         return {

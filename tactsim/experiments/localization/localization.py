@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -23,14 +22,15 @@ from tactsim.experiments.localization.source import (
     true_places,
     with_reference,
 )
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
 from tactsim.localization.readings import silent_taxels, silent_words
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
 
 Array = np.ndarray
@@ -76,44 +76,41 @@ class Localization(Experiment):
         """The main grasp, wherever it was written."""
         return cls(grasp="results/grasp_lump_icf")
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """One step: the last of the grasp."""
-        begin = time.perf_counter()
         stored = stored_grasp(self.grasp)
         plain = None if self.reference is None else stored_grasp(self.reference)
         readings = self._readings(stored, plain)
         estimate = self.estimator.estimate(readings)
-        step = StepRecord(1, 0, 0.0, dict(zip(self.history_units, map(float, readings.filled.sum(axis=(1, 2))), strict=True)))
-        progress(step)
         true = [true_places(shape, readings.block_size) for shape in true_inclusions(stored.details)]
-        return Result(
-            kind=self.kind,
-            status=Status.CONVERGED,
-            reason=estimate.reason,
-            quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
-            assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
-            warnings=tuple(self._warnings(stored, plain, readings)),
-            timing={"total": time.perf_counter() - begin},
-            steps=(step,),
-            units=self.history_units,
-            details={name: stored.details[name] for name in KEPT if name in stored.details}
-            | {
-                "estimates": [
-                    {
-                        "kind": found.kind,
-                        "center": list(found.center),
-                        "radius": found.radius,
-                        "line": found.line,
-                        "region": None if found.region is None else found.region.shadows(),
-                    }
-                    for found in estimate.inclusions
-                ],
-                "estimator": self.estimator.kind,
-                "noise": self.noise,
-                "valid": None if readings.valid is None else readings.valid.tolist(),
-                "words": [told(found) for found in estimate.inclusions],
-            },
+        return Course.computed(
+            Findings(
+                estimate.reason,
+                rows(self.history_units, readings.filled.sum(axis=(1, 2))[:, None]),
+                quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
+                assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
+                warnings=self._warnings(stored, plain, readings),
+                details=self._details(stored, readings, estimate),
+            )
         )
+
+    def _details(self, stored: Result, readings: Readings, estimate: Estimate) -> dict[str, Any]:
+        return {name: stored.details[name] for name in KEPT if name in stored.details} | {
+            "estimates": [
+                {
+                    "kind": found.kind,
+                    "center": list(found.center),
+                    "radius": found.radius,
+                    "line": found.line,
+                    "region": None if found.region is None else found.region.shadows(),
+                }
+                for found in estimate.inclusions
+            ],
+            "estimator": self.estimator.kind,
+            "noise": self.noise,
+            "valid": None if readings.valid is None else readings.valid.tolist(),
+            "words": [told(found) for found in estimate.inclusions],
+        }
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:
         dead = self._dead(TaxelLayout.model_validate(stored.details["matrix"]))

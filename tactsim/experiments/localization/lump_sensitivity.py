@@ -22,9 +22,9 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.linear import SymmetricPardiso, direct_solver
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
-from tactsim.mechanics.block_model import CLOSING, SIDES, GraspModel
+from tactsim.mechanics.block_model import CLOSING, GraspModel
 from tactsim.mechanics.block_source import StructuredSource
 
 Array = np.ndarray
@@ -80,14 +80,14 @@ def sensitivity(setup: GraspSetup) -> Sensitivity:
     body, F = model.body, last.kinematics.F
     stress = body.materials[0].first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
     densities = []
-    for side in SIDES:
-        for border in adjoint.indicators(side, last.contacts[SIDES.index(side)].place, plain.matrix):
+    for side in JAWS:
+        for border in adjoint.indicators(side, last.contacts[JAWS.index(side)].place, plain.matrix):
             gradient = adjoint.gradient(side, border)
             densities.append(np.einsum("ijeq,ijeq->eq", stress, gradient).ravel())
-    shape = (len(SIDES), plain.matrix.rows, plain.matrix.columns)
+    shape = (len(JAWS), plain.matrix.rows, plain.matrix.columns)
     corners = model.mesh.nodes[model.space.elements]
     places = np.einsum("qa,ead->eqd", body.points.values, corners).reshape(-1, 3)
-    forces = np.stack([model.taxels(last, side, plain.matrix).taxels[2] for side in SIDES])
+    forces = np.stack([model.taxels(last, side, plain.matrix).taxels[2] for side in JAWS])
     return Sensitivity(places, body.points.weights.ravel(), np.array(densities).reshape(*shape, -1), forces)
 
 
@@ -99,7 +99,7 @@ class _Adjoint:
         self.displacement = model.space.split(unknowns)[0]
         size, pattern = model.space.size, model.body.pattern
         tangent = csr_matrix((model.body.tangent(unknowns), pattern.indices, pattern.indptr), shape=(size, size))
-        self.nodes = {side: np.unique(model.facets[side]) for side in SIDES}
+        self.nodes = {side: np.unique(model.facets[side]) for side in JAWS}
         held = np.concatenate([(nodes[:, None] * 3 + np.arange(3)).ravel() for nodes in self.nodes.values()])
         self.free = np.setdiff1d(np.arange(size), held)
         self.coupling = tangent[self.free]

@@ -9,13 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.experiments.indentation.contact_record import contact_values
-from tactsim.experiments.indentation.timed_path import TimedIndentationPath
-from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
+from tactsim.experiments.indentation.course import HistoryPath
+from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.fem.space import Measure
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.section_model import IndentationModel
+from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 
@@ -29,7 +29,7 @@ TOUCHED = 1e-3
 """Part of the largest pressure above which a point counts as touched."""
 
 
-class ProbeIndentation(TimedIndentationSetup):
+class ProbeIndentation(TimedIndentation):
     """A prism pressed into a block as deep as itself, both much longer than wide; the specimen's radius is half its width."""
 
     measure: ClassVar[Measure] = "plane_strain"
@@ -62,17 +62,16 @@ def probe_states(
     ConvergenceError
         If the path cannot be followed to its end.
     """
-    model, quality = setup.model(), quality or ContactQuality()
-    path = TimedIndentationPath(setup, model)
-    for number, (state, _) in enumerate(path.states(), 1):
-        values = contact_values(model, state.contact, state.past)[0] | quality.values(model.body, state.contact)
-        record = StepRecord(number, state.iterations, state.contact.residual, values)
-        yield _probe_state(model, state, array, width=width, record=record)
+    model = setup.model()
+    path = HistoryPath(setup, setup.drive(), model)
+    record = IndentationRecord(setup, model, path)
+    if quality is not None:
+        record.quality = quality
+    for state, _ in path.states():
+        yield _probe_state(model, state, array, width=width, record=record.accept(state))
 
 
-def _probe_state(
-    model: IndentationModel, state: TimedState, array: SwitchArray, *, width: float, record: StepRecord
-) -> ProbeState:
+def _probe_state(model: PressedModel, state: TimedState, array: SwitchArray, *, width: float, record: StepRecord) -> ProbeState:
     contact = state.contact.contacts[0]
     traction = contact.at(model.displacement(state.contact.unknowns))
     order = np.argsort(contact.reference[0])
@@ -80,7 +79,7 @@ def _probe_state(
     body = contact.pair.body
     corner = body.fillet_height if isinstance(body, Trapezoid) else 0.0
     height, carried = side_forces(along, traction.points[1, order], traction.pressure[order], array)
-    force = -2 * width * float(model.surface.total(traction.traction)[1])
+    force = 2 * width * float(model.force(traction.traction)[1])
     contact_height = height if height > corner else 0.0
     return ProbeState(state.time, state.contact.load, force, contact_height, width * carried, record)
 

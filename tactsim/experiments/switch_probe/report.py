@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +9,10 @@ import numpy as np
 
 from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
 from tactsim.experiments.switch_probe.setup import COUNT, SwitchProbeSetup
+from tactsim.interfaces.run import Findings
 from tactsim.mechanics.plausibility import oddities
 from tactsim.mechanics.success import judged
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.sensors.switch_reading import Touch
 from tactsim.units import format_quantity
 
@@ -40,8 +40,8 @@ SUNK = 0.05
 class SwitchProbeReport:
     """Collects touches and turns them into a result."""
 
-    def __init__(self, setup: SwitchProbeSetup, kind: str):
-        self._setup, self._kind, self._begin = setup, kind, time.perf_counter()
+    def __init__(self, setup: SwitchProbeSetup):
+        self._setup = setup
         self._touches: list[ProbeTouch] = []
         self.steps: list[StepRecord] = []
 
@@ -59,20 +59,18 @@ class SwitchProbeReport:
         self.steps.extend(new)
         return new
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with every touch that was made; no success if the last state of one is none."""
+    def findings(self) -> Findings:
+        """What every touch that was made says; no success if the last state of one is none."""
+        status, reason = Status.CONVERGED, f"{len(self._touches)} touches"
         for touch in self._touches:
             status, reason = judged(status, reason, touch.states[-1:], self._setup.penetration)
-        return Result(
-            kind=self._kind,
+        return Findings(
+            reason,
+            self.steps,
             status=status,
-            reason=reason,
             quantities=self._quantities(),
             assumptions=self._assumptions(),
-            warnings=tuple(self._warnings()),
-            timing={"total": time.perf_counter() - self._begin},
-            steps=tuple(self.steps),
-            units=HISTORY_UNITS,
+            warnings=self._warnings(),
             details=self._details(),
         )
 

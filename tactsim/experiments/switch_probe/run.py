@@ -89,16 +89,25 @@ def touched(setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, generator
     ConvergenceError
         If the finite elements cannot follow the way in.
     """
-    time, depth = _course(setup, rate)
+    motion = _motion(setup, rate)
+    time, depth = motion.time, motion.depth
     quality = ContactQuality() if setup.model == "fem" else None
-    pressed, states = _pressed(setup, tissue, rate, (time, depth), quality)
+    pressed, states = _pressed(setup, tissue, rate, motion, quality)
     force, switches, saturated = recorded(setup, pressed, generator)
     touches = read_switches(thresholds(setup), time, force, switches).touches
     return ProbeTouch(tissue.name, rate, time, depth, pressed, force, switches, saturated, touches, states, quality)
 
 
-def _course(setup: SwitchProbeSetup, rate: float) -> tuple[Array, Array]:
-    """Sampling times (n,) in s, zero at first contact, and depths (n,) in m; the way back belongs to the fast model only.
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """Sampling times (n,) in s, zero at first contact, and depths (n,) in m."""
+
+    time: Array
+    depth: Array
+
+
+def _motion(setup: SwitchProbeSetup, rate: float) -> _Motion:
+    """The way in at a rate in m/s; the way back belongs to the fast model only.
 
     The probe turns with the first sample at its depth, so that one is there.
     """
@@ -107,13 +116,13 @@ def _course(setup: SwitchProbeSetup, rate: float) -> tuple[Array, Array]:
     turn = float(time[np.searchsorted(time, way - ROUND_OFF * step)])
     depth = np.interp(time, [-REST, 0.0, way, max(turn, way), turn + way], [0.0, 0.0, setup.depth, setup.depth, 0.0])
     depth[time == turn] = setup.depth
-    return time, depth
+    return _Motion(time, depth)
 
 
 def _pressed(
-    setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, course: tuple[Array, Array], quality: ContactQuality | None
+    setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, motion: _Motion, quality: ContactQuality | None
 ) -> tuple[ProbeForces, tuple[StepRecord, ...]]:
-    time, depth = course
+    time, depth = motion.time, motion.depth
     states: list[ProbeState] = []
     if quality is not None:
         states = list(probe_states(setup.indentation(tissue, rate), setup.array, width=setup.width, quality=quality))

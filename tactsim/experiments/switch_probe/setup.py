@@ -9,13 +9,13 @@ from pydantic import Field, model_validator
 from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation
 from tactsim.materials import AnyMaterial
 from tactsim.mechanics.loading import DisplacementLoading
 from tactsim.mechanics.penetration_bounds import default_penetration
 from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray

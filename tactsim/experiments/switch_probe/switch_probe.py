@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal, Self
 
 import numpy as np
 
-from tactsim.errors import Unfinished
-from tactsim.experiments.collecting import failure
 from tactsim.experiments.switch_probe.report import HISTORY_UNITS, SwitchProbeReport
 from tactsim.experiments.switch_probe.run import touched
 from tactsim.experiments.switch_probe.setup import ProbeTissue, SwitchProbeSetup
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.relaxation import Relaxation
-from tactsim.results.result import Result, Status
+from tactsim.results.result import StepRecord
 
 
 class SwitchProbe(SwitchProbeSetup, Experiment):
@@ -33,16 +33,12 @@ class SwitchProbe(SwitchProbeSetup, Experiment):
         material = NeoHookean(c10=5e3, relaxation=Relaxation(fractions=(0.5,), times=(2.0,)))
         return cls(tissues=(ProbeTissue(name="tissue", material=material),))
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Every tissue at every rate; the noise of each touch depends on the seed and on its place in the list only."""
-        report = SwitchProbeReport(self, self.kind)
+        report = SwitchProbeReport(self)
+        return Course(self._touched(report), report.findings, "the touches made before are kept, the run is incomplete")
+
+    def _touched(self, report: SwitchProbeReport) -> Iterator[StepRecord]:
         pairs = [(tissue, rate) for tissue in self.tissues for rate in self.rates]
-        try:
-            for number, (tissue, rate) in enumerate(pairs):
-                for step in report.add(touched(self, tissue, rate, np.random.default_rng([self.seed, number]))):
-                    progress(step)
-        except Unfinished as error:
-            return report.result(Status.FAILED, failure(error))
-        except KeyboardInterrupt:
-            return report.result(Status.INTERRUPTED, "interrupted; the touches made before are kept, the run is incomplete")
-        return report.result(Status.CONVERGED, f"{len(pairs)} touches")
+        for number, (tissue, rate) in enumerate(pairs):
+            yield from report.add(touched(self, tissue, rate, np.random.default_rng([self.seed, number])))

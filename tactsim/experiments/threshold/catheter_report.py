@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
@@ -13,7 +12,8 @@ from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.valve_tissue import SensorContact
 from tactsim.interfaces import Array
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces.run import Findings
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
@@ -76,10 +76,10 @@ class Reading:
 class CatheterReport:
     """Collects the sensors in their order around the tip."""
 
-    def __init__(self, experiment: CatheterTip, begin: float):
-        self._experiment, self._begin = experiment, begin
+    def __init__(self, experiment: CatheterTip):
+        self._experiment = experiment
         ring = experiment.ring
-        self._area = float(np.pi * (ring.outer_radius**2 - ring.inner_radius**2))
+        self._area = ring.area
         self._shares = experiment.surface.shares(ring, experiment.place)
         self._readings: list[Reading] = []
         self._contacts: list[SensorContact] = []
@@ -109,19 +109,15 @@ class CatheterReport:
         self._steps.append(StepRecord(index + 1, 0, 0.0, values))
         return self._steps[-1]
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with the sensors read so far; the hardest only if all are."""
+    def findings(self) -> Findings:
+        """What the sensors read so far say; the hardest only if all are."""
         complete = len(self._readings) == self._experiment.ring.count
-        return Result(
-            kind=self._experiment.kind,
-            status=status,
-            reason=reason,
+        return Findings(
+            f"touched {self._experiment.trials} times",
+            self._steps,
             quantities={**self._sensors(), **(self._hardest() if complete else {})},
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings()),
-            timing={"total": time.perf_counter() - self._begin},
-            steps=tuple(self._steps),
-            units=SENSOR_UNITS,
+            assumptions=self._assumptions(),
+            warnings=self._warnings(),
             details=self._details(),
         )
 

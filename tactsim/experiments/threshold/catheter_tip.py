@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.errors import Unfinished
-from tactsim.experiments.collecting import failure
 from tactsim.experiments.threshold.catheter_report import SENSOR_UNITS, CatheterReport, Reading
 from tactsim.experiments.threshold.sampling import ApproachSampling
 from tactsim.experiments.threshold.valve_tissue import BandTissue, SensorContact, ValveSurface
-from tactsim.interfaces import Experiment, Progress
-from tactsim.results.result import Result, Status
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
+from tactsim.results.result import StepRecord
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.sensor_ring import SensorRing
@@ -88,30 +87,26 @@ class CatheterTip(Experiment):
         surface = ValveSurface(tissues=tissues, borders=(13e-3, 16e-3))
         return cls(surface=surface, place=(11.5e-3, 0.0), sensor=quiet, trials=10)
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Touch with every sensor; one step for each."""
-        report = CatheterReport(self, time.perf_counter())
+        report = CatheterReport(self)
+        return Course(self._touched(report), report.findings, "the sensors read before are kept")
+
+    def _touched(self, report: CatheterReport) -> Iterator[StepRecord]:
         low_pass, noise = self.sensor.chain.low_pass, self.sensor.chain.noise
-        try:
-            trigger = self.sensor.armed(low_pass, noise=noise, seed=[self.seed, 0])
-            lags = self.ring.lag(self.tilt, self.tilt_direction)
-            contacts = self.surface.mixed(self.ring, self.place)
-            for index, (contact, lag) in enumerate(zip(contacts, lags, strict=True)):
-                progress(report.add(self._reading(index, contact, float(lag), trigger), contact))
-        except Unfinished as error:
-            return report.result(Status.FAILED, failure(error))
-        except KeyboardInterrupt:
-            return report.result(Status.INTERRUPTED, "interrupted; the sensors read before are kept")
-        return report.result(Status.CONVERGED, f"touched {self.trials} times")
+        trigger = self.sensor.armed(low_pass, noise=noise, seed=[self.seed, 0])
+        lags = self.ring.lag(self.tilt, self.tilt_direction)
+        contacts = self.surface.mixed(self.ring, self.place)
+        for index, (contact, lag) in enumerate(zip(contacts, lags, strict=True)):
+            yield report.add(self._reading(index, contact, float(lag), trigger), contact)
 
     def _reading(self, index: int, contact: SensorContact, lag: float, trigger: ThresholdTrigger) -> Reading:
         """What a sensor reports that touches after a displacement ``lag`` in m; nothing if the tip ends before."""
         depth = self.press - lag
         if depth <= 0:
             return Reading.nothing(lag, self.trials)
-        area = np.pi * (self.ring.outer_radius**2 - self.ring.inner_radius**2)
         approach = contact.approach(self.speed, depth)
         noise, low_pass = self.sensor.chain.noise, self.sensor.chain.low_pass
-        sampling = ApproachSampling.settled(self.sensor, approach, float(area), self.lead + lag / self.speed, [low_pass])
+        sampling = ApproachSampling.settled(self.sensor, approach, self.ring.area, self.lead + lag / self.speed, [low_pass])
         (trials,) = sampling.trials(noise, [low_pass], [trigger], trials=self.trials, seed=(self.seed, 1, index))
         return Reading.of_trials(lag, trials, reached=bool(np.isfinite(approach.touch)), trials=self.trials)

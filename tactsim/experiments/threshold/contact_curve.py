@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.results.result import Result, Status
@@ -30,7 +31,7 @@ class SensorShape:
     @property
     def area(self) -> float:
         """Annular area in m^2."""
-        return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
+        return annular_area(self.inner_radius, self.outer_radius)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,8 @@ import numpy as np
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
 from tactsim.interfaces import Array
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.interfaces.run import Findings
+from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
@@ -57,13 +57,15 @@ CELL_WORDS = {
 class TrialReport:
     """Collects the combinations, in the order speed, noise, cut-off, and turns them into a result."""
 
-    def __init__(self, experiment: ThresholdTrial, begin: float):
-        self._experiment, self._begin = experiment, begin
+    def __init__(self, experiment: ThresholdTrial):
+        self._experiment = experiment
         self.lengths = (len(experiment.speeds), len(experiment.noises), len(experiment.cutoffs))
         self.shown = tuple(length // 2 for length in self.lengths)
         """The combination whose recording is kept."""
         self.shape: SensorShape | None = None
         self.steps: tuple[StepRecord, ...] = ()
+        self.complete = False
+        """Whether every combination was sampled."""
         self._approaches: list[Approach] = []
         self._cells: list[dict[str, float | None]] = []
         self._capture: dict[str, Any] = {}
@@ -127,24 +129,20 @@ class TrialReport:
         if fired >= 0:
             self._capture |= {"trigger_time": float(recording.time[fired]), "captured_force": float(state.force[0])}
 
-    def result(self, status: Status, reason: str) -> Result:
-        """The result with everything that was sampled."""
-        complete = status is Status.CONVERGED
-        return Result(
-            kind=self._experiment.kind,
-            status=status,
-            reason=reason,
+    def findings(self) -> Findings:
+        """What everything that was sampled says."""
+        return Findings(
+            f"every combination sampled {self._experiment.trials} times",
+            self.steps,
             quantities=self._quantities() if self._cells else {},
-            assumptions=tuple(self._assumptions()),
-            warnings=tuple(self._warnings()),
-            timing={"total": time.perf_counter() - self._begin},
-            steps=self.steps,
+            assumptions=self._assumptions(),
+            warnings=self._warnings(),
             units=SIGNAL_UNITS,
             details={
                 "speeds": list(self._experiment.speeds),
                 "noises": list(self._experiment.noises),
                 "cutoffs": list(self._experiment.cutoffs),
-                "complete": complete,
+                "complete": self.complete,
                 "capture": self._capture,
             },
         )

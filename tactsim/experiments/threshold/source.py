@@ -8,17 +8,17 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import History, Segment
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
-from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.errors import InvalidQuantity
 from tactsim.experiments.annulus.closed_form import check_closed_form
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach, ContactCurve, SensorShape
 from tactsim.identification.columns import read_columns
-from tactsim.interfaces import Array, Progress
+from tactsim.interfaces import Array, Experiment
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
-from tactsim.results.result import Status
+from tactsim.results.result import Result
 from tactsim.units import FrozenModel, Length, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
@@ -48,7 +48,16 @@ class ClosedFormTissue:
         return Approach(speed, duration, touch, threshold, forces)
 
 
-class ClosedFormSource(FrozenModel):
+class Source(FrozenModel):
+    """A base of the sources."""
+
+    @property
+    def simulation(self) -> Experiment | None:
+        """What has to be run first; None if nothing."""
+        return None
+
+
+class ClosedFormSource(Source):
     """The annulus on linear viscoelastic tissue by its closed form: small displacements, frictionless."""
 
     kind: Literal["closed_form"] = "closed_form"
@@ -74,7 +83,7 @@ class ClosedFormSource(FrozenModel):
             raise ValueError("the recess must be smaller than the thickness of the tissue (thesis, end of 3.1.1)")
         return self
 
-    def tissue(self, progress: Progress) -> ClosedFormTissue:
+    def tissue(self, simulated: Result | None = None) -> ClosedFormTissue:
         """The contact in closed form."""
         compliance = shear_compliance(self.material)
 
@@ -94,7 +103,7 @@ class ClosedFormSource(FrozenModel):
         ]
 
 
-class RunSource(FrozenModel):
+class RunSource(Source):
     """The history of an indentation that was run before."""
 
     kind: Literal["run"] = "run"
@@ -103,7 +112,7 @@ class RunSource(FrozenModel):
     beyond: PositiveLength = 0.2e-3
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
-    def tissue(self, progress: Progress) -> ContactCurve:
+    def tissue(self, simulated: Result | None = None) -> ContactCurve:
         """The curve in the folder."""
         return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
 
@@ -112,7 +121,7 @@ class RunSource(FrozenModel):
         return _curve_assumptions()
 
 
-class IndentationSource(FrozenModel):
+class IndentationSource(Source):
     """An indentation that is simulated first; to know what the small sensor feels, let it stop at a displacement."""
 
     kind: Literal["indentation"] = "indentation"
@@ -121,13 +130,14 @@ class IndentationSource(FrozenModel):
     beyond: PositiveLength = 0.2e-3
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
-    def tissue(self, progress: Progress) -> ContactCurve:
-        """The curve of the simulation."""
-        result = self.experiment.run(progress)
-        if result.status is Status.FAILED:
-            raise ConvergenceError(f"the indentation {result.reason}")
-        if result.status is Status.INTERRUPTED:
-            raise KeyboardInterrupt
+    @property
+    def simulation(self) -> Indentation:
+        """The indentation."""
+        return self.experiment
+
+    def tissue(self, simulated: Result | None = None) -> ContactCurve:
+        """The curve of the simulation; it is run if its result is not given."""
+        result = self.experiment.run() if simulated is None else simulated
         return ContactCurve.of_result(result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:
@@ -135,7 +145,7 @@ class IndentationSource(FrozenModel):
         return _curve_assumptions()
 
 
-class CurveSource(FrozenModel):
+class CurveSource(Source):
     """A stored curve."""
 
     kind: Literal["curve"] = "curve"
@@ -156,7 +166,7 @@ class CurveSource(FrozenModel):
             raise ValueError(f"inner_radius {inner} must be below the outer_radius {outer}")
         return self
 
-    def tissue(self, progress: Progress) -> ContactCurve:
+    def tissue(self, simulated: Result | None = None) -> ContactCurve:
         """The curve in the file."""
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]

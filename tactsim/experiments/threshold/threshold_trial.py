@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tactsim.errors import InvalidQuantity, Unfinished
-from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.errors import InvalidQuantity
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.experiments.threshold.report import SIGNAL_UNITS, TrialReport
 from tactsim.experiments.threshold.sampling import FINER, SILENT, ApproachSampling
 from tactsim.experiments.threshold.source import AnySource, ClosedFormSource
-from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course, run_within_another
 from tactsim.materials.library import named_material
-from tactsim.results.result import Result, Status
+from tactsim.results.result import StepRecord
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_sensor import ThresholdSensor
@@ -55,7 +56,7 @@ class ThresholdTrial(Experiment):
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 
-    history_units: ClassVar[dict[str, str]] = {**IndentationRecord.UNITS, **SIGNAL_UNITS}
+    history_units: ClassVar[dict[str, str]] = {**Indentation.history_units, **SIGNAL_UNITS}
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -84,25 +85,25 @@ class ThresholdTrial(Experiment):
         """The noise at each level."""
         return [self.sensor.chain.noise.model_copy(update={"white": white}) for white in self.noises]
 
-    def run(self, progress: Progress) -> Result:
+    def begin(self) -> Course:
         """Sample every combination; the history is one indentation of the middle one (Fig. 3.6b)."""
-        report = TrialReport(self, time.perf_counter())
-        try:
-            tissue = self.source.tissue(progress)
-            report.shape = tissue.shape
-            triggers = [self._triggers(index, noise) for index, noise in enumerate(self.noise_levels)]
-            for index, speed in enumerate(self.speeds):
-                approach = tissue.approach(speed)
-                self._check_length(approach)
-                sampling = ApproachSampling.settled(self.sensor, approach, tissue.shape.area, self.lead, self.low_passes)
-                self._sample(report, index, sampling, triggers)
-        except Unfinished as error:
-            return report.result(Status.FAILED, str(error))
-        except KeyboardInterrupt:
-            return report.result(Status.INTERRUPTED, "interrupted; the combinations sampled before are kept")
-        for step in report.steps:
-            progress(step)
-        return report.result(Status.CONVERGED, f"every combination sampled {self.trials} times")
+        report = TrialReport(self)
+        return Course(self._sampled(report), report.findings, "the combinations sampled before are kept")
+
+    def _sampled(self, report: TrialReport) -> Iterator[StepRecord]:
+        """The steps of the simulation that is run first, if any, then those of the history."""
+        first = self.source.simulation
+        simulated = None if first is None else (yield from run_within_another(first))
+        tissue = self.source.tissue(simulated)
+        report.shape = tissue.shape
+        triggers = [self._triggers(index, noise) for index, noise in enumerate(self.noise_levels)]
+        for index, speed in enumerate(self.speeds):
+            approach = tissue.approach(speed)
+            self._check_length(approach)
+            sampling = ApproachSampling.settled(self.sensor, approach, tissue.shape.area, self.lead, self.low_passes)
+            self._sample(report, index, sampling, triggers)
+        report.complete = True
+        yield from report.steps
 
     def _triggers(self, index: int, noise: Noise) -> list[ThresholdTrigger]:
         """The trigger for each cut-off, set at rest with one noise."""

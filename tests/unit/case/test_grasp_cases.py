@@ -10,7 +10,7 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
-from tactsim.mechanics.block_model import SIDES
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.block_source import TetrahedraSource
 from tactsim.mesh.inclusions.surface import read_surface
 from tactsim.mesh.inclusions.triangulated import check_closed
@@ -66,13 +66,13 @@ def test_the_irregular_lump_is_closed_and_listed(monkeypatch, tmp_path):
 @by_name
 def test_the_case_converges(path):
     case = load_case(path)
-    result = case.experiment.run(lambda step: None)
+    result = case.experiment.run()
     assert result.status == "converged", result.reason
     found = {name: quantity.value for name, quantity in result.quantities.items()}
     assert found["max_penetration"] <= case.experiment.tolerance
     assert found["unstable_volume_fraction"] == 0
     net = np.add(found["jaw_force_upper"], found["jaw_force_lower"])
-    largest = max(abs(found[f"jaw_force_{side}"][2]) for side in SIDES)
+    largest = max(abs(found[f"jaw_force_{side}"][2]) for side in JAWS)
     assert abs(net[2]) <= 2e-3 * largest  # the weak hold, and the lean of an open end under pressure, take the rest
     if "lumen_pressure" not in found:  # the pressure on one closed end of an artery pushes the block sideways
         assert np.abs(net).max() <= 1e-4 * largest

@@ -26,7 +26,7 @@ def design(**changes):
 
 
 def run(**changes):
-    return design(**changes).run(lambda step: None)
+    return design(**changes).run()
 
 
 def values(result):
@@ -144,7 +144,7 @@ def test_what_makes_no_design_is_refused(changes, said):
 
 
 def test_the_shipped_case_runs_and_is_drawn():
-    result = load_case(SHIPPED).experiment.run(lambda step: None)
+    result = load_case(SHIPPED).experiment.run()
     assert result.status is Status.CONVERGED
     (name, draw), *rest = figures_for(result).items()
     assert (name, rest) == ("annulus_design.png", [])

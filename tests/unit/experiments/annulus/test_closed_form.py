@@ -27,7 +27,7 @@ def column(result, name):
 
 def held(**changes):
     loading = displaced({"kind": "jump", "to": 1e-5, "duration": 1.0})
-    return ClosedForm(**({"material": ELASTIC, "loading": loading} | changes)).run(lambda step: None)
+    return ClosedForm(**({"material": ELASTIC, "loading": loading} | changes)).run()
 
 
 def test_elastic_force_by_formula_and_on_a_layer():
@@ -42,17 +42,17 @@ def test_elastic_force_by_formula_and_on_a_layer():
 def test_force_gives_the_displacement_back():
     ramps = ({"kind": "ramp", "to": 1e-5, "duration": 1.0}, {"kind": "hold", "duration": 2.0})
     atrial = named_material("atrial").material
-    first = ClosedForm(material=atrial, loading=displaced(*ramps), points=2000).run(lambda step: None)
+    first = ClosedForm(material=atrial, loading=displaced(*ramps), points=2000).run()
     times, force = column(first, "time"), column(first, "force")
     samples = {"kind": "samples", "times": times.tolist(), "values": force.tolist()}
     loading = ForceLoading.model_validate({"control": "force", "pieces": [samples]})
-    second = ClosedForm(material=atrial, loading=loading, points=50).run(lambda step: None)
+    second = ClosedForm(material=atrial, loading=loading, points=50).run()
     expected = np.interp(column(second, "time"), times, column(first, "displacement"))
     np.testing.assert_allclose(column(second, "displacement"), expected, atol=1e-3 * 1e-5, err_msg="chords of 2000 samples")
 
 
 def test_a_pull_and_a_deep_displacement_are_told_and_drawn():
-    result = ClosedForm.example().run(lambda step: None)
+    result = ClosedForm.example().run()
     assert result.status == "converged"
     assert any("outer radius" in warning for warning in result.warnings)
     assert not any("negative" in warning for warning in result.warnings), "0.2 N and 0.2 N just touch zero"
@@ -61,7 +61,7 @@ def test_a_pull_and_a_deep_displacement_are_told_and_drawn():
         {"kind": "sine", "amplitude": 0.25, "frequency": 1.0, "duration": 2.0},
     ]
     pulling = ForceLoading.model_validate({"control": "force", "pieces": pieces})
-    pulled = ClosedForm.example().model_copy(update={"loading": pulling}).run(lambda step: None)
+    pulled = ClosedForm.example().model_copy(update={"loading": pulling}).run()
     assert any("a real contact opens there" in warning for warning in pulled.warnings)
     assert all(draw().startswith(b"\x89PNG") for draw in figures_for(pulled).values())
 

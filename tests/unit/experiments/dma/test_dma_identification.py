@@ -67,7 +67,7 @@ def test_figure(result):
 
 
 def test_the_same_seeds_give_the_same_result(result):
-    again = DmaIdentification(**QUICK).run(lambda step: None)
+    again = DmaIdentification(**QUICK).run()
     assert again.steps == result.steps
 
 
@@ -77,13 +77,13 @@ def test_data_from_a_file_with_unknown_noise(tmp_path):
     rows = np.column_stack([data.frequencies, data.modulus.real, data.modulus.imag])
     header = "frequency [Hz], storage modulus [Pa], loss modulus [Pa]"
     np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.17g")
-    found = DmaIdentification(data=MeasuredDma(path=str(path)), methods=("least_squares",), replicates=100).run(lambda step: None)
+    found = DmaIdentification(data=MeasuredDma(path=str(path)), methods=("least_squares",), replicates=100).run()
     assert found.status is Status.CONVERGED
     assert 0.008 < found.quantities["relative_noise"].value < 0.035
     assert "least_squares_curve_error" not in found.quantities
     assert not any("synthetic" in assumption for assumption in found.assumptions)
     with pytest.raises(StorageError):
-        DmaIdentification(data=MeasuredDma(path=str(tmp_path / "none.csv"))).run(lambda step: None)
+        DmaIdentification(data=MeasuredDma(path=str(tmp_path / "none.csv"))).run()
 
 
 @pytest.mark.parametrize(
@@ -94,12 +94,12 @@ def test_the_fits_made_before_a_stop_are_kept(monkeypatch, error, status):
         raise error
 
     monkeypatch.setattr(dma_identification, "fit_genetic", stopped)
-    found = DmaIdentification(**QUICK).run(lambda step: None)
+    found = DmaIdentification(**QUICK).run()
     assert found.status is status
     assert "moduli" in found.quantities
     assert "genetic_moduli" not in found.quantities
     assert str(status).upper() in " ".join(t.get_text() for t in dma_identification_figure(found).findobj(Text))
-    nothing = DmaIdentification(methods=("genetic",), **QUICK).run(lambda step: None)
+    nothing = DmaIdentification(methods=("genetic",), **QUICK).run()
     assert nothing.status is status
     assert nothing.steps == ()
     assert figures_for(nothing) == {}

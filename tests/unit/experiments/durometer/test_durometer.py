@@ -11,7 +11,7 @@ from tactsim.case import load_case
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.specimen import Specimen
@@ -21,7 +21,7 @@ COARSE = MeshSettings(finest=0.5e-3, growth=1.5, adaptive=False)
 HARD = NeoHookean(c10=135e3 / 6)
 
 
-def measured(material=HARD, progress=lambda step: None, **changes):
+def measured(material=HARD, progress=None, **changes):
     specimen = Specimen(material=material, **changes.pop("specimen", {}))
     return Durometer(specimen=specimen, **({"mesh": COARSE} | changes)).run(progress)
 
@@ -127,7 +127,7 @@ def test_a_narrow_specimen_is_warned_of():
 
 @pytest.mark.slow
 def test_the_shipped_case(request):
-    result = load_case(request.config.rootpath / "cases" / "durometer_oo.yaml").experiment.run(lambda step: None)
+    result = load_case(request.config.rootpath / "cases" / "durometer_oo.yaml").experiment.run()
     assert result.status == "converged"
     assert values(result)["reading"] == pytest.approx(63.05, abs=0.1)  # mesh error 0.01 units, table_3_3_simulated
     assert np.diff([step.values["reaction_force"] for step in result.steps]).min() > 0

@@ -157,5 +157,5 @@ def test_bad_settings_are_refused(changes):
 def test_the_case_finds_the_declared_line(request, monkeypatch):
     monkeypatch.chdir(request.config.rootpath)
     experiment = load_case("cases/calibrate_force_sensor.yaml").experiment
-    result = experiment.run(lambda step: None)
+    result = experiment.run()
     assert result.quantities["slope"].value == pytest.approx(THESIS_LINE.slope, rel=0.05)

@@ -23,7 +23,7 @@ FORCES = tuple(range(1, 26))
 def calibrated(sensors=1, **chain):
     settings = {"noise": Noise(white=10e-3, line=20e-3), **chain}
     data = SyntheticCalibration(hold=0.2, forces=FORCES, sensors=sensors, scatter=ChannelScatter())
-    return ForceCalibration(data=data, chain=SignalChain(**settings)).run(lambda step: None)
+    return ForceCalibration(data=data, chain=SignalChain(**settings)).run()
 
 
 def words(figure):

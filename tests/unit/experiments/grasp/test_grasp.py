@@ -14,7 +14,8 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
 from tactsim.experiments.grasp.readings import JawReading, check_sums
-from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.history_path import stretches
 from tactsim.mechanics.surface_forces import TaxelForces
 from tactsim.mesh.inclusions.tube import Tube
@@ -45,7 +46,7 @@ def grasp(**changes):
 
 
 def run(**changes):
-    return grasp(**changes).run(lambda step: None)
+    return grasp(**changes).run()
 
 
 def values(result):
@@ -77,7 +78,7 @@ def test_taxels_read_the_cauchy_pressure_of_a_frictionless_block():
     found = values(run(contact={"kind": "coulomb", "friction": 0.0}, penetration_tolerance=1e-7))
     stretch = 1 - 2e-3 / SIZE[2]
     cauchy = 2 * C10 * (1 / stretch - stretch**2)
-    for side in SIDES:
+    for side in JAWS:
         pressure = np.array(found[f"taxel_pressure_{side}"])
         assert pressure == pytest.approx(np.full((3, 3), cauchy), rel=3e-4), "twice the penetration over the closing is 2e-4"
         assert pressure != pytest.approx(np.full((3, 3), cauchy * (1 + 1e-3)), rel=3e-4)
@@ -100,7 +101,7 @@ def test_what_a_run_records():
     assert result.steps[-1].values["taxel_force_upper_1_3"] == found["taxel_force_upper"][0][2]
     assert {name for step in result.steps for name in step.values} <= set(result.units)
     assert any(result.details["mesh"]["content"] in told for told in result.assumptions)
-    assert [result.details["jaw_places"][side][2] for side in SIDES] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
+    assert [result.details["jaw_places"][side][2] for side in JAWS] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
     assert len(result.frames) == 2
     frame = result.frames[-1]
     assert set(np.unique(frame.cell_data["region [1]"])) == {0.0, 1.0}

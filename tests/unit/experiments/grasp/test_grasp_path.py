@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tactsim.experiments.grasp.path import GraspedBlock
+from tactsim.experiments.grasp.path import grasped_block
 
 CLOSING = 1e-3
 
@@ -31,5 +31,5 @@ class Model:
 def test_a_hollow_tube_is_not_squeezed_by_the_first_guess(facets, first):
     experiment = SimpleNamespace(softness=5e-5, loading=SimpleNamespace(control="displacement"), lumens=())
     rest = SimpleNamespace(load=0.0, unknowns=np.zeros(4))
-    found = GraspedBlock(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
+    found = grasped_block(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
     assert (found == first).all()

@@ -18,7 +18,7 @@ READOUT = MatrixReadout(seed=4)
 
 @pytest.fixture(scope="module")
 def read_grasp():
-    return Grasp.example().model_copy(update={"readout": READOUT}).run(lambda step: None)
+    return Grasp.example().model_copy(update={"readout": READOUT}).run()
 
 
 def value(result, name):
@@ -40,14 +40,14 @@ def test_a_grasp_with_a_readout_has_the_voltages_of_18_sensors_over_time(read_gr
 
 
 def test_without_a_readout_a_grasp_ends_at_the_forces():
-    result = Grasp.example().run(lambda step: None)
+    result = Grasp.example().run()
     assert "voltage_upper" not in result.quantities
     assert "taxel_voltages.png" not in figures_for(result)
 
 
 def test_a_readout_that_fails_does_not_lose_the_grasp():
     fast = MatrixReadout(chain={"sampling_rate": 200e3, "low_pass": None})
-    result = Grasp.example().model_copy(update={"readout": fast}).run(lambda step: None)
+    result = Grasp.example().model_copy(update={"readout": fast}).run()
     assert result.status is Status.CONVERGED
     assert "taxel_force_upper" in result.quantities
     assert "voltage_upper" not in result.quantities
@@ -57,26 +57,26 @@ def test_a_readout_that_fails_does_not_lose_the_grasp():
 def test_an_incomplete_grasp_is_refused(read_grasp, tmp_path):
     write_result(replace(read_grasp, details={}), tmp_path / "grasp", case_id="0" * 16, provenance={})
     with pytest.raises(StorageError, match="not a complete result of a grasp"):
-        MatrixReadoutRun(grasp=str(tmp_path / "grasp")).run(lambda step: None)
+        MatrixReadoutRun(grasp=str(tmp_path / "grasp")).run()
 
 
 def test_a_stored_grasp_is_read_alike(read_grasp, tmp_path):
     folder = tmp_path / "grasp"
     write_result(read_grasp, folder, case_id="0" * 16, provenance={})
-    again = MatrixReadoutRun(grasp=str(folder), readout=READOUT).run(lambda step: None)
+    again = MatrixReadoutRun(grasp=str(folder), readout=READOUT).run()
     assert again.status is Status.CONVERGED
     for name in ("voltage_lower_history", "read_force_upper"):
         np.testing.assert_allclose(value(again, name), value(read_grasp, name), rtol=1e-9, atol=1e-12)
-    other = MatrixReadoutRun(grasp=str(folder), readout=MatrixReadout(seed=4, scatter=None)).run(lambda step: None)
+    other = MatrixReadoutRun(grasp=str(folder), readout=MatrixReadout(seed=4, scatter=None)).run()
     assert np.abs(value(other, "voltage_upper") - value(read_grasp, "voltage_upper")).max() > 1e-4
     assert figures_for(again)["taxel_voltages.png"]()[:4] == b"\x89PNG"
 
 
 def test_a_folder_without_a_grasp_is_refused(tmp_path):
     with pytest.raises(StorageError):
-        MatrixReadoutRun(grasp=str(tmp_path / "none")).run(lambda step: None)
+        MatrixReadoutRun(grasp=str(tmp_path / "none")).run()
     from tactsim.experiments.film.film_test import FilmTest
 
-    write_result(FilmTest.example().run(lambda step: None), tmp_path / "film", case_id="0" * 16, provenance={})
+    write_result(FilmTest.example().run(), tmp_path / "film", case_id="0" * 16, provenance={})
     with pytest.raises(InputError, match="needed: a grasp"):
-        MatrixReadoutRun(grasp=str(tmp_path / "film")).run(lambda step: None)
+        MatrixReadoutRun(grasp=str(tmp_path / "film")).run()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from pydantic import ValidationError
@@ -11,10 +9,9 @@ from pydantic import ValidationError
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.path import indentation_path
-from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.specimen import Layer, Specimen
 
@@ -35,7 +32,7 @@ def thin(**changes):
 
 
 def run(**changes):
-    return thin(**changes).run(lambda step: None)
+    return thin(**changes).run()
 
 
 @pytest.fixture(scope="module")
@@ -97,9 +94,8 @@ def test_same_case_same_numbers(plain):
 def test_refined_state_is_the_same_state():
     experiment = thin(contact=Coulomb(friction=0.0))
     model = experiment.model()
-    record = IndentationRecord(experiment, model, time.perf_counter())
-    states = [state for state, _ in indentation_path(experiment, model, record)]
-    state, marked = states[-1], np.arange(0, len(model.mesh.elements), 4)
+    *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)
+    state, marked = last.contact, np.arange(0, len(model.mesh.elements), 4)
     finer, same, _ = model.refined(state, marked)
     assert len(finer.mesh.elements) > len(model.mesh.elements)
     np.testing.assert_allclose(finer.base_force(same.unknowns), model.base_force(state.unknowns), rtol=0.02)

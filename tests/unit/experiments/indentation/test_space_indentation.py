@@ -8,8 +8,7 @@ from pydantic import ValidationError
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation
-from tactsim.experiments.indentation.setup_3d import SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.solid_model import SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
@@ -49,14 +48,14 @@ def test_the_smallest_part_is_computed(changes, part, images):
 
 
 def test_threshold_then_the_sensor_presses_too():
-    touched = thin().run(lambda step: None)
+    touched = thin().run()
     values = {name: quantity.value for name, quantity in touched.quantities.items()}
     assert touched.status == "converged"
     assert values["tissue_rise"] == pytest.approx(0.05e-3, rel=1e-4)
     assert values["threshold_pressure"] == pytest.approx(values["threshold_force"] / (np.pi * (3e-3**2 - 1.5e-3**2)))
     assert {name for step in touched.steps for name in step.values} <= set(touched.units)
     assert set(touched.frames[-1].cells) == {"tetra10"}
-    beyond = thin(stop="displacement", steps={"first": 0.05e-3}).run(lambda step: None)
+    beyond = thin(stop="displacement", steps={"first": 0.05e-3}).run()
     last = beyond.steps[-1].values
     assert beyond.status == "converged"
     assert last["sensor_force"] > 0
@@ -65,7 +64,7 @@ def test_threshold_then_the_sensor_presses_too():
 
 
 def test_stopped_before_the_threshold_and_interruption_keep_what_was_accepted():
-    short = thin(displacement=0.03e-3).run(lambda step: None)
+    short = thin(displacement=0.03e-3).run()
     assert short.status == "failed"
     assert "not reached" in short.reason
 

@@ -9,12 +9,12 @@ from pydantic import ValidationError
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.indentation.contact_setup import MeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
-from tactsim.experiments.indentation.timed_setup import TimeSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.specimen import Layer, Specimen
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 
@@ -59,7 +59,7 @@ def fading(times):
 
 
 def test_a_held_displacement_relaxes_by_the_series():
-    result = thin(contact=Coulomb(friction=0.4)).run(lambda step: None)
+    result = thin(contact=Coulomb(friction=0.4)).run()
     force, times = history(result, "reaction_force"), history(result, "time")
     np.testing.assert_allclose(force / force[0], fading(times), rtol=2e-3, err_msg="the penetration follows the pressure")
     assert not np.allclose(force / force[0], fading(times) ** 1.05, rtol=2e-3)
@@ -68,51 +68,51 @@ def test_a_held_displacement_relaxes_by_the_series():
 
 
 def test_a_held_force_creeps():
-    result = thin(loading=forced({"kind": "jump", "to": 0.05, "duration": 100.0})).run(lambda step: None)
+    result = thin(loading=forced({"kind": "jump", "to": 0.05, "duration": 100.0})).run()
     force, depth = history(result, "reaction_force"), history(result, "displacement")
     np.testing.assert_allclose(force, 0.05, rtol=1e-8)
     assert (np.diff(depth) > -5e-3 * depth.max()).all(), "up to the tolerance in time"
-    elastic = thin(material=ELASTIC, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run(lambda step: None)
+    elastic = thin(material=ELASTIC, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run()
     slow = NeoHookean(c10=1000.0 * FADING.amplitudes[0])
-    relaxed = thin(material=slow, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run(lambda step: None)
+    relaxed = thin(material=slow, loading=forced({"kind": "jump", "to": 0.05, "duration": 1.0})).run()
     assert depth[0] == pytest.approx(history(elastic, "displacement")[-1], rel=1e-3)
     assert depth[-1] == pytest.approx(history(relaxed, "displacement")[-1], rel=2e-3)
 
 
 def test_a_cycle_dissipates_and_the_contact_opens_before_the_body_is_back():
     ramps = ({"kind": "ramp", "to": 0.1e-3, "duration": 0.2}, {"kind": "ramp", "to": 0.0, "duration": 0.2})
-    result = thin(loading=displaced(*ramps, {"kind": "hold", "duration": 0.1})).run(lambda step: None)
+    result = thin(loading=displaced(*ramps, {"kind": "hold", "duration": 0.1})).run()
     force, depth = history(result, "reaction_force"), history(result, "displacement")
     work = np.trapezoid(force, depth)
     assert work > 0.05 * force.max() * depth.max()
     assert force[-1] == pytest.approx(0.0, abs=1e-9)
     opened = depth[np.argmax((force <= 0) & (history(result, "time") > 0.2))]
     assert 0.0 < opened < 0.1e-3
-    elastic = thin(material=ELASTIC, loading=displaced(*ramps)).run(lambda step: None)
+    elastic = thin(material=ELASTIC, loading=displaced(*ramps)).run()
     loop = np.trapezoid(history(elastic, "reaction_force"), history(elastic, "displacement"))
     assert abs(loop) < 0.02 * force.max() * depth.max(), "the trapezoidal rule on twenty steps each way"
 
 
 def test_the_touch_is_located_in_time():
     loading = displaced({"kind": "ramp", "to": 0.6e-3, "duration": 1.0})
-    result = thin(loading=loading, recess=0.1e-3, stop="touch").run(lambda step: None)
+    result = thin(loading=loading, recess=0.1e-3, stop="touch").run()
     assert history(result, "tissue_rise")[-1] == pytest.approx(0.1e-3, rel=1e-4)
     assert 0 < result.quantities["time_of_touch"].value < 1.0
-    short = thin(loading=displaced(JUMP), recess=2e-3, stop="touch").run(lambda step: None)
+    short = thin(loading=displaced(JUMP), recess=2e-3, stop="touch").run()
     assert (short.status, short.reason) == ("failed", "the tissue did not touch the inner sensor within the history")
-    beyond = thin(loading=loading, recess=0.05e-3).run(lambda step: None)
+    beyond = thin(loading=loading, recess=0.05e-3).run()
     assert any("rose beyond the recess" in warning for warning in beyond.warnings)
 
 
 def test_one_relaxing_layer_is_enough():
     specimen = Specimen(material=ELASTIC, thickness=3e-3, radius=7e-3, layers=(Layer(thickness=1e-3, material=TISSUE),))
-    force = history(thin(specimen=specimen).run(lambda step: None), "reaction_force")
-    whole = history(thin().run(lambda step: None), "reaction_force")
+    force = history(thin(specimen=specimen).run(), "reaction_force")
+    whole = history(thin().run(), "reaction_force")
     assert whole[-1] / whole[0] < force[-1] / force[0] < 1
 
 
 def test_elastic_tissue_has_no_memory_and_a_figure():
-    result = thin(material=ELASTIC, compare="layer").run(lambda step: None)
+    result = thin(material=ELASTIC, compare="layer").run()
     assert np.ptp(history(result, "reaction_force")) < 1e-6 * history(result, "reaction_force")[0]
     assert abs(result.quantities["closed_form_difference"].value) < 0.5, "a fillet of an eighth of the radius costs force"
     assert all(draw().startswith(b"\x89PNG") for draw in figures_for(result).values())

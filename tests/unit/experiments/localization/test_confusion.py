@@ -49,7 +49,7 @@ def folders(tmp_path):
 def run(folders, *names, **changes):
     given = {"noise": 1e-3, "draws": 3, "estimator": ThesisEstimator(background="reference")} | changes
     experiment = Confusion(grasps=tuple(folders[name] for name in names), reference=folders["plain"], **given)
-    return experiment.run(lambda step: None)
+    return experiment.run()
 
 
 def test_classes_are_counted(folders):

@@ -82,7 +82,7 @@ def run(monkeypatch):
 
 
 def test_the_map_is_symmetric_and_deeper_lumps_are_harder_to_find(run):
-    result = run(depths=(4e-3, 7e-3, 10e-3, 13e-3, 16e-3), shear_ratios=(1.8, 100.0)).run(lambda step: None)
+    result = run(depths=(4e-3, 7e-3, 10e-3, 13e-3, 16e-3), shear_ratios=(1.8, 100.0)).run()
     found = np.array(result.quantities["smallest_radius"].value, dtype=float)
     assert found.shape == (2, 2, 5)
     np.testing.assert_allclose(found, found[..., ::-1], rtol=1e-4)
@@ -95,17 +95,17 @@ def test_the_map_is_symmetric_and_deeper_lumps_are_harder_to_find(run):
 
 def test_less_noise_finds_smaller_lumps(run):
     first, second = (
-        np.array(run(noise=noise, depths=(5e-3,)).run(lambda step: None).quantities["smallest_radius"].value, dtype=float)
+        np.array(run(noise=noise, depths=(5e-3,)).run().quantities["smallest_radius"].value, dtype=float)
         for noise in (0.02, 0.002)
     )
     assert np.all(second[1] < first[1])
 
 
 def test_what_is_not_found_is_null_and_the_figure_is_drawn(run):
-    result = run(noise=50.0, depths=(3e-3, 10e-3)).run(lambda step: None)
+    result = run(noise=50.0, depths=(3e-3, 10e-3)).run()
     assert result.quantities["smallest_radius"].value[0][0] == [None, None]
     assert figures_for(result)["detectability.png"]()[:4] == b"\x89PNG"
-    some = run(depths=(3e-3, 6e-3, 10e-3)).run(lambda step: None)
+    some = run(depths=(3e-3, 6e-3, 10e-3)).run()
     axes = detectability_figure(some).axes
     lines = [line for line in axes[0].lines if len(line.get_xdata())]
     expected = np.array(some.quantities["smallest_radius"].value, dtype=float)

@@ -65,7 +65,7 @@ def folders(tmp_path_factory):
 
 def run(folders, **changes):
     given = {"grasp": folders[0], "reference": folders[1], "noise": 1e-3, "estimator": ESTIMATOR} | changes
-    return Localization(**given).run(lambda step: None)
+    return Localization(**given).run()
 
 
 def value(result, name):
@@ -191,7 +191,7 @@ experiment:
     path.write_text(text, encoding="utf-8")
     case = load_case(path)
     assert case.experiment.estimator.lateral == "peak"
-    assert case.experiment.run(lambda step: None).status is Status.CONVERGED
+    assert case.experiment.run().status is Status.CONVERGED
     path.write_text(text.replace("noise: 1 mN", "noise: -1 mN"), encoding="utf-8")
     with pytest.raises(CaseError, match="noise"):
         load_case(path)

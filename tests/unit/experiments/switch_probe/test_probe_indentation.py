@@ -7,14 +7,14 @@ import pytest
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.experiments.indentation.contact_record import contact_values
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.timed_path import TimedIndentationPath
-from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.indentation.course import HistoryPath
+from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation, probe_states, side_forces
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.loading import DisplacementLoading
 from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.sensors.switch_array import SwitchArray
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -56,9 +56,9 @@ def test_forces_balance_in_plane_strain_and_scale_with_the_width():
     model = setup.model()
     assert model.space.measure == "plane_strain"
     assert model.surface.points.weights.sum() == pytest.approx(20e-3, rel=1e-12), "the half width, per m"
-    path = TimedIndentationPath(setup, model)
+    path = HistoryPath(setup, setup.drive(), model)
     *_, (last, _) = path.states()
-    values, _ = contact_values(model, last.contact)
+    values = IndentationRecord(setup, model, path).values(last)
     assert values["base_force"] == pytest.approx(values["reaction_force"], rel=1e-7)
     *_, state = probe_states(setup, SwitchArray(), width=10e-3)
     assert state.force == pytest.approx(2 * 10e-3 * values["reaction_force"], rel=1e-9)
@@ -69,7 +69,7 @@ def test_forces_balance_in_plane_strain_and_scale_with_the_width():
 def test_refining_keeps_the_plane_measure():
     setup = indentation()
     model = setup.model()
-    contact = TimedIndentationPath(setup, model)._begin.contact
+    contact = HistoryPath(setup, setup.drive(), model).start
     finer, _, _ = model.refined(contact, np.array([0, 1]))
     assert finer.space.measure == "plane_strain"
     assert len(finer.space.elements) > len(model.space.elements)

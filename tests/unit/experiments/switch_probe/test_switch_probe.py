@@ -12,14 +12,14 @@ from pydantic import ValidationError
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.indentation.contact_setup import MeshSettings
-from tactsim.experiments.indentation.timed_setup import TimeSettings
+from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe import switch_probe
 from tactsim.experiments.switch_probe.figures import switch_panel_figure
 from tactsim.experiments.switch_probe.run import force_noise, touched
 from tactsim.experiments.switch_probe.setup import ProbeTissue
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 from tactsim.results import Status
@@ -43,7 +43,7 @@ def probe(**changes):
 
 @pytest.fixture(scope="module")
 def three():
-    return load_case(CASES / "switch_tissues.yaml").experiment.run(lambda step: None)
+    return load_case(CASES / "switch_tissues.yaml").experiment.run()
 
 
 def forces(result):
@@ -90,7 +90,7 @@ def test_history_and_document(three):
 
 def test_the_same_seed_gives_the_same_touch():
     noisy = {"chain": SignalChain(noise=Noise(white=1e-3))}
-    runs = [probe(seed=seed, **noisy).run(lambda step: None) for seed in (1, 1, 2)]
+    runs = [probe(seed=seed, **noisy).run() for seed in (1, 1, 2)]
     assert runs[0].steps == runs[1].steps
     assert runs[0].steps != runs[2].steps
 
@@ -104,7 +104,7 @@ def test_the_noise_is_that_of_the_readings():
 
 
 def test_computed_sides_are_touched_by_the_first_switch_only():
-    result = probe(sides="computed").run(lambda step: None)
+    result = probe(sides="computed").run()
     assert result.quantities["closed_switches_1"].value == 1
     assert "mean_rate_1" not in result.quantities
     assert result.quantities["contact_height_1"].value == pytest.approx(1.468e-3, rel=1e-3)
@@ -113,14 +113,14 @@ def test_computed_sides_are_touched_by_the_first_switch_only():
 
 
 def test_a_printed_mean_rate_is_a_third():
-    printed = probe(array=SwitchArray(formula="as_printed")).run(lambda step: None).quantities["mean_rate_1"].value
-    corrected = probe().run(lambda step: None).quantities["mean_rate_1"].value
+    printed = probe(array=SwitchArray(formula="as_printed")).run().quantities["mean_rate_1"].value
+    corrected = probe().run().quantities["mean_rate_1"].value
     assert printed / corrected == pytest.approx(1 / 3, rel=0.02)
 
 
 def test_thousands_of_samples_a_second():
     setup = probe()
-    result = setup.run(lambda step: None)
+    result = setup.run()
     assert 10_000 / result.timing["total"] > 2000  # 10 s at 1 kHz
 
 
@@ -131,7 +131,7 @@ def test_figures(three):
     told = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
     for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
         assert words in told
-    single = probe(sides="computed").run(lambda step: None)
+    single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
     told = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
     assert "not every switch closed" in told
@@ -145,12 +145,12 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
         return touched(setup, chosen, rate, generator)
 
     monkeypatch.setattr(switch_probe, "touched", stopped)
-    found = probe(rates=(1e-3, 3e-3)).run(lambda step: None)
+    found = probe(rates=(1e-3, 3e-3)).run()
     assert found.status == status
     assert "forces_1" in found.quantities
     assert "forces_2" not in found.quantities
     assert figures_for(found)["force_over_depth.png"]().startswith(b"\x89PNG")
-    nothing = probe(rates=(3e-3,)).run(lambda step: None)
+    nothing = probe(rates=(3e-3,)).run()
     assert (nothing.status, nothing.steps, figures_for(nothing)) == (status, (), {})
 
 
@@ -177,8 +177,8 @@ def test_impossible_experiments_are_refused(changes, words):
 
 def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
     given = {"depth": 2e-3, "sides": "computed"}
-    fast = probe(**given).run(lambda step: None)
-    found = probe(model="fem", **COARSE, **given).run(lambda step: None)
+    fast = probe(**given).run()
+    found = probe(model="fem", **COARSE, **given).run()
     assert found.status is Status.CONVERGED, found.reason
     expected = fast.quantities["forces_1"].value
     np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
@@ -189,7 +189,7 @@ def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
 @pytest.mark.parametrize(("rate", "fractions"), [(0.5e-3, (0.9,)), (1e-3, (0.9,)), (3e-3, (0.4,))])
 def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fractions):
     given = {"tissues": (tissue(fractions=fractions),), "rates": (rate,), "sides": "computed"}
-    fast, found = (probe(model=model, **given).run(lambda step: None) for model in ("fast", "fem"))
+    fast, found = (probe(model=model, **given).run() for model in ("fast", "fem"))
     expected = fast.quantities["forces_1"].value
     np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
     assert not np.allclose(found.quantities["forces_1"].value, 1.06 * expected, rtol=0.02)
@@ -205,7 +205,7 @@ def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fraction
 @pytest.mark.slow
 def test_the_curve_is_that_of_the_finite_elements():
     stiff = ProbeTissue(name="elastic", material=NeoHookean(c10=5e3))
-    fast, found = (probe(model=model, tissues=(stiff,), sides="computed").run(lambda step: None) for model in ("fast", "fem"))
+    fast, found = (probe(model=model, tissues=(stiff,), sides="computed").run() for model in ("fast", "fem"))
     np.testing.assert_allclose(found.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
     assert found.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
     assert not np.allclose(found.quantities["forces_1"].value, 1.006 * fast.quantities["forces_1"].value, rtol=2e-3)

@@ -30,7 +30,7 @@ def tip(**changes):
 
 
 def run(**changes):
-    return tip(**changes).run(lambda step: None)
+    return tip(**changes).run()
 
 
 def noisy(white):

@@ -17,6 +17,7 @@ from tactsim.experiments.threshold.figures.threshold_trial import threshold_erro
 from tactsim.experiments.threshold.sampling import ApproachSampling
 from tactsim.experiments.threshold.source import ClosedFormSource, CurveSource, IndentationSource, RunSource
 from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
@@ -37,7 +38,7 @@ def trial(**changes):
 
 
 def run(**changes):
-    return trial(**changes).run(lambda step: None)
+    return trial(**changes).run()
 
 
 def grid(result, name):
@@ -163,8 +164,8 @@ def stored(path, *, past, status=Status.CONVERGED, kind="indentation"):
 
 
 def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
-    past = RunSource(path=str(stored(tmp_path / "past", past=True))).tissue(lambda step: None)
-    ended = RunSource(path=str(stored(tmp_path / "ended", past=False))).tissue(lambda step: None)
+    past = RunSource(path=str(stored(tmp_path / "past", past=True))).tissue()
+    ended = RunSource(path=str(stored(tmp_path / "ended", past=False))).tissue()
     assert past.threshold_displacement == ended.threshold_displacement == 1e-3
     at = np.array([0.5, 1.0, 1.1])
     plate, small = past.approach(1e-3).at(at)
@@ -177,21 +178,29 @@ def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
     assert ended.shape.area == pytest.approx(np.pi * (9 - 2.25) * 1e-6)
     for name, changes in (("failed", {"status": Status.FAILED}), ("kind", {"kind": "grasp"})):
         with pytest.raises(InputError, match="not usable"):
-            RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue(lambda step: None)
+            RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue()
 
 
 def test_an_indentation_is_run_first(monkeypatch, tmp_path):
-    made = Result(kind="indentation", status=Status.FAILED, reason="stopped converging: no luck")
-    monkeypatch.setattr(Indentation, "run", lambda self, progress: made)
-    source = IndentationSource(experiment=Indentation.example())
-    with pytest.raises(ConvergenceError, match="no luck"):
-        source.tissue(lambda step: None)
-    failed = run(source=source)
-    assert failed.status is Status.FAILED
+    def ending(error):
+        def steps():
+            yield StepRecord(1, 3, 0.0, {"displacement": 1e-4})
+            if error is not None:
+                raise error
+
+        findings = Findings("too short", status=Status.FAILED)
+        monkeypatch.setattr(Indentation, "begin", lambda self: Course(steps(), lambda: findings))
+        seen = []
+        return trial(source=IndentationSource(experiment=Indentation.example())).run(seen.append), seen
+
+    failed, seen = ending(ConvergenceError("no luck"))
+    assert (failed.status, failed.reason) == (Status.FAILED, "the indentation stopped converging: no luck")
+    assert [step.step for step in seen] == [1]
+    assert failed.steps == ()
     assert figures_for(failed) == {}
-    stopped = Result(kind="indentation", status=Status.INTERRUPTED, reason="interrupted")
-    monkeypatch.setattr(Indentation, "run", lambda self, progress: stopped)
-    assert run(source=source).status is Status.INTERRUPTED
+    assert ending(None)[0].reason == "the indentation too short"
+    stopped, _ = ending(KeyboardInterrupt())
+    assert (stopped.status, stopped.reason) == (Status.INTERRUPTED, "interrupted; the combinations sampled before are kept")
 
 
 def test_an_interrupted_run_keeps_the_combinations_before(monkeypatch):
@@ -237,7 +246,7 @@ def test_bad_curves_are_refused(tmp_path, text, words):
 def test_a_curve_is_read_with_its_units(tmp_path):
     path = tmp_path / "curve.csv"
     path.write_text(HEADER + "1, 1, 0.4, 0\n1.5, 1.5, 0.6, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 10\n")
-    curve = CurveSource(path=str(path)).tissue(lambda step: None)
+    curve = CurveSource(path=str(path)).tissue()
     assert isinstance(curve, ContactCurve)
     assert curve.shape == SensorShape(1.5e-3, 3e-3, 0.8e-3)
     assert (curve.threshold_displacement, curve.displacement[0], curve.small[-1]) == (2e-3, 0.0, 0.01)

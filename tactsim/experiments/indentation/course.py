@@ -1,0 +1,179 @@
+"""The course of an indentation: load steps or a history of time, a finer mesh where sliding asks for it, the inner sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from tactsim.contact.penalty import Regularisation
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.indentation.record import IndentationRecord
+from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, Timed
+from tactsim.fem.loading import Event, PathFollower
+from tactsim.fem.progress import Headway
+from tactsim.fem.time_steps import TimeEvent
+from tactsim.interfaces.run import Course
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.history_path import TimedPath, TimedState, stretches
+from tactsim.mechanics.pressed_body import PressedBody
+from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.mechanics.section_model import SectionModel
+from tactsim.mesh.adaptation import Refinement
+from tactsim.units import format_quantity
+
+EVENT_TOLERANCE = 1e-5
+"""Tolerance of the displacement at the threshold, as a part of the recess."""
+SWITCH_LENGTH = 0.03
+"""Length, as a part of the body's radius, over which a violated contact counts as much as the largest contact pressure."""
+TOO_LONG = 2.0
+"""An element is split when its deformed edge is this many times longer than the size wanted there."""
+LONG = 1.3
+"""Elements this many times too long are split along with those that are ``TOO_LONG``, so that it happens rarely."""
+LARGEST_GROWTH = 4.0
+"""The mesh is not refined beyond this many times its first number of elements."""
+RESTART = 0.5
+"""First step on a refined mesh, as a part of the last one: there is nothing yet to extrapolate."""
+PAST_PEAK = 0.95
+"""When the rise has fallen to this part of its peak, the tissue slips out of the hole faster than it is pushed in."""
+LEAST_PENETRATION = 2e-4
+"""Tolerance of the penetration in radii, below which the contact is stiff only as far as the pressure asks: an elastic answer
+then penetrates by less than this part of its displacement."""
+TOUCH = 1e-3
+"""First guess of a displacement in penetration tolerances, so that something touches."""
+
+Adapted = Callable[[PressedModel, Refinement], None]
+
+
+def indentation_course(setup: IndentationSetup) -> Course:
+    """The run of an indentation in any dimension, with a clock or without."""
+    model, drive = setup.model(), setup.drive()
+    path = HistoryPath(setup, drive, model) if isinstance(drive, Timed) else DisplacementPath(setup, drive, model)
+    record = IndentationRecord(setup, model, path)
+    steps = (record.accept(state, event=touch) for state, touch in path.states(record.adapted))
+    return Course(steps, record.findings, setup_is_timed=True)
+
+
+def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> ContactEquilibrium:
+    """The body at first touch of the undeformed tissue, whose contact is as stiff as a shear modulus in Pa."""
+    scale = Regularisation(setup.tolerance, modulus, switch_length=SWITCH_LENGTH * setup.contact_radius)
+    body = setup.pressed_body
+    return model.start(body, model.touching_place(body), setup.contact, scale)
+
+
+class DisplacementPath:
+    """Follows the displacement, and from time to time goes on with a finer mesh of the same tissue.
+
+    ``rejected`` counts the steps that were taken back, ``model`` is that of the last state.
+    """
+
+    def __init__(self, setup: IndentationSetup, drive: Displaced, model: PressedModel):
+        self.model, self.rejected, self._setup, self._drive = model, 0, setup, drive
+        self._size = setup.size()
+        self._most = LARGEST_GROWTH * len(model.mesh.elements)
+        self.start = started(setup, model, min(material.shear_modulus for material in setup.specimen.materials))
+
+    def states(self, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
+        """Accepted states, each with whether it is the touch of the inner sensor; past it, this presses too.
+
+        ``adapted`` is told of every refinement of the mesh.
+
+        Raises
+        ------
+        ConvergenceError
+            If the path cannot be followed to its end, or the rise has passed its peak below the threshold.
+        """
+        setup, recess = self._setup, self._setup.recess
+        if recess is None:
+            yield from self.follow(self.start, None, adapted)
+            return
+        radius = setup.body.inner_radius
+        event = Event[ContactEquilibrium](lambda s: self.model.rise(s, radius)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
+        peak, peak_load = 0.0, 0.0
+        for state, touched in self.follow(self.start, event, adapted):
+            yield state, touched
+            rise = self.model.rise(state.contact, radius)[0]
+            peak, peak_load = max((peak, peak_load), (rise, state.contact.load))
+            if setup.stops_at_touch and rise < PAST_PEAK * peak and not touched:
+                highest, where = format_quantity(peak, "m"), format_quantity(peak_load, "m")
+                raise ConvergenceError(f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling")
+        if touched and not setup.stops_at_touch:
+            place = state.contact.contacts[0].place + recess * setup.axis
+            sensor = self.model.contact(setup.inner_sensor, setup.contact, place)
+            yield from self.follow(self.model.with_contact(state.contact, sensor), None, adapted)
+
+    def follow(
+        self, state: ContactEquilibrium, event: Event[ContactEquilibrium] | None, adapted: Adapted
+    ) -> Iterator[tuple[TimedState, bool]]:
+        """Accepted states from one of them up to the event or the displacement.
+
+        Raises
+        ------
+        ConvergenceError
+            If the path cannot be followed.
+        """
+        control, target = self._drive.control, self._drive.displacement
+        first, more, headway = control.first, True, Headway(state.load, target)
+        while more:
+            more, before = False, state.load
+            follower = PathFollower(self.model.advance, replace(control, first=first))
+            for reached, happened in follower.follow(state, target, event, headway=headway):
+                first, before = max(control.first, RESTART * (reached.load - before)), reached.load
+                self.rejected += follower.rejected
+                follower.rejected = 0
+                state = reached
+                yield TimedState(state.load, (state.load,), state, None), happened
+                if not happened and state.load < target and (model := self._to_refine(state)) is not None:
+                    state, more = self._refined(model, state, adapted), True
+                    break
+
+    def _to_refine(self, state: ContactEquilibrium) -> SectionModel | None:
+        """The model, if elements of it have become too long for a state."""
+        model = self.model
+        if not (self._setup.mesh.adaptive and isinstance(model, SectionModel)) or len(model.mesh.elements) >= self._most:
+            return None
+        return model if len(model.too_coarse(state, self._size, TOO_LONG)) else None
+
+    def _refined(self, model: SectionModel, state: ContactEquilibrium, adapted: Adapted) -> ContactEquilibrium:
+        while len(marked := model.too_coarse(state, self._size, LONG)) and len(model.mesh.elements) < self._most:
+            model, state, split = model.refined(state, marked)
+            self.model = model
+            adapted(model, split)
+        return state
+
+
+class HistoryPath:
+    """Follows a history of force or displacement; its mesh stays."""
+
+    def __init__(self, setup: IndentationSetup, drive: Timed, model: PressedModel):
+        self._setup, self._model = setup, model
+        stiffest = max(shear_relaxation(material).instantaneous_modulus for material in setup.specimen.materials)
+        share = min(1.0, setup.tolerance / (LEAST_PENETRATION * setup.contact_radius))
+        self._start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
+        body = PressedBody(model, by_force=drive.by_force, first_travel=TOUCH * setup.tolerance)
+        course = stretches([drive.loading.history()], drive.loading.duration)
+        self._path = TimedPath(body, drive.policy, course, self._start)
+
+    @property
+    def start(self) -> ContactEquilibrium:
+        """The undeformed tissue at first touch."""
+        return self._start.contact
+
+    @property
+    def rejected(self) -> int:
+        """Steps that were taken back."""
+        return self._path.rejected
+
+    def states(self, adapted: Adapted | None = None) -> Iterator[tuple[TimedState, bool]]:
+        """Accepted states, each with whether it is the touch of the inner sensor, at which the run may end.
+
+        Raises
+        ------
+        ConvergenceError
+            If the path cannot be followed to its end.
+        """
+        event = None
+        if self._setup.stops_at_touch and self._setup.recess is not None:
+            recess, radius = self._setup.recess, self._setup.body.inner_radius
+            event = TimeEvent[TimedState](lambda state: self._model.rise(state.contact, radius)[0] - recess)
+        yield from self._path.states(event)

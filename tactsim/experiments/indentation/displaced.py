@@ -1,0 +1,92 @@
+"""What an indentation without regard to time is given: the stop and the steps of its displacement."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
+from tactsim.fem.loading import StepControl
+from tactsim.fem.progress import check_steps
+from tactsim.results.result import Status
+from tactsim.units import FrozenModel, Length, format_quantity
+
+LEAST_STEP = 1e-9
+"""First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""
+
+
+class StepSettings(FrozenModel):
+    """Lengths of the load steps, as displacements of the body."""
+
+    first: Annotated[Length, Field(gt=0)] | None = None
+    """First step; by default a thousandth of the body's radius."""
+    largest: Annotated[Length, Field(gt=0)] | None = None
+    """Largest step; by default a twentieth of the body's radius."""
+    smallest: Annotated[Length, Field(gt=0)] | None = None
+    """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
+
+
+class DisplacedSetup(IndentationSetup):
+    """A rigid body pressed into a specimen by a displacement, without regard to time."""
+
+    stop: Literal["threshold", "displacement"] = "threshold"
+    """Whether the run ends at the threshold, or goes on to the displacement with the inner sensor in contact."""
+    displacement: Annotated[Length, Field(gt=0)]
+    """Displacement of the body from first touch; the most that is tried when the run stops at the threshold."""
+    steps: StepSettings = StepSettings()
+    """Length of the load steps."""
+
+    @property
+    def depth(self) -> float:
+        """The displacement in m."""
+        return self.displacement
+
+    @property
+    def prescribed(self) -> float:
+        """The displacement in m."""
+        return self.displacement
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.displacement >= self.specimen.thickness:
+            given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
+            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
+        if self.body.kind == "annulus" and self.recess is None:
+            raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
+        if self.body.kind != "annulus" and self.stop == "threshold":
+            raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
+        if any(material.relaxation is not None for material in self.specimen.materials):
+            raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
+        self._check_steps()
+        return self
+
+    def _check_steps(self) -> None:
+        control, way = self.control(), self.displacement
+        first, largest = control.first, control.largest
+        if first < LEAST_STEP * way:
+            given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * way, "m")
+            raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
+        check_steps(way / largest, f"steps.largest {format_quantity(largest, 'm')}")
+
+    def drive(self) -> Displaced:
+        """Load steps to the displacement."""
+        return Displaced(self.displacement, self.control())
+
+    @property
+    def stops_at_touch(self) -> bool:
+        """Whether the run ends at the threshold."""
+        return self.stop == "threshold"
+
+    def ending(self, *, touched: bool) -> tuple[Status, str]:
+        """Failed where the threshold was asked for and not reached."""
+        if self.stops_at_touch and not touched:
+            reached = format_quantity(self.displacement, "m")
+            return Status.FAILED, f"the threshold was not reached within the displacement of {reached}"
+        return Status.CONVERGED, f"{self.stop} reached"
+
+    def control(self) -> StepControl:
+        """Lengths of the load steps in m."""
+        first = self.steps.first or 1e-3 * self.contact_radius
+        largest = self.steps.largest or 0.05 * self.contact_radius
+        return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first)

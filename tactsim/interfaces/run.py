@@ -1,0 +1,166 @@
+"""How a run goes and ends: the one place that times it, limits it, and turns whatever ends it into a result.
+
+A kind of experiment gives a `Course`: steps that compute, one record for each that is accepted, and findings that are asked
+for once the steps have ended, for whatever reason.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, ClassVar, Protocol, Self
+
+from tactsim.deadline import check_time, time_limit
+from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
+from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+
+Progress = Callable[[StepRecord], None]
+
+NO_MEMORY = "the memory does not suffice: take larger elements, fewer taxels, steps or samples, or a machine with more of it"
+ACCEPTED_STEPS = "the accepted steps are kept, the run is incomplete"
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a run found, complete or not; fields as those of `Result`."""
+
+    reason: str
+    """Why a run that came to its end is what ``status`` says; not used if it ended before."""
+    steps: Iterable[StepRecord] = ()
+    """The history: one record for each row."""
+    quantities: dict[str, Quantity] = field(default_factory=dict)
+    assumptions: Iterable[str] = ()
+    warnings: Iterable[str] = ()
+    frames: Iterable[FieldFrame] = ()
+    details: dict[str, Any] = field(default_factory=dict)
+    status: Status = Status.CONVERGED
+    """Of a run that came to its end: converged, or failed at what it was for, such as a threshold that was not reached."""
+    timing: Mapping[str, float] = field(default_factory=dict)
+    """Times in s beside those that every run has."""
+    units: Mapping[str, str] | None = None
+    """Units of the history's values where they are not the ``history_units`` of the kind."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """A run that has begun.
+
+    Parameters
+    ----------
+    steps : computes; yields the record of every step that is accepted, and raises `Unfinished` if there is no way on
+    findings : gives what was accepted until now; called once, after the steps have ended for whatever reason
+    kept : what an interruption leaves, in words
+    setup_is_timed : whether the time that `Experiment.begin` took is reported beside the total
+    """
+
+    steps: Iterable[StepRecord]
+    findings: Callable[[], Findings]
+    kept: str = ACCEPTED_STEPS
+    setup_is_timed: bool = False
+
+    @classmethod
+    def computed(cls, findings: Findings) -> Self:
+        """The course of a kind that computes everything at once."""
+        return cls(findings.steps, partial(_same, findings))
+
+
+def _same(findings: Findings) -> Findings:
+    return findings
+
+
+class Runnable(Protocol):
+    """What can be run: an `Experiment`."""
+
+    history_units: ClassVar[dict[str, str]]
+
+    @property
+    def kind(self) -> str:
+        """Name of the kind of experiment."""
+
+    def begin(self) -> Course:
+        """See `Experiment.begin`."""
+
+
+def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
+    """What `Experiment.run` returns and raises."""
+    started = time.perf_counter()
+    try:
+        with time_limit(seconds):
+            course = experiment.begin()
+            setup = time.perf_counter() - started
+            early = _ended_early(course, progress)
+        findings = course.findings()
+    except MemoryError as error:
+        raise OutOfMemory(NO_MEMORY) from error
+    timing = dict(findings.timing)
+    if course.setup_is_timed:
+        timing["setup"] = setup
+    return _result(experiment, findings, early, timing | {"total": time.perf_counter() - started})
+
+
+def _ended_early(course: Course, progress: Progress | None) -> tuple[Status, str] | None:
+    """Reports every step as it is accepted; status and reason if the steps fail or are interrupted, None at their end."""
+    try:
+        for step in course.steps:
+            if progress is not None:
+                progress(step)
+            check_time()
+    except Unfinished as error:
+        return Status.FAILED, failure(error)
+    except MemoryError:
+        return Status.FAILED, NO_MEMORY
+    except KeyboardInterrupt:
+        return Status.INTERRUPTED, f"interrupted; {course.kept}"
+    return None
+
+
+def failure(error: Unfinished) -> str:
+    """The reason of a run that ended before its end."""
+    return f"stopped converging: {error}" if isinstance(error, ConvergenceError | Collapsed) else str(error)
+
+
+def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] | None, timing: Mapping[str, float]) -> Result:
+    status, reason = early or (findings.status, findings.reason)
+    return Result(
+        kind=experiment.kind,
+        status=status,
+        reason=reason,
+        quantities=findings.quantities,
+        assumptions=tuple(findings.assumptions),
+        warnings=tuple(findings.warnings),
+        timing=dict(timing),
+        steps=tuple(findings.steps),
+        units=dict(experiment.history_units if findings.units is None else findings.units),
+        frames=tuple(findings.frames),
+        details=findings.details,
+    )
+
+
+def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Result]:
+    """Yields the steps of an experiment that is part of another and returns its result; what ends it early ends the other.
+
+    Raises
+    ------
+    Unfinished
+        If it does not come to its end, or fails at what it is for.
+    """
+    name, course = experiment.kind.replace("_", " "), experiment.begin()
+    try:
+        yield from course.steps
+    except Unfinished as error:
+        raise Unfinished(f"the {name} {failure(error)}") from error
+    findings = course.findings()
+    if findings.status is not Status.CONVERGED:
+        raise Unfinished(f"the {name} {findings.reason}")
+    return _result(experiment, findings, None, {})
+
+
+@contextmanager
+def timed(timing: dict[str, float], name: str) -> Iterator[None]:
+    """Adds the time in s that its block took, under a name; nothing if the block is left by an error."""
+    started = time.perf_counter()
+    yield
+    timing[name] = time.perf_counter() - started

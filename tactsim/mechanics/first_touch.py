@@ -1,0 +1,30 @@
+"""Where a rigid body that moves straight on first touches a surface."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.interfaces import RigidBody
+
+Array = np.ndarray
+
+TOUCH = 1e-15
+"""Gap at touch over the size of what is touched."""
+MOST_APPROACHES = 1000
+"""Steps of the approach; each is as long as the gap, which shrinks fast unless the body misses the surface."""
+
+
+def first_touch(body: RigidBody, points: Array, *, begin: Array, direction: Array, size: float) -> Array | None:
+    """Place (d,) in m of a body's reference point at which it first touches points (d, n); None if it passes beside them.
+
+    It moves from ``begin`` (d,) in m, clear of the points, along the unit vector ``direction``; ``size`` in m is that of the
+    touched body.
+    """
+    travel = 0.0
+    for _ in range(MOST_APPROACHES):
+        place = begin + travel * direction
+        gap = float(body.signed_distance(points - place[:, None])[0].min())
+        if gap <= TOUCH * size:
+            return place
+        travel += gap
+    return None

@@ -1,0 +1,153 @@
+"""How a run ends: at its end, by a failure, without memory or time, interrupted, or before it began."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import ClassVar, Literal
+
+import pytest
+
+from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import NO_MEMORY, Course, Findings, run_within_another, timed
+from tactsim.registry import forget
+from tactsim.results.result import Quantity, Status, StepRecord, rows
+
+
+def raised(error: BaseException | None) -> None:
+    if error is not None:
+        raise error
+
+
+@pytest.fixture
+def made() -> Iterator[Callable[..., Experiment]]:
+    """Makes an experiment of two steps that ends by an error after them, or before it begins."""
+
+    class Scripted(Experiment):
+        """Counts to two."""
+
+        kind: Literal["scripted"] = "scripted"
+        history_units: ClassVar[dict[str, str]] = {"count": "1"}
+        after: ClassVar[BaseException | None] = None
+        before: ClassVar[BaseException | None] = None
+        status: ClassVar[Status] = Status.CONVERGED
+
+        def begin(self) -> Course:
+            raised(self.before)
+            steps: list[StepRecord] = []
+            return Course(self._counted(steps), lambda: self._findings(steps), "the counts are kept", setup_is_timed=True)
+
+        def _counted(self, steps: list[StepRecord]) -> Iterator[StepRecord]:
+            for record in rows(self.history_units, [[1.0, 2.0]]):
+                steps.append(record)
+                yield record
+            raised(self.after)
+
+        def _findings(self, steps: list[StepRecord]) -> Findings:
+            count = {"count": Quantity(len(steps), "1", "steps")}
+            return Findings("counted", steps, quantities=count, warnings=["w"], status=self.status, timing={"extra": 1.0})
+
+        @classmethod
+        def example(cls) -> Scripted:
+            return cls()
+
+    def make(
+        after: BaseException | None = None, before: BaseException | None = None, status: Status = Status.CONVERGED
+    ) -> Experiment:
+        Scripted.after, Scripted.before, Scripted.status = after, before, status
+        return Scripted()
+
+    yield make
+    forget(Scripted)
+
+
+def test_a_run_to_its_end(made: Callable[..., Experiment]) -> None:
+    seen: list[StepRecord] = []
+    result = made().run(seen.append)
+    assert (result.kind, result.status, result.reason) == ("scripted", Status.CONVERGED, "counted")
+    assert list(result.steps) == seen
+    assert [step.values["count"] for step in seen] == [1.0, 2.0]
+    assert (result.units, result.warnings, result.assumptions, result.frames) == ({"count": "1"}, ("w",), (), ())
+    assert list(result.timing) == ["extra", "setup", "total"]
+    assert 0 <= result.timing["setup"] <= result.timing["total"]
+    failed = made(status=Status.FAILED).run()
+    assert (failed.status, failed.reason) == (Status.FAILED, "counted")
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "reason"),
+    [
+        (ConvergenceError("no luck"), Status.FAILED, "stopped converging: no luck"),
+        (Collapsed("flat"), Status.FAILED, "stopped converging: flat"),
+        (OutOfTime("took longer than the 5 s that it was given"), Status.FAILED, "took longer than the 5 s that it was given"),
+        (OutOfMemory("the memory does not suffice for a factor"), Status.FAILED, "the memory does not suffice for a factor"),
+        (MemoryError(), Status.FAILED, NO_MEMORY),
+        (KeyboardInterrupt(), Status.INTERRUPTED, "interrupted; the counts are kept"),
+    ],
+)
+def test_what_was_accepted_before_an_early_end_is_kept(
+    made: Callable[..., Experiment], error: BaseException, status: Status, reason: str
+) -> None:
+    result = made(after=error).run()
+    assert (result.status, result.reason, len(result.steps)) == (status, reason, 2)
+    assert result.quantities["count"].value == 2
+
+
+def test_an_interruption_by_whoever_watches_keeps_the_step(made: Callable[..., Experiment]) -> None:
+    def stop(step: StepRecord) -> None:
+        raise KeyboardInterrupt
+
+    result = made().run(stop)
+    assert (result.status, len(result.steps)) == (Status.INTERRUPTED, 1)
+
+
+@pytest.mark.parametrize(
+    ("error", "seen"),
+    [
+        (InputError("no such file"), InputError),
+        (OutOfTime("too late"), OutOfTime),
+        (MemoryError(), OutOfMemory),
+        (KeyboardInterrupt(), KeyboardInterrupt),
+    ],
+)
+def test_a_run_that_cannot_begin_raises(made: Callable[..., Experiment], error: BaseException, seen: type[BaseException]) -> None:
+    with pytest.raises(seen):
+        made(before=error).run()
+
+
+def test_other_errors_of_a_step_are_not_hidden(made: Callable[..., Experiment]) -> None:
+    with pytest.raises(InputError, match="a wrong number"):
+        made(after=InputError("a wrong number")).run()
+
+
+def drained(experiment: Experiment) -> tuple[list[StepRecord], object]:
+    """Steps and result of an experiment within another."""
+    steps: list[StepRecord] = []
+
+    def outer() -> Iterator[StepRecord]:
+        found.append((yield from run_within_another(experiment)))
+
+    found: list[object] = []
+    steps.extend(outer())
+    return steps, found[0]
+
+
+def test_an_experiment_within_another(made: Callable[..., Experiment]) -> None:
+    steps, result = drained(made())
+    assert len(steps) == 2
+    assert result.quantities["count"].value == 2  # type: ignore[attr-defined]
+    with pytest.raises(Unfinished, match="the scripted stopped converging: no luck"):
+        drained(made(after=ConvergenceError("no luck")))
+    with pytest.raises(Unfinished, match="the scripted counted"):
+        drained(made(status=Status.FAILED))
+    with pytest.raises(KeyboardInterrupt):
+        drained(made(after=KeyboardInterrupt()))
+
+
+def test_times_of_parts() -> None:
+    timing: dict[str, float] = {}
+    with timed(timing, "part"):
+        pass
+    with pytest.raises(ValueError, match="lost"), timed(timing, "other"):
+        raise ValueError("lost")
+    assert list(timing) == ["part"]
