@@ -2,38 +2,20 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
-from inspect import isabstract
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tactsim.registry import register
+from tactsim.registry import Kind as Kind
 from tactsim.relaxation import Relaxation
-from tactsim.units import FrozenModel
 
 if TYPE_CHECKING:
     from tactsim.results.result import Result, StepRecord
 
 Array = np.ndarray
 Progress = Callable[["StepRecord"], None]
-
-
-class Kind(FrozenModel, ABC):
-    """A base of what is registered by its ``kind``."""
-
-    package: ClassVar[str]
-    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
-    modules: ClassVar[str] = ".*"
-    """Pattern of the names, within that package, of the modules that define kinds."""
-    kind: str
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        super().__pydantic_init_subclass__(**options)
-        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
-            register(cls)
 
 
 class CaseKind(Kind):
@@ -123,7 +105,7 @@ class Experiment(CaseKind):
     """What a case can ask for: receives its parts, returns a result."""
 
     package: ClassVar[str] = "tactsim.experiments"
-    modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$)\w+"
+    modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$|scene$)\w+"
 
     history_units: ClassVar[dict[str, str]]
     """Unit of every value that an accepted step records."""

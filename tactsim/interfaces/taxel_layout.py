@@ -10,6 +10,8 @@ from pydantic import Field, model_validator
 from tactsim.units import FrozenModel, Length, format_quantity
 
 Array = np.ndarray
+JAWS = ("upper", "lower")
+"""Names of the jaws of a grasp, in the order of the first axis of every array of forces or readings."""
 PositiveLength = Annotated[Length, Field(gt=0)]
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.taxel_layout import JAWS as JAWS
 
 Array = np.ndarray
 
-JAWS = ("upper", "lower")
-"""Order of the first axis of every array of readings."""
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
 

@@ -134,7 +134,6 @@ class ClosedForm(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={"body": {"kind": "annulus"}, "control": self.loading.control},
         )
 
     def _times(self) -> Array:

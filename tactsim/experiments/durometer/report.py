@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
+from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
@@ -132,5 +133,5 @@ class DurometerRecord(IndentationRecord):
             warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")
         return warnings
 
-    def _details(self) -> dict[str, Any]:
-        return super()._details() | {"scale": self.scale.model_dump(mode="json"), "youngs_modulus": self.youngs_modulus}
+    def _scene(self) -> DurometerScene:
+        return DurometerScene(**self._pressed(), scale=self.scale, youngs_modulus=self.youngs_modulus)

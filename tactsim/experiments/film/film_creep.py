@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import Unfinished
 from tactsim.experiments.collecting import failure
+from tactsim.experiments.film.scene import CreepCurve, FilmCreepScene
 from tactsim.identification.film_creep import (
     COEFFICIENTS,
     CoefficientLine,
@@ -125,7 +126,7 @@ class FilmCreep(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={"tests": [_curve(test) for test in tests], "area": self.data.area},
+            scene=FilmCreepScene(tests=tuple(map(_curve, tests)), area=self.data.area),
         )
 
     def _assumptions(self) -> tuple[str, ...]:
@@ -161,7 +162,7 @@ def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
     return found
 
 
-def _curve(test: CreepTest, most: int = 400) -> dict[str, Any]:
+def _curve(test: CreepTest, most: int = 400) -> CreepCurve:
     """A test thinned for the figure."""
     kept = np.unique(np.linspace(0, len(test.time) - 1, most).astype(int))
-    return {"force": test.force, "time": test.time[kept].tolist(), "strain": test.strain[kept].tolist()}
+    return CreepCurve(force=test.force, time=test.time[kept].tolist(), strain=test.strain[kept].tolist())

@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.film import HOLM, Film
@@ -76,7 +77,7 @@ class FilmTest(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details=self._details(forces),
+            scene=self._scene(forces),
         )
 
     def _readings(self, times: Array, conductance: Array) -> dict[str, Quantity]:
@@ -106,14 +107,14 @@ class FilmTest(Experiment):
             found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
         return found
 
-    def _details(self, forces: Array) -> dict[str, object]:
+    def _scene(self, forces: Array) -> FilmTestScene:
         composite = self.film.composite
         felt = forces * self.film.magnification
-        return {
-            "reading_time": self.reading_time,
-            "coefficients": {
+        return FilmTestScene(
+            reading_time=self.reading_time,
+            coefficients={
                 "instantaneous": composite.instantaneous.at(felt).tolist(),
                 "delayed": composite.delayed.at(felt).tolist(),
                 "viscosity": composite.viscosity.at(felt).tolist(),
             },
-        }
+        )

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
+from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
 from tactsim.interfaces import Array, Experiment, Progress
 from tactsim.results.result import Quantity, Result, Status, StepRecord
@@ -82,7 +83,7 @@ class ForceCalibration(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=steps,
             units=self.history_units,
-            details={"full_scale": float(fit.full_scale.max()), "confidence": self.confidence, "sensors": fit.slope.size},
+            scene=CalibrationScene(full_scale=float(fit.full_scale.max()), confidence=self.confidence),
         )
 
     def _steps(self, force: Array, voltage: Array, fit: CalibrationFit) -> Iterator[StepRecord]:

@@ -90,7 +90,6 @@ class SensorResponse(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={"ranges": list(self.ranges), "seed": self.seed},
         )
 
     def _times(self) -> Array:

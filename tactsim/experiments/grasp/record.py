@@ -13,18 +13,21 @@ from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.overhang import overhang_warnings
 from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
 from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
+from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely, unstable
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_model import SIDES, GraspModel
+from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import SourcedBlock
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.ellipticity import elliptic_in
 from tactsim.mechanics.history_path import TimedPath, TimedState
 from tactsim.mechanics.penetration_effect import bonded_block_rate
 from tactsim.mechanics.solid_fields import solid_frame
+from tactsim.mechanics.solver_report import solver_report
 from tactsim.mechanics.success import judged
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading
@@ -43,8 +46,8 @@ class GraspRecord:
         "time": "s",
         "displacement": "m",
         "reaction_force": "N",
-        **{f"jaw_force_{side}_{axis}": "N" for side in SIDES for axis in AXES},
-        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in SIDES},
+        **{f"jaw_force_{side}_{axis}": "N" for side in JAWS for axis in AXES},
+        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in JAWS},
         "max_penetration": "m",
         "min_volume_ratio": "1",
         "unstable_volume_fraction": "1",
@@ -52,7 +55,7 @@ class GraspRecord:
         **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
         **{
             f"taxel_force_{side}_{row}_{column}": "N"
-            for side in SIDES
+            for side in JAWS
             for row in range(1, MOST_COLUMNS + 1)
             for column in range(1, MOST_COLUMNS + 1)
         },
@@ -118,7 +121,7 @@ class GraspRecord:
         readout, layout = self.experiment.readout, self.experiment.matrix
         if readout is not None and self.steps:
             times = np.array([step.values["time"] for step in self.steps])
-            forces = np.array([[reading[side].taxels.taxels[2] for side in SIDES] for reading in self.readings])
+            forces = np.array([[reading[side].taxels.taxels[2] for side in JAWS] for reading in self.readings])
             try:
                 self._read = readout.read(times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
@@ -138,7 +141,7 @@ class GraspRecord:
             steps=tuple(self.steps),
             units=self.UNITS,
             frames=self._frames(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
@@ -157,7 +160,7 @@ class GraspRecord:
         experiment, block = self.experiment, self._sourced.block
         size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
         told = [f"block of {size} (the thesis prints no size)"]
-        for side in SIDES:
+        for side in JAWS:
             jaw = experiment.jaw(side)
             width, depth = format_quantity(jaw.width, "m"), format_quantity(jaw.depth, "m")
             edges = format_quantity(jaw.fillet, "m")
@@ -211,39 +214,35 @@ class GraspRecord:
             for state in kept
         )
 
-    def _details(self) -> dict[str, Any]:
-        block, experiment = self._sourced.block, self.experiment
-        return {
-            "unknowns": self.model.space.size,
-            "elements": len(self.model.space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self._path.rejected,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "mesh": {
-                "content": self._sourced.content,
-                "origin": self._sourced.origin,
-                "least_quality": block.quality.minimum,
-                "mean_quality": block.quality.mean,
-                "least_curvature": block.quality.curvature,
-                "straightened_edges": block.quality.straightened,
-                "volume_errors": block.volume_errors.tolist(),
-                "regions": list(block.region_names),
-            },
-            "block_size": list(experiment.block.size),
-            "inclusions": [shape.model_dump(mode="json") for shape in experiment.shapes],
-            "unlike_tissue": [one.unlike(experiment.block.tissue) for one in experiment.inclusions],
-            "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in SIDES},
-            "jaw_places": self._places(),
-            "matrix": experiment.matrix.model_dump(mode="json"),
-            "control": experiment.loading.control,
-        }
+    def _scene(self) -> SimulatedGrasp:
+        block, experiment, solver = self._sourced.block, self.experiment, self.model.problem
+        tissue = experiment.block.tissue
+        return SimulatedGrasp(
+            block_size=experiment.block.size,
+            inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in experiment.inclusions),
+            jaws={side: experiment.jaw(side) for side in JAWS},
+            jaw_places=self._places(),
+            matrix=experiment.matrix,
+            solver=solver_report(solver, self.steps, rejected_steps=self._path.rejected),
+            mesh=MeshReport(
+                content=self._sourced.content,
+                origin=self._sourced.origin,
+                least_quality=block.quality.minimum,
+                mean_quality=block.quality.mean,
+                least_curvature=block.quality.curvature,
+                straightened_edges=block.quality.straightened,
+                volume_errors=block.volume_errors.tolist(),
+                regions=block.region_names,
+            ),
+            control=experiment.loading.control,
+        )
 
-    def _places(self) -> dict[str, list[float]]:
+    def _places(self) -> dict[Any, Any]:
         """Where the middle of each jaw's face stands in m at the last accepted step."""
         last = self._kept.get("last")
         if last is None:
-            return {side: self.model.touching_place(side).tolist() for side in SIDES}
-        return {side: contact.place.tolist() for side, contact in zip(SIDES, last.contact.contacts, strict=True)}
+            return {side: self.model.touching_place(side).tolist() for side in JAWS}
+        return {side: contact.place.tolist() for side, contact in zip(JAWS, last.contact.contacts, strict=True)}
 
 
 def _stiffest(experiment: GraspSetup) -> float:

@@ -15,10 +15,12 @@ from tactsim.experiments.indentation.contact_record import (
     section_frame,
     tissue_rise,
 )
+from tactsim.experiments.indentation.scene import IndentationScene, PressedBody
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.section_model import IndentationModel
+from tactsim.mechanics.solver_report import solver_report
 from tactsim.mechanics.success import judged
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
@@ -119,7 +121,7 @@ class IndentationRecord:
             steps=tuple(self.steps),
             units=self.UNITS,
             frames=self._frames(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
@@ -162,16 +164,16 @@ class IndentationRecord:
             )
         return warnings
 
-    def _details(self) -> dict[str, Any]:
-        space = self.model.space
+    def _scene(self) -> PressedBody:
+        return IndentationScene(**self._pressed())
+
+    def _pressed(self) -> dict[str, Any]:
+        """What every scene of a pressed body has, by name."""
         return {
-            "unknowns": space.size,
-            "elements": len(space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self.rejected_steps,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "mesh_adaptations": self.adaptations,
+            "body": self.experiment.body,
             "starting_height": self.starting_height,
-            "body": self.experiment.body.model_dump(mode="json"),
             "recess": self.experiment.recess,
+            "solver": solver_report(
+                self.model.problem, self.steps, rejected_steps=self.rejected_steps, mesh_adaptations=self.adaptations
+            ),
         }

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import time
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from tactsim.experiments.indentation.contact_record import contact_assumptions, contact_oddities
+from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.experiments.indentation.setup_3d import SpaceIndentationSetup
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.ellipticity import elliptic_in
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.solid_model import SpaceIndentationModel
+from tactsim.mechanics.solver_report import solver_report
 from tactsim.mechanics.success import judged
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -127,7 +129,7 @@ class SpaceIndentationRecord:
             steps=tuple(self.steps),
             units=self.UNITS,
             frames=tuple(solid_frame(self.model.mesh, self.model.body, state, time=state.load) for state in kept),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self, state: ContactEquilibrium) -> dict[str, Quantity]:
@@ -167,17 +169,13 @@ class SpaceIndentationRecord:
             "there the answer depends on the mesh; take a stable material set",
         ]
 
-    def _details(self) -> dict[str, Any]:
-        space, experiment = self.model.space, self.experiment
-        return {
-            "unknowns": space.size,
-            "elements": len(space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self.rejected_steps,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "symmetry": experiment.symmetry.name.lower(),
-            "starting_height": self.starting_height,
-            "body": experiment.posed_body.model_dump(mode="json"),
-            "offset": experiment.offset,
-            "recess": experiment.recess,
-        }
+    def _scene(self) -> Indentation3dScene:
+        experiment = self.experiment
+        return Indentation3dScene(
+            body=experiment.posed_body,
+            starting_height=self.starting_height,
+            recess=experiment.recess,
+            solver=solver_report(self.model.problem, self.steps, rejected_steps=self.rejected_steps),
+            symmetry=experiment.symmetry.name.lower(),
+            offset=experiment.offset,
+        )

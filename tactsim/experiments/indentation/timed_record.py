@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,12 +17,14 @@ from tactsim.experiments.indentation.contact_record import (
     section_frame,
     tissue_rise,
 )
+from tactsim.experiments.indentation.scene import TimedIndentationScene
 from tactsim.experiments.indentation.timed_path import TimedIndentationPath
 from tactsim.experiments.indentation.timed_setup import TimedIndentationSetup
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.section_model import IndentationModel
+from tactsim.mechanics.solver_report import solver_report
 from tactsim.mechanics.success import judged
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
@@ -115,7 +117,7 @@ class TimedRecord:
             steps=tuple(self.steps),
             units=self.UNITS,
             frames=self._frames(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
@@ -183,19 +185,16 @@ class TimedRecord:
             for state in self._kept
         )
 
-    def _details(self) -> dict[str, Any]:
-        return {
-            "unknowns": self.model.space.size,
-            "elements": len(self.model.space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self._path.rejected,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-            "starting_height": self._path.height,
-            "body": self.experiment.body.model_dump(mode="json"),
-            "recess": self.experiment.recess,
-            "control": self.experiment.loading.control,
-            "compare": self.experiment.compare,
-        }
+    def _scene(self) -> TimedIndentationScene:
+        experiment = self.experiment
+        return TimedIndentationScene(
+            body=experiment.body,
+            starting_height=self._path.height,
+            recess=experiment.recess,
+            solver=solver_report(self.model.problem, self.steps, rejected_steps=self._path.rejected),
+            control=experiment.loading.control,
+            compare=experiment.compare,
+        )
 
 
 def closed_form_of(experiment: TimedIndentationSetup) -> ViscoelasticAnnulus | None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
+from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Array
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.low_pass import LowPass
@@ -66,7 +67,7 @@ class TrialReport:
         self.steps: tuple[StepRecord, ...] = ()
         self._approaches: list[Approach] = []
         self._cells: list[dict[str, float | None]] = []
-        self._capture: dict[str, Any] = {}
+        self._capture: ThresholdCapture | None = None
 
     def begin(self, approach: Approach) -> None:
         """A new speed."""
@@ -113,19 +114,19 @@ class TrialReport:
         fired = int(state.index[0]) + len(large) - len(armed) if state.triggered[0] else -1
         self.steps = tuple(_rows(columns, fired))
         threshold = approach.threshold_force
-        self._capture = {
-            "touch_time": touch,
-            "threshold_force": threshold,
-            "armed_time": float(armed[0]),
-            "trigger_level": float(trigger.rest + trigger.level),
-            "speed": approach.speed,
-            "noise": noise.white,
-            "cutoff": low_pass.cutoff,
-            "large_bears": sensor.large_bears,
-            "capture": sensor.capture,
-        }
-        if fired >= 0:
-            self._capture |= {"trigger_time": float(recording.time[fired]), "captured_force": float(state.force[0])}
+        self._capture = ThresholdCapture(
+            touch_time=touch,
+            threshold_force=threshold,
+            armed_time=float(armed[0]),
+            trigger_level=float(trigger.rest + trigger.level),
+            speed=approach.speed,
+            noise=noise.white,
+            cutoff=low_pass.cutoff,
+            large_bears=sensor.large_bears,
+            capture=sensor.capture,
+            trigger_time=float(recording.time[fired]) if fired >= 0 else None,
+            captured_force=float(state.force[0]) if fired >= 0 else None,
+        )
 
     def result(self, status: Status, reason: str) -> Result:
         """The result with everything that was sampled."""
@@ -140,13 +141,13 @@ class TrialReport:
             timing={"total": time.perf_counter() - self._begin},
             steps=self.steps,
             units=SIGNAL_UNITS,
-            details={
-                "speeds": list(self._experiment.speeds),
-                "noises": list(self._experiment.noises),
-                "cutoffs": list(self._experiment.cutoffs),
-                "complete": complete,
-                "capture": self._capture,
-            },
+            scene=ThresholdTrialScene(
+                speeds=self._experiment.speeds,
+                noises=self._experiment.noises,
+                cutoffs=self._experiment.cutoffs,
+                complete=complete,
+                capture=self._capture,
+            ),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
