@@ -26,6 +26,22 @@ def silent_taxels(readings: Array) -> Array:
     return (np.asarray(readings) == 0) & np.logical_and.reduce([part > 0 for part in beside]) & (np.prod(readings.shape[1:]) > 1)
 
 
+def rising(difference: Array) -> tuple[Array, bool]:
+    """A change of readings (jaw, row, column) in N, positive where it is strongest, and whether the strongest one is a loss.
+
+    The strongest change is that of the sum of both jaws; it is a loss over something softer than the tissue.
+    """
+    sums = difference.sum(axis=0)
+    softer = bool(-sums.min() > sums.max())
+    return (-difference if softer else difference), softer
+
+
+def shown_change(difference: Array) -> tuple[Array, str]:
+    """What views draw of the change from a reference, (jaw, row, column) in N, and what it is in words."""
+    signal, softer = rising(difference)
+    return signal, f"force {'below' if softer else 'above'} that of the reference"
+
+
 def named_taxels(chosen: Array) -> str:
     """Those of a mask (jaw, row, column), such as "U2,1, L3,3 and 4 more"."""
     names = [taxel_name(*map(int, place)).split(" ")[0] for place in np.argwhere(chosen)]

@@ -14,8 +14,8 @@ class FilmTestScene(Scene):
     kind: Literal["film_test"] = "film_test"
     reading_time: float
     """Time of the reading in s after the force began."""
-    coefficients: dict[Literal["instantaneous", "delayed", "viscosity"], tuple[float, ...]]
-    """Moduli in Pa and viscosity in Pa s at every force."""
+    coefficients: dict[str, tuple[float, ...]]
+    """``instantaneous`` and ``delayed`` modulus in Pa and ``viscosity`` in Pa s, at every force."""
 
 
 class CreepCurve(FrozenModel):

@@ -6,20 +6,18 @@ import time
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import ValidationError
 
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.taxel_voltages import SIDES, readout_assumptions, readout_quantities, readout_warnings
+from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
+from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment, Progress
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 
 Array = np.ndarray
-KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
-"""Details of the grasp that figures of the readings need."""
 
 
 class MatrixReadoutRun(Experiment):
@@ -32,7 +30,7 @@ class MatrixReadoutRun(Experiment):
     """Sensors and electronics."""
 
     history_units: ClassVar[dict[str, str]] = {"time": "s"} | {
-        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in SIDES
+        f"{name}_{side}": unit for name, unit in (("largest_voltage", "V"), ("total_read_force", "N")) for side in JAWS
     }
 
     @classmethod
@@ -46,26 +44,26 @@ class MatrixReadoutRun(Experiment):
         stored = read_result(self.grasp, fields=False).result
         try:
             times, forces = _history(stored, self.grasp)
-            area = TaxelLayout.model_validate(stored.details["matrix"]).area
-        except (KeyError, ValidationError) as error:
+            scene = stored.scene_as(GraspScene)
+        except (KeyError, StorageError) as error:
             told = f"{self.grasp}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again"
             raise StorageError(told) from None
-        reading = self.readout.read(times, forces, area)
+        reading = self.readout.read(times, forces, scene.matrix.area)
         steps = _steps(reading, self.history_units)
         for step in steps:
             progress(step)
-        true = {name: stored.quantities[name] for side in SIDES for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
+        true = {name: stored.quantities[name] for side in JAWS for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
         return Result(
             kind=self.kind,
             status=Status.CONVERGED,
             reason="end of the grasp",
             quantities=readout_quantities(reading) | true,
-            assumptions=readout_assumptions(self.readout, area),
-            warnings=readout_warnings(self.readout, reading, area) + _unfinished(stored),
+            assumptions=readout_assumptions(self.readout, scene.matrix.area),
+            warnings=readout_warnings(self.readout, reading, scene.matrix.area) + _unfinished(stored),
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={name: stored.details[name] for name in KEPT if name in stored.details},
+            scene=ReadGrasp.of(scene),
         )
 
 
@@ -73,13 +71,13 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     """Times (n,) in s and forces (n, jaw, row, column) in N of a stored grasp."""
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
-    names: Any = [f"taxel_force_{side}" for side in SIDES]
+    names: Any = [f"taxel_force_{side}" for side in JAWS]
     if len(stored.steps) > 1:
-        times = np.asarray(stored.quantities["time_history"].value, dtype=float)
-        forces = [np.asarray(stored.quantities[f"{name}_history"].value, dtype=float) for name in names]
+        times = stored.quantities["time_history"].array
+        forces = [stored.quantities[f"{name}_history"].array for name in names]
     else:
         times = np.array([stored.quantities["time"].value], dtype=float)
-        forces = [np.asarray(stored.quantities[name].value, dtype=float)[None] for name in names]
+        forces = [stored.quantities[name].array[None] for name in names]
     return times, np.stack(forces, axis=1)
 
 

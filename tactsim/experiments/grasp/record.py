@@ -237,7 +237,7 @@ class GraspRecord:
             control=experiment.loading.control,
         )
 
-    def _places(self) -> dict[Any, Any]:
+    def _places(self) -> dict[str, Any]:
         """Where the middle of each jaw's face stands in m at the last accepted step."""
         last = self._kept.get("last")
         if last is None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator
 
 from tactsim.contact.jaw import Jaw
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
@@ -15,8 +15,16 @@ from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import FrozenModel
 
 Array = np.ndarray
-Side = Literal["upper", "lower"]
 Point = tuple[float, float, float]
+
+
+def _of_both_jaws(value: dict[str, Any]) -> dict[str, Any]:
+    if value.keys() != set(JAWS):
+        raise ValueError(f"an entry for each of {', '.join(sorted(value))}; needed: for each of {', '.join(JAWS)}")
+    return value
+
+
+BothJaws = AfterValidator(_of_both_jaws)
 
 
 class EmbeddedShape(FrozenModel):
@@ -35,9 +43,9 @@ class GraspScene(Scene):
     """Along x, y and z in m."""
     inclusions: tuple[EmbeddedShape, ...]
     """In the order of the case."""
-    jaws: Annotated[dict[Side, Jaw], Field(min_length=len(JAWS))]
+    jaws: Annotated[dict[str, Jaw], BothJaws]
     """By side."""
-    jaw_places: Annotated[dict[Side, Point], Field(min_length=len(JAWS))]
+    jaw_places: Annotated[dict[str, Point], BothJaws]
     """Place in m of the middle of each jaw's face."""
     matrix: TaxelLayout
     """Taxels on each jaw."""
@@ -51,6 +59,10 @@ class GraspScene(Scene):
     def places(self) -> Array:
         """Place (2, 3) in m of the middle of each jaw's face, the upper jaw first."""
         return np.array([self.jaw_places[side] for side in JAWS])
+
+    def place(self, side: str) -> Array:
+        """Place (3,) in m of the middle of a jaw's face."""
+        return self.places[JAWS.index(side)]
 
     @property
     def middle(self) -> Array:

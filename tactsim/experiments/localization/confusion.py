@@ -10,13 +10,14 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
 from tactsim.experiments.localization.source import (
     Source,
     folder_words,
     readings_of,
     stored_grasp,
-    true_inclusions,
     with_reference,
 )
 from tactsim.interfaces import Experiment, Progress
@@ -63,7 +64,7 @@ class Confusion(Experiment):
         """One step per grasp, with the share of its draws that were told right."""
         begin = time.perf_counter()
         readings = self._readings()
-        table, steps, probabilities = ConfusionTable(), [], []
+        table, steps, judged = ConfusionTable(), [], []
         for number, (name, true, one) in enumerate(readings):
             sub, told = ConfusionTable(), []
             for draw in range(self.draws):
@@ -71,7 +72,7 @@ class Confusion(Experiment):
                 for counted in (table, sub):
                     counted.add(true, estimated_class(estimate))
                 told.append(estimate.classes)
-            probabilities.append({"grasp": name, "true": true, "classes": told})
+            judged.append(JudgedGrasp(grasp=name, true=true, classes=tuple(told)))
             steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(sub.share_right or 0.0)}))
             progress(steps[-1])
         return Result(
@@ -83,7 +84,7 @@ class Confusion(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={"classes": list(CLASSES), "grasps": probabilities, "estimator": self.estimator.kind},
+            scene=ConfusionScene(classes=CLASSES, grasps=tuple(judged), estimator=self.estimator.kind),
         )
 
     def _readings(self) -> list[tuple[str, str, Readings]]:
@@ -93,7 +94,7 @@ class Confusion(Experiment):
         found = []
         for folder in self.grasps:
             stored = stored_grasp(folder)
-            kinds = [shape.kind for shape in true_inclusions(stored.details)]
+            kinds = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
             true = class_of(kinds)
             if true is None:
                 raise InputError(

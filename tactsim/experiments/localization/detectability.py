@@ -12,6 +12,7 @@ from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
 from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
+from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Experiment, Progress
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import ROUNDING_NOISE
@@ -103,7 +104,9 @@ class Detectability(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=tuple(steps),
             units=self.history_units,
-            details={"probability": self.probability, "false_alarms": self.false_alarms, "noise": self.noise, "side": self.side},
+            scene=DetectabilityScene(
+                probability=self.probability, false_alarms=self.false_alarms, noise=self.noise, side=self.side
+            ),
         )
 
     def layout(self, count: int) -> TaxelLayout:

@@ -10,21 +10,21 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.scene import GraspScene, grasp_fields
 from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.experiments.localization.source import (
-    SIDES,
     Source,
     away_from_truth,
     folder_words,
     readings_of,
     reference_notes,
     stored_grasp,
-    true_inclusions,
     true_places,
     with_reference,
 )
 from tactsim.interfaces import Experiment, Progress
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
@@ -34,8 +34,6 @@ from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import Force, format_quantity
 
 Array = np.ndarray
-KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
-"""Details of the grasp that the figures need."""
 Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 
@@ -85,7 +83,8 @@ class Localization(Experiment):
         estimate = self.estimator.estimate(readings)
         step = StepRecord(1, 0, 0.0, dict(zip(self.history_units, map(float, readings.filled.sum(axis=(1, 2))), strict=True)))
         progress(step)
-        true = [true_places(shape, readings.block_size) for shape in true_inclusions(stored.details)]
+        scene = stored.scene_as(GraspScene)
+        true = [true_places(shape, readings.block_size) for shape in scene.true_inclusions]
         return Result(
             kind=self.kind,
             status=Status.CONVERGED,
@@ -96,27 +95,18 @@ class Localization(Experiment):
             timing={"total": time.perf_counter() - begin},
             steps=(step,),
             units=self.history_units,
-            details={name: stored.details[name] for name in KEPT if name in stored.details}
-            | {
-                "estimates": [
-                    {
-                        "kind": found.kind,
-                        "center": list(found.center),
-                        "radius": found.radius,
-                        "line": found.line,
-                        "region": None if found.region is None else found.region.shadows(),
-                    }
-                    for found in estimate.inclusions
-                ],
-                "estimator": self.estimator.kind,
-                "noise": self.noise,
-                "valid": None if readings.valid is None else readings.valid.tolist(),
-                "words": [told(found) for found in estimate.inclusions],
-            },
+            scene=LocalizedGrasp(
+                **grasp_fields(scene),
+                estimates=tuple(map(EstimatedShape.of, estimate.inclusions)),
+                estimator=self.estimator.kind,
+                noise=self.noise,
+                valid=None if readings.valid is None else readings.valid.tolist(),
+                words=tuple(map(told, estimate.inclusions)),
+            ),
         )
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:
-        dead = self._dead(TaxelLayout.model_validate(stored.details["matrix"]))
+        dead = self._dead(stored.scene_as(GraspScene).matrix)
         readings = readings_of(stored, self.readings, noise=self.noise, dead=dead)
         if self.reference is None or plain is None:
             return readings
@@ -124,13 +114,13 @@ class Localization(Experiment):
         return replace(readings, response=stored_response(self.reference)) if self.estimator.needs_response else readings
 
     def _dead(self, layout: TaxelLayout) -> Array:
-        dead = np.zeros((len(SIDES), layout.rows, layout.columns), bool)
+        dead = np.zeros((len(JAWS), layout.rows, layout.columns), bool)
         for side, row, column in self.dead:
             if row > layout.rows or column > layout.columns:
                 raise InputError(
                     f"dead: taxel {side}, {row}, {column} of a matrix of {layout.rows} rows and {layout.columns} columns"
                 )
-            dead[SIDES.index(side), row - 1, column - 1] = True
+            dead[JAWS.index(side), row - 1, column - 1] = True
         return dead
 
     def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
@@ -142,12 +132,12 @@ class Localization(Experiment):
         silent = silent_taxels(readings.filled)
         if silent.any():
             found.append(f"{silent_words(silent)}; name dead taxels by the key dead")
-        return found if plain is None else [*found, *reference_notes(true_inclusions(plain.details))]
+        return found if plain is None else [*found, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 
 def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:
     found = {}
-    for jaw, side in enumerate(SIDES):
+    for jaw, side in enumerate(JAWS):
         of = f"of the {side} jaw; [row][column], row 1 nearest the front, column 1 the smallest x"
         found[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
         if readings.difference is not None:

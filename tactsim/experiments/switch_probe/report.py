@@ -30,7 +30,7 @@ HISTORY_UNITS = {
     **{f"read_switch_force_{number}": "N" for number in range(1, COUNT + 1)},
 }
 POINTS = 100
-"""Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the details hold every closing."""
+"""Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the scene holds every closing."""
 
 
 SUNK = 0.05
