@@ -10,8 +10,16 @@ from pydantic import Field, model_validator
 
 from tactsim.errors import InvalidQuantity, UnknownName
 from tactsim.interfaces import Experiment, Progress
-from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results import FieldFrame, Quantity, Result, Scene, Status, StepRecord
 from tactsim.units import FrozenModel, Length, Pressure, Time
+
+
+class PretendedScene(Scene):
+    """What figures of it would need."""
+
+    kind: Literal["pretence"] = "pretence"
+    profile: tuple[float, ...]
+    """Heights in m."""
 
 
 class Soft(FrozenModel):
@@ -140,7 +148,7 @@ def pretended_result(status: Status, reason: str, records: tuple[StepRecord, ...
         steps=records,
         units={"displacement": "m", "reaction_force": "N"},
         frames=frames,
-        details={"profile": np.array([1.0, 2.0])},
+        scene=PretendedScene(profile=(1.0, 2.0)),
     )
 
 
