@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tactsim.errors import StorageError
+from tactsim.errors import StorageError, TactsimError
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.live.recorded import DAMAGE
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
@@ -82,16 +82,20 @@ def stored_choice(folder: str | Path) -> Choice | None:
         If the result is damaged.
     """
     result = read_result(folder, fields=False).result
-    if not isinstance(result.scene, LocalizedGrasp):
+    if result.kind != LocalizedGrasp.model_fields["kind"].default:
         return None
-    estimates = result.scene.estimates
     try:
-        inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(estimates)]
+        scene = result.scene_as(LocalizedGrasp)
+    except TactsimError as error:
+        told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
+        raise StorageError(told) from None
+    try:
+        inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(scene.estimates)]
         found = Estimate(bool(inclusions), tuple(inclusions), result.reason)
     except DAMAGE as error:
         told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
         raise StorageError(f"{told}; run it again") from None
-    return Choice("stored", f"As stored: {result.scene.estimator}"[:60], StoredEstimate(found), False)
+    return Choice("stored", f"As stored: {scene.estimator}"[:60], StoredEstimate(found), False)
 
 
 def _inclusion(found: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:

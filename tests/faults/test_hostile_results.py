@@ -73,7 +73,6 @@ BAD_SCENES: list[tuple[Path_, Any]] = [
     (("scene",), {}),
     (("scene",), None),
     (("kind",), "film_test"),
-    (("kind",), "unheard_of"),
     (("quantities", "time_history", "value"), [1e300, 1e301, 1e302, 1e303]),
     (("quantities", "taxel_force_upper_history", "value"), 3),
     (("quantities", "taxel_force_upper", "value"), [[1e300] * 3] * 3),
