@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
-from tactsim.errors import InputError, StorageError
+from tactsim.errors import InputError, StorageError, TactsimError
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment, Progress
@@ -42,12 +42,8 @@ class MatrixReadoutRun(Experiment):
         """Read the stored forces; one step for every sample."""
         begin = time.perf_counter()
         stored = read_result(self.grasp, fields=False).result
-        try:
-            times, forces = _history(stored, self.grasp)
-            scene = stored.scene_as(GraspScene)
-        except (KeyError, StorageError) as error:
-            told = f"{self.grasp}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again"
-            raise StorageError(told) from None
+        times, forces = _history(stored, self.grasp)
+        scene = _scene(stored, self.grasp)
         reading = self.readout.read(times, forces, scene.matrix.area)
         steps = _steps(reading, self.history_units)
         for step in steps:
@@ -67,17 +63,31 @@ class MatrixReadoutRun(Experiment):
         )
 
 
+def _scene(stored: Result, folder: str) -> GraspScene:
+    try:
+        return stored.scene_as(GraspScene)
+    except TactsimError as error:
+        raise _incomplete(folder, error) from None
+
+
+def _incomplete(folder: str, error: Exception) -> StorageError:
+    return StorageError(f"{folder}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again")
+
+
 def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     """Times (n,) in s and forces (n, jaw, row, column) in N of a stored grasp."""
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
     names: Any = [f"taxel_force_{side}" for side in JAWS]
-    if len(stored.steps) > 1:
-        times = stored.quantities["time_history"].array
-        forces = [stored.quantities[f"{name}_history"].array for name in names]
-    else:
-        times = np.array([stored.quantities["time"].value], dtype=float)
-        forces = [stored.quantities[name].array[None] for name in names]
+    try:
+        if len(stored.steps) > 1:
+            times = stored.quantities["time_history"].array
+            forces = [stored.quantities[f"{name}_history"].array for name in names]
+        else:
+            times = np.array([stored.quantities["time"].value], dtype=float)
+            forces = [stored.quantities[name].array[None] for name in names]
+    except KeyError as error:
+        raise _incomplete(folder, error) from None
     return times, np.stack(forces, axis=1)
 
 
