@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.code_identity import code_identity
-from tactsim.dataset.checking_arrays import WORDS, differences
+from tactsim.dataset.checking_arrays import WORDS, differences, earlier_words
 from tactsim.dataset.checking_samples import leaks, value_findings
 from tactsim.dataset.finding import Finding
 from tactsim.dataset.holes import JOURNAL, lost_status
@@ -72,10 +72,13 @@ def check(path: str | Path) -> Checked:
 def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
     """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
     own = {variable.name for variable in variables}
+    never = store.never_stored(variable.name for variable in variables)
+    if never:
+        yield Finding("form", (), earlier_words(never))
     for name in sorted(store.faults.keys() & own):
         yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
     for variable in variables:
-        if variable.name in store.faults:
+        if variable.name in store.faults or variable.name in never:
             continue
         if variable.name not in store.described:
             yield Finding("missing", (), f"the variable {variable.name}; {RESUME}, or bring back a copy")

@@ -16,7 +16,7 @@ from tactsim.code_identity import code_identity
 from tactsim.dataset.array_description import META
 from tactsim.dataset.block import Block, decoded, refuse_unfitting
 from tactsim.dataset.building import owned, refuse_taken, remove_leftover
-from tactsim.dataset.checking_arrays import wrong_arrays
+from tactsim.dataset.checking_arrays import earlier_words, wrong_arrays
 from tactsim.dataset.computing import computed
 from tactsim.dataset.executor import Executor, Outcome
 from tactsim.dataset.holes import JOURNAL
@@ -251,6 +251,8 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
 def _refuse_other_arrays(store: Store, layout: Layout) -> None:
     """Refuses to write into arrays that are not those of the sweep."""
     remedy = "or remove it, and --resume makes it anew"
+    if never := store.never_stored(variable.name for variable in layout.variables):
+        raise StorageError(f"{one_line(store.path)}: {earlier_words(never)}; begin anew with another --out")
     if store.faults:
         raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
     for name, words in wrong_arrays(store.described.values(), layout.variables):

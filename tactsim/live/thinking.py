@@ -13,7 +13,7 @@ from tactsim.live.defects import report
 from tactsim.live.estimating import estimated
 from tactsim.live.messages import plain_json
 from tactsim.live.reference import Reference
-from tactsim.live.scene import Scene
+from tactsim.live.scene import PageScene
 from tactsim.live.threads import Threads
 from tactsim.localization.interface import Readings
 from tactsim.outside.text import one_line
@@ -64,11 +64,11 @@ class Thinking:
         busy = plain_json({"is": "estimate", "busy": True})
         self._estimates, self._shapes = Latest(send, threads, waiting=busy), Latest(send, threads)
 
-    def estimate(self, scene: Scene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> None:
+    def estimate(self, scene: PageScene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> None:
         """Has an estimate made and sent."""
         self._estimates.want(lambda: estimate_message(scene, readings, choice, reference))
 
-    def shape(self, scene: Scene, make: Callable[[Scene], str]) -> None:
+    def shape(self, scene: PageScene, make: Callable[[PageScene], str]) -> None:
         """Has shapes made and sent."""
         self._shapes.want(lambda: make(scene))
 
@@ -89,7 +89,7 @@ def message_or_fault(make: Callable[[], str]) -> str:
     return plain_json({"is": "fault", "words": words})
 
 
-def estimate_message(scene: Scene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> str:
+def estimate_message(scene: PageScene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> str:
     """What the estimator finds, or why it cannot."""
     found: dict[str, Any] = {"present": None, "words": [], "errors": [], "inclusions": []}
     try:
