@@ -19,8 +19,8 @@ MOST_APPROACHES = 1000
 def first_touch(body: RigidBody, points: Array, *, begin: Array, direction: Array, size: float) -> Array | None:
     """Place (d,) in m of a body's reference point at which it first touches points (d, n); None if it passes beside them.
 
-    It moves from ``begin`` (d,) in m, clear of the points and not far from them, along the unit vector ``direction``; ``size`` in m is that of the
-    touched body.
+    It moves from ``begin`` (d,) in m, clear of the points and not far from them, along the unit vector ``direction``; ``size`` in
+    m is that of the touched body.
     """
     travel = 0.0
     for _ in range(MOST_APPROACHES):
