@@ -49,7 +49,7 @@ class StartedPath(FollowedPath, Protocol):
         """The undeformed tissue at first touch."""
 
 
-class IndentationRecord(ContactRecord):
+class IndentationRecord(ContactRecord[PressedModel]):
     """Collects the accepted steps of an indentation."""
 
     UNITS: ClassVar[dict[str, str]] = {
@@ -156,7 +156,7 @@ class IndentationRecord(ContactRecord):
             ),
         }
         if self.setup.body.kind == "annulus":
-            sectors = 4 * self.setup.mesh.sectors  # type: ignore[attr-defined]
+            sectors = self.setup.sectors
             around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
             text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
             found["pressure_around"] = Quantity(around.tolist(), "Pa", text)
@@ -216,7 +216,7 @@ class IndentationRecord(ContactRecord):
             "recess": self.setup.recess,
         }
         if isinstance(self.model, SolidModel):
-            found |= {"symmetry": self.model.symmetry.name.lower(), "offset": self.setup.offset}  # type: ignore[attr-defined]
+            found |= {"symmetry": self.model.symmetry.name.lower(), "offset": self.setup.away}
         elif self._clock is not None:
             found |= {"control": self._clock.loading.control, "compare": self._clock.compare}
         else:
