@@ -140,10 +140,9 @@ def _rank(arguments: argparse.Namespace) -> int:
 def _confusion(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.confusion import store_confusion
     from tactsim.dataset.confusion_report import as_text, record, verdict
-    from tactsim.experiments.localization.figures.confusion import confusion_figure
+    from tactsim.experiments.localization.figures.confusion import confusion_png
     from tactsim.localization.estimators.hypotheses import HypothesesEstimator
     from tactsim.localization.interface import ROUNDING_NOISE
-    from tactsim.plotting.canvas import png
 
     if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
@@ -156,7 +155,7 @@ def _confusion(arguments: argparse.Namespace) -> int:
     about = {"store": arguments.store.name, "split": split, "seed": seed, "estimator": estimator.kind, "noise": noise}
     content = record(table, others, about)
     title = f"{arguments.store.name}: {verdict(content)}"
-    drawn = _drawn(lambda: {"confusion.png": lambda: png(confusion_figure(content["counts"], content["classes"], title))})
+    drawn = _drawn(lambda: {"confusion.png": lambda: confusion_png(content["counts"], content["classes"], title)})
     text = as_text(content, drawn)
     _write(folder, content, text, drawn)
     console.out(text.split("\n![")[0].rstrip())

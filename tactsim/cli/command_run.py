@@ -115,7 +115,7 @@ def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:
     """Writes the result, reports it, and returns the exit code of its status."""
-    from tactsim.cli.rendering import rendered_figures
+    from tactsim.cli.figures.result_figures import rendered_figures
     from tactsim.cli.report import last_line, result_report
 
     result = replace(result, details={**result.details, "title": case.title})

@@ -21,6 +21,8 @@ VOLUME_ORDER = {2: 4, 3: 2}
 """Degree of the volume quadrature: 6 points on a triangle (the hoop term is rational), 4 on a tetrahedron."""
 SURFACE_ORDER = {2: 5, 3: 4}
 """Degree of the surface quadrature: 3 points on an edge, 6 on a triangle."""
+FACET_POINTS: Array = get_quadrature(FACET_ELEMENTS[3], SURFACE_ORDER[3])[0].T
+"""Quadrature points (6, 2) of a triangular facet on the reference triangle."""
 
 
 @dataclass(frozen=True)

@@ -5,19 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
+from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.valve_tissue import SensorContact
 from tactsim.interfaces import Array
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.threshold.catheter_tip import CatheterTip
 
 SENSOR_UNITS = {
     "sensor": "1",
@@ -76,7 +74,7 @@ class Reading:
 class CatheterReport:
     """Collects the sensors in their order around the tip."""
 
-    def __init__(self, experiment: CatheterTip, begin: float):
+    def __init__(self, experiment: CatheterCase, begin: float):
         self._experiment, self._begin = experiment, begin
         ring = experiment.ring
         self._area = float(np.pi * (ring.outer_radius**2 - ring.inner_radius**2))
@@ -113,7 +111,7 @@ class CatheterReport:
         """The result with the sensors read so far; the hardest only if all are."""
         complete = len(self._readings) == self._experiment.ring.count
         return Result(
-            kind=self._experiment.kind,
+            kind="catheter_tip",
             status=status,
             reason=reason,
             quantities={**self._sensors(), **(self._hardest() if complete else {})},

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
+from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces import Array
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
 
 RESOLUTION = 0.1
 """Force in N that the sensor resolves; thesis, 3.1.2."""
@@ -57,7 +55,7 @@ CELL_WORDS = {
 class TrialReport:
     """Collects the combinations, in the order speed, noise, cut-off, and turns them into a result."""
 
-    def __init__(self, experiment: ThresholdTrial, begin: float):
+    def __init__(self, experiment: TrialCase, begin: float):
         self._experiment, self._begin = experiment, begin
         self.lengths = (len(experiment.speeds), len(experiment.noises), len(experiment.cutoffs))
         self.shown = tuple(length // 2 for length in self.lengths)
@@ -131,7 +129,7 @@ class TrialReport:
         """The result with everything that was sampled."""
         complete = status is Status.CONVERGED
         return Result(
-            kind=self._experiment.kind,
+            kind="threshold_trial",
             status=status,
             reason=reason,
             quantities=self._quantities() if self._cells else {},

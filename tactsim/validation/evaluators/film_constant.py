@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ClassVar, Literal, Self
 
-from tactsim.sensors.composite import AnyComposite, Composite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite import Composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.tunnelling import particle_separation, tunnelling_decay
 from tactsim.units import Force
 from tactsim.validation.evaluator import Evaluator, Inputs

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal, Self
 
-from tactsim.sensors.composite import AnyComposite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_equations import Reading, film_resistance
 from tactsim.units import Force, Time

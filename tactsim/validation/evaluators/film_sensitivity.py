@@ -8,8 +8,7 @@ import numpy as np
 
 from tactsim.identification.film_line import identify_film
 from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite import AnyComposite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_equations import creep_strain, varying_coefficient_jump
 from tactsim.units import Force, Time
