@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, StorageError, TactsimError, ValidationError
+from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimError
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _check(arguments: argparse.Namespace) -> int:
     counts = ", ".join(f"{count} {name}" for name, count in checked.counts.items())
     verdict = f"{len(checked.findings)} findings" if checked.findings else "nothing found"
     console.out(f"{one_line(arguments.store)}: {counts or 'not read'}; {verdict}")
-    return ValidationError.exit_code if checked.findings else 0
+    return NOT_AS_RECORDED if checked.findings else 0
 
 
 def _info(arguments: argparse.Namespace) -> int:

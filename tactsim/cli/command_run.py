@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.cli.interruption import Interruption, interruptible
-from tactsim.errors import Interrupted, InvalidQuantity, StorageError, shown
+from tactsim.errors import INTERRUPTED, InvalidQuantity, StorageError, shown
 
 if TYPE_CHECKING:
     from tactsim.case import Case
@@ -133,7 +133,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
         if kept:
             console.out(f"  the earlier result, which converged, is kept in {kept}")
         console.out(last_line(result, folder.path, figures))
-    return Interrupted.exit_code if interruption.requested else result.status.exit_code
+    return INTERRUPTED if interruption.requested else result.status.exit_code
 
 
 def _write(

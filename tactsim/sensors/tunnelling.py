@@ -67,22 +67,6 @@ def volume_fraction(filler: tuple[float, float], matrix: tuple[float, float]) ->
     return filled / (filled + empty)
 
 
-def junction_resistance(separation: float, area: float, decay: float) -> float:
-    r"""Tunnelling resistance in ohm between two particles.
-
-    .. math:: R_m = \frac{8 \pi h s}{3 a^2 \gamma q^2} e^{\gamma s}
-
-    Parameters
-    ----------
-    separation, area, decay : float
-        s in m, a^2 in m^2, gamma in 1/m.
-
-    Source: thesis, eq. 2.1.3 with the Planck constant that is missing there in the numerator.
-    """
-    scale = 8 * np.pi * constants.h * separation / (3 * area * decay * constants.e**2)
-    return float(scale * np.exp(decay * separation))
-
-
 def relative_resistance(strain: ArrayLike, exponent: float) -> Array:
     r"""Resistance of the composite over its initial value, dimensionless.
 
