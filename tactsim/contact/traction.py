@@ -177,7 +177,7 @@ class ContactPair:
         weight = np.where(iterate.pressure > 0, iterate.pressure, np.maximum(pressure, 0.0))
         slope = np.where(closed, -self.penalty, 0.0) * normal
         trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
-        decider, decider_slope = self._decider(iterate.tangential, normal, hessian, (trial, trial_slope))
+        decider, decider_slope = self._decider(iterate.tangential, normal, hessian, trial, trial_slope)
         limit = self.traction_limit(weight)
         slips = closed & (np.linalg.norm(decider, axis=0) > limit)
         sticks = closed & ~slips
@@ -204,7 +204,7 @@ class ContactPair:
         )
         return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
 
-    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: tuple[Array, Array]) -> tuple[Array, Array]:
+    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
         """Traction (d, n) whose size decides between stick and slip, and its derivative.
 
         It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
@@ -213,7 +213,7 @@ class ContactPair:
         across = np.einsum("in,in->n", carried, normal)
         plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
         in_plane = carried - across * normal
-        return in_plane + share * (trial[0] - in_plane), (1 - share) * plane_slope + share * trial[1]
+        return in_plane + share * (trial - in_plane), (1 - share) * plane_slope + share * trial_slope
 
     def _elastic_trial(self, points: Array, normal: Array, hessian: Array, state: ContactState) -> tuple[Array, Array]:
         """Trial traction (d, n) if nothing slipped, and its derivative: the old one turned to the new tangent plane, minus
