@@ -81,7 +81,13 @@ class Pardiso:
         return matrix.data
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,)."""
+        """Solution for one right-hand side (n,).
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
         if self._system is None:
             raise InputError("factor a matrix before solving")
         return _call_pardiso(self._solver, 33, self._system, right)
@@ -196,7 +202,13 @@ class SuperLU:
         self._factor: Any = None
 
     def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Factor the matrix with a minimum-degree order."""
+        """Factor the matrix with a minimum-degree order.
+
+        Raises
+        ------
+        ConvergenceError
+            If the matrix is singular.
+        """
         from scipy.sparse.linalg import splu
 
         try:
@@ -205,7 +217,13 @@ class SuperLU:
             raise ConvergenceError(f"the sparse direct solver failed ({error}); is the body held?") from error
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,)."""
+        """Solution for one right-hand side (n,).
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
         if self._factor is None:
             raise InputError("factor a matrix before solving")
         return self._factor.solve(right)
@@ -250,7 +268,13 @@ def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: f
 
 
 def direct_solver(name: str | None = None) -> DirectSolver:
-    """The named solver ("pardiso" or "superlu"), by default the fastest that is installed."""
+    """The solver of this name (pardiso_single, pardiso_symmetric, pardiso or superlu), by default the fastest that is installed.
+
+    Raises
+    ------
+    InputError
+        If there is no such solver.
+    """
     if name is None:
         installed = importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
         name = "pardiso" if installed else "superlu"

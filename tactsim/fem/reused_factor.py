@@ -43,7 +43,15 @@ class ReusedFactor:
         self._current = False
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``."""
+        """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``.
+
+        Raises
+        ------
+        InputError
+            If there is no matrix yet.
+        ConvergenceError
+            If the right-hand side holds numbers that are not finite.
+        """
         if self._matrix is None:
             raise InputError("factor a matrix before solving")
         if not np.isfinite(right).all():

@@ -141,7 +141,13 @@ class TaylorHood:
         return np.hstack([u, self.displacement_size + self.pressures])
 
     def volume_points(self, order: int | None = None) -> VolumePoints:
-        """Tabulate the shape functions at the points of a rule of the given degree."""
+        """Tabulate the shape functions at the points of a rule of the given degree.
+
+        Raises
+        ------
+        InputError
+            If an element is inverted or flat.
+        """
         displacement, pressure = _ELEMENTS[self.dim]
         X, W = get_quadrature(displacement, order or VOLUME_ORDER[self.dim])
         values, local = tabulate(displacement, X)

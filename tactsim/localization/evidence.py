@@ -145,7 +145,7 @@ class _Table:
     def beside(self, one: int) -> Array:
         """Log evidence (n,) of every candidate as the second one beside a given first, minus infinity where they overlap."""
         cross = self.candidates.signals @ self.candidates.signals[one]
-        found = _pair_evidence(self.along, self.along[one], self.stiff, self.stiff[one], cross, self.change)
+        found = _pair_evidence(self.along, self.along[one], a=self.stiff, b=self.stiff[one], cross=cross, change=self.change)
         found[self.candidates.overlaps(one)] = -np.inf
         return found
 
@@ -166,8 +166,11 @@ class _Table:
         return int(np.argmin(away + (self.candidates.radii - coarse.radii[number]) ** 2))
 
 
-def _pair_evidence(u: Array, w: Array, a: Array, b: Array, cross: Array, change: Change) -> Array:
-    """Log evidence without the common part, from the products with the change, the squares and the product of two signals."""
+def _pair_evidence(u: Array, w: Array, *, a: Array, b: Array, cross: Array, change: Change) -> Array:
+    """Log evidence, without the common part, of pairs of signals.
+
+    ``u`` and ``w`` are the products of the two signals with the change, ``a`` and ``b`` their squares, ``cross`` their product.
+    """
     determinant = a * b - cross**2
     explained = (b * u**2 - 2 * cross * u * w + a * w**2) / determinant
     return explained / (2 * change.variance) - np.log(determinant / change.ridge**2) / 2
@@ -177,7 +180,9 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
     """The best pairs of the coarse grid, no two of which share a body."""
     table = _Table(coarse, change)
     cross = coarse.signals @ coarse.signals.T
-    evidence = _pair_evidence(table.along[:, None], table.along, table.stiff[:, None], table.stiff, cross, change)
+    evidence = _pair_evidence(
+        table.along[:, None], table.along, a=table.stiff[:, None], b=table.stiff, cross=cross, change=change
+    )
     for one in range(len(coarse)):
         evidence[one, coarse.overlaps(one)] = -np.inf
     found: list[tuple[int, int]] = []

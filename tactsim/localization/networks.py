@@ -75,7 +75,13 @@ class LearnedWeights:
         return mean, away.T @ away / len(told) + size * height**2 * self.covariance
 
     def check(self, readings: Readings) -> None:
-        """Refuse readings of another matrix or block than those that were learned."""
+        """Refuse readings of another matrix or block than those of the training data.
+
+        Raises
+        ------
+        InputError
+            Naming both matrices or both blocks.
+        """
         if readings.layout != self.layout:
             raise InputError(
                 f"the estimator was trained on the matrix {self.layout}, the readings are of {readings.layout}; train it anew"
@@ -146,6 +152,11 @@ def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
     ----------
     change, reference : (n, jaw, row, column) in N
     noise : (n,) or one number, in N
+
+    Raises
+    ------
+    InputError
+        If a reference has no force.
     """
     flat, whole = change.reshape(len(change), -1), np.abs(reference).reshape(len(reference), -1).sum(axis=1)
     if not (whole > 0).all():

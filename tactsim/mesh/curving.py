@@ -159,7 +159,13 @@ def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> 
 
 
 def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
-    """Outward boundary facets (F, 6) by name: the faces of the block, and "lumen:k" for the wall of the empty space in k."""
+    """Outward boundary facets (F, 6) by name: the faces of the block, and "lumen:k" for the wall of the empty space in k.
+
+    Raises
+    ------
+    ConvergenceError
+        If a facet of the boundary lies on no face of the block.
+    """
     facets, _ = mesh.boundary_facets()
     numbers = np.full(len(facets), -1)
     for face, (_, axis, end) in enumerate(FACES):

@@ -41,7 +41,13 @@ class MatrixReadoutRun(Experiment):
         return cls(grasp="results/grasp_lump_icf")
 
     def run(self, progress: Progress) -> Result:
-        """Read the stored forces; one step for every sample."""
+        """Read the stored forces; one step for every sample.
+
+        Raises
+        ------
+        StorageError
+            If the stored result is damaged or not that of a grasp.
+        """
         begin = time.perf_counter()
         stored = read_result(self.grasp, fields=False).result
         try:

@@ -66,7 +66,15 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
 
 
 def sensitivity(setup: GraspSetup) -> Sensitivity:
-    """Densities of the change of every taxel's force, on a structured mesh."""
+    """Densities of the change of every taxel's force, on a structured mesh.
+
+    Raises
+    ------
+    InputError
+        If the grasp has an inclusion.
+    ConvergenceError
+        If no step of its history converges.
+    """
     if setup.inclusions:
         raise InputError("the response is that of plain tissue; give a grasp without inclusions")
     plain = setup.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)})

@@ -122,7 +122,15 @@ class IndentationSource(FrozenModel):
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
     def tissue(self, progress: Progress) -> ContactCurve:
-        """The curve of the simulation."""
+        """The curve of the simulation.
+
+        Raises
+        ------
+        ConvergenceError
+            If the indentation does not converge.
+        KeyboardInterrupt
+            If it is interrupted.
+        """
         result = self.experiment.run(progress)
         if result.status is Status.FAILED:
             raise ConvergenceError(f"the indentation {result.reason}")
@@ -157,7 +165,13 @@ class CurveSource(FrozenModel):
         return self
 
     def tissue(self, progress: Progress) -> ContactCurve:
-        """The curve in the file."""
+        """The curve in the file.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a column is missing.
+        """
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]
         if missing:

@@ -72,7 +72,13 @@ class HypothesesEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """None, one or two inclusions, and the probability of each class."""
+        """None, one or two inclusions, and the probability of each class.
+
+        Raises
+        ------
+        InputError
+            If the readings lack a reference without a lump or the response of the tissue.
+        """
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
         values, noise = readings.difference.ravel(), 2 * readings.noise**2
