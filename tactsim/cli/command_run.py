@@ -145,7 +145,8 @@ def _write(
     from tactsim.results.writing import fill
 
     case_id = case.case_id
-    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set)
+    seeds = case.experiment.seeds()
+    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set, seeds=seeds)
     fill(folder, result, case_id=case_id, provenance=origin, figures=figures)
     keep = result.status is not Status.CONVERGED and not arguments.force and _converged(folder.path)
     return folder.publish(keep_earlier=keep)
