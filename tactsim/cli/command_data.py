@@ -247,5 +247,5 @@ def _train(arguments: argparse.Namespace) -> int:
     _refuse_file(arguments.out)
     learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
     replace_file(arguments.out, learned.content())
-    console.out(f"{learned.told()}; estimator in {arguments.out}")
+    console.out(f"{learned.summary()}; estimator in {arguments.out}")
     return 0

@@ -23,7 +23,7 @@ SAMPLES_PER_PERIOD = 4.0
 MOST_UNEXPLAINED = 0.5
 """Part of the variance of the signals that a refined frequency may leave: a sine at a wrong frequency leaves nearly all."""
 SMALLEST_NOISE = 1e-13
-"""Smallest relative noise that is told of exact signals."""
+"""Smallest relative noise that is reported, that of exact signals."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The inclusion of a case file: any registered kind, told apart by ``kind``; and what a set of them must satisfy."""
+"""The inclusion of a case file: any registered kind; and what a set of them must satisfy."""
 
 from __future__ import annotations
 

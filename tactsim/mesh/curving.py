@@ -186,7 +186,7 @@ def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
 
 
 def _kept(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array, Interfaces]:
-    """Everything without the tetrahedra outside and in empty spaces, nodes numbered anew."""
+    """Everything without the tetrahedra outside and in empty spaces, nodes renumbered."""
     used, renumbered = np.unique(simplices[labels >= 0], return_inverse=True)
     triangles = np.searchsorted(used, walls.triangles)
     return corners[used], renumbered.reshape(-1, 4), labels[labels >= 0], Interfaces(triangles, walls.patch)

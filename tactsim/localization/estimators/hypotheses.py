@@ -1,4 +1,4 @@
-"""Nothing, one lump, two lumps, an artery or two: told apart by Bayes' rule on the fast forward model."""
+"""Nothing, one lump, two lumps, an artery or two: the likeliest by Bayes' rule on the fast forward model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tactsim.units import Length
 Array = np.ndarray
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
 CLASSES: tuple[str, ...] = ("none", "lump", "two_lumps", "artery", "two_arteries")
-"""What can be told apart; the order of every table."""
+"""The classes, in the order of every table."""
 PAIRS = ("two_lumps", "two_arteries")
 WORDS = {"lump": "one lump", "two_lumps": "two lumps", "artery": "an artery", "two_arteries": "two arteries"}
 COARSE = 4
@@ -40,7 +40,7 @@ class HypothesesEstimator(Estimator):
 
     Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
     the likeliest one. To first order a tube acts by its whole section, with one contrast for wall and lumen together: an empty
-    soft one is softer than the tissue. The wall's thickness and a pressure cannot be told.
+    soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -84,20 +84,24 @@ class HypothesesEstimator(Estimator):
         values, noise = readings.difference.ravel(), 2 * readings.noise**2
         variance = noise + self.model_error**2 * float(np.mean(values**2))
         if variance == 0:
-            return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0, self._told({"none": 0.0}))
+            return Estimate(
+                False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
+            )
         change = Change(values, variance, self.contrast_spread)
         found: dict[str, tuple[Found, Candidates]] = {name: self._explained(name, change, readings) for name in self.classes}
         evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in found.items()}
         if noise > 0:
             evidence["none"] = self._prior("none") + nothing(values, noise)
-        told = self._told(evidence)
-        likeliest = max(told, key=lambda name: told[name])
-        probability = float(np.clip(1 - told["none"], 0.0, 1.0))
+        probabilities = self._probabilities(evidence)
+        likeliest = max(probabilities, key=lambda name: probabilities[name])
+        probability = float(np.clip(1 - probabilities["none"], 0.0, 1.0))
         if likeliest == "none":
-            return Estimate(False, (), f"nothing there with a probability of {told['none']:.3g}", probability, told)
+            return Estimate(
+                False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
+            )
         inclusions = _inclusions(*found[likeliest])
-        reason = f"{WORDS[likeliest]} with a probability of {told[likeliest]:.3g}"
-        return Estimate(True, inclusions, reason, probability, told)
+        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
+        return Estimate(True, inclusions, reason, probability, probabilities)
 
     def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Found, Candidates]:
         """What a class explains, and its bodies."""
@@ -129,7 +133,7 @@ class HypothesesEstimator(Estimator):
         shares = {other: self.second if other in PAIRS else 1.0 for other in self.classes}
         return float(np.log(self.prior * shares[name] / sum(shares.values())))  # type: ignore[index]
 
-    def _told(self, evidence: dict[str, float]) -> dict[str, float]:
+    def _probabilities(self, evidence: dict[str, float]) -> dict[str, float]:
         """Probability of each class from their log evidence; classes that are not asked for have none."""
         total = logsumexp(list(evidence.values()))
         return {name: float(np.exp(evidence[name] - total)) if name in evidence else 0.0 for name in CLASSES}

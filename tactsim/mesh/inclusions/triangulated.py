@@ -17,7 +17,7 @@ CHUNK = 20_000
 
 
 class TriangulatedSolid(Solid):
-    """The inside of a closed surface of triangles, told by pseudonormals at the nearest point.
+    """The inside of a closed surface of triangles; pseudonormals at the nearest point decide the sign of the distance.
 
     Raises
     ------
