@@ -8,6 +8,8 @@ import functools
 import importlib.util
 import platform
 import weakref
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,21 +21,29 @@ from tactsim.fem.threads import SERIAL_UNKNOWNS
 Array = np.ndarray
 
 LARGEST_RESIDUAL = 1e-3
-"""Of a linear solution over its right-hand side; solvable systems, with stiff contact too, leave 1e-13 or so, singular ones 1."""
+"""Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
 LOOSENESS = 10.0
 """How much larger the largest entry of a residual may be, relatively, than its accuracy in the mean."""
 
 GENERAL, SYMMETRIC_INDEFINITE = 11, -2
 """Pardiso's kinds of matrices."""
 INDEFINITE_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1, 20: 1}
-"""Own settings, nested dissection, refinement only after perturbed pivots, which are perturbed by 1e-13 only, scaling, matching,
-Bunch and Kaufman's pivots: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
+"""User settings, nested dissection, refinement only after perturbed pivots, perturbation 1e-13, scaling, matching, and
+Bunch-Kaufman pivoting: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
 
 
 SINGLE_PRECISION = 27
 """Which of Pardiso's settings asks for matrices and vectors in single precision."""
 NO_MEMORY = (-2, -9)
-"""Pardiso's errors for want of memory (oneMKL Developer Reference, pardiso, table of error indicators)."""
+"""Pardiso's error codes when memory runs out (oneMKL Developer Reference, pardiso, table of error indicators)."""
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well as its own."""
+
+    matrix: csr_matrix
+    nearby: csr_matrix
 
 
 class DirectSolver(Protocol):
@@ -41,14 +51,35 @@ class DirectSolver(Protocol):
 
     name: str
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Factor a matrix; its pattern must be that of the first one. ``nearby`` is one nearly symmetric and as good a guide."""
+    def factor(self, matrix: csr_matrix) -> None:
+        """Factor a matrix; its pattern must be that of the first one."""
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last matrix; its error over its size may be ``accuracy``."""
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,) of the last matrix."""
 
     def close(self) -> None:
         """Release the factor's memory."""
+
+
+class IterativeSolver(ABC):
+    """Solves systems of one sparse pattern to a requested accuracy."""
+
+    name: str
+
+    @abstractmethod
+    def factor(self, system: LinearSystem) -> None:
+        """Take a system and make its preconditioner."""
+
+    @abstractmethod
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Release the preconditioner's memory."""
+
+
+LinearSolver = DirectSolver | IterativeSolver
 
 
 class Pardiso:
@@ -60,7 +91,7 @@ class Pardiso:
         self._solver = _fresh_binding(GENERAL)
         self._system: tuple[Array, Array, Array] | None = None
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
+    def factor(self, matrix: csr_matrix) -> None:
         """Factor the matrix; analyses the pattern on the first call."""
         if self._system is None:
             indptr, indices = self._structure(matrix)
@@ -80,7 +111,7 @@ class Pardiso:
         """Values of the entries of the structure."""
         return matrix.data
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+    def solve(self, right: Array) -> Array:
         """Solution for one right-hand side (n,).
 
         Raises
@@ -139,7 +170,7 @@ class SinglePardiso(SymmetricPardiso):
             raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
         return entries.astype(np.float32)
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+    def solve(self, right: Array) -> Array:
         """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
         size = float(np.abs(right).max())
         return size * super().solve(right / size) if size else np.zeros_like(right)
@@ -201,7 +232,7 @@ class SuperLU:
     def __init__(self) -> None:
         self._factor: Any = None
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
+    def factor(self, matrix: csr_matrix) -> None:
         """Factor the matrix with a minimum-degree order.
 
         Raises
@@ -216,7 +247,7 @@ class SuperLU:
         except RuntimeError as error:
             raise ConvergenceError(f"the sparse direct solver failed ({error}); is the body held?") from error
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+    def solve(self, right: Array) -> Array:
         """Solution for one right-hand side (n,).
 
         Raises
@@ -234,9 +265,9 @@ class SuperLU:
 
 
 def solved(
-    solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0, nearby: csr_matrix | None = None
+    solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0, nearby: csr_matrix | None = None
 ) -> Array:
-    """Solution (n,) of one linear system that truly solves it, to an error over its size of ``accuracy`` if that is cheaper.
+    """Checked solution (n,) of one linear system, to an error over its size of ``accuracy`` by an iterative solver.
 
     Neither solver reports a singular matrix reliably: both replace zero pivots and return huge numbers.
 
@@ -245,11 +276,14 @@ def solved(
     ConvergenceError
         If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
     """
-    solver.factor(matrix, nearby)
+    if isinstance(solver, IterativeSolver):
+        solver.factor(LinearSystem(matrix, matrix if nearby is None else nearby))
+    else:
+        solver.factor(matrix)
     return resolved(solver, matrix, right, accuracy)
 
 
-def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
+def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
     """Solution (n,) for another right-hand side with the factor that the solver holds.
 
     Raises
@@ -257,7 +291,7 @@ def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: f
     ConvergenceError
         As ``solved``.
     """
-    solution = solver.solve(right, accuracy)
+    solution = solver.solve(right, accuracy) if isinstance(solver, IterativeSolver) else solver.solve(right)
     left = float(np.abs(matrix @ solution - right).max())
     if not left <= max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max()):
         raise ConvergenceError(

@@ -48,7 +48,7 @@ class StepControl:
     many_iterations: int = 12
 
     def next_step(self, step: float, iterations: int) -> float:
-        """Length of the step after one that took so many iterations."""
+        """Length of the step after one of length ``step`` that took ``iterations`` Newton iterations."""
         if iterations <= self.few_iterations:
             return min(step * self.growth, self.largest)
         return step if iterations <= self.many_iterations else step * self.shrink
@@ -63,7 +63,7 @@ class Event(Generic[State]):
 
 
 class PathFollower(Generic[State]):
-    """Advances a state by accepted load steps; ``rejected`` counts the steps that had to be cut back.
+    """Advances a state by accepted load steps; ``rejected`` counts the steps that were cut back.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
-from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
+from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
 
 Array = np.ndarray
@@ -72,7 +72,7 @@ class Equilibrium:
 class Problem:
     """A body with fixed unknowns; keeps the sparse solver between solutions."""
 
-    def __init__(self, body: Body, fixed: Array, *, solver: DirectSolver | None = None, options: NewtonOptions | None = None):
+    def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
         self.body = body
         self.constraints = Constraints(fixed, body.pattern)
         self.solver = solver or direct_solver()
@@ -132,7 +132,7 @@ class _Step:
 class _Solution:
     """The iterations of one solution, until the relative residual is below ``goal``."""
 
-    def __init__(self, balance: Balance, solver: DirectSolver, options: NewtonOptions, goal: float):
+    def __init__(self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float):
         self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
         self._body, self._forces = balance.body, balance.forces
         self._carried: list[Any] = [interface.start() for interface in self._forces.interfaces]

@@ -1,6 +1,6 @@
-"""Headway along a path of loads or times: whether the rest of the way can still be expected to end.
+"""Progress along a path of loads or times: whether the rest of the path can still be expected to be completed.
 
-A path is given up by the number of linear solutions, never by the clock, so that the same case ends alike on every machine.
+A path is given up by the number of linear solutions, never by the clock, so that a case ends the same way on every machine.
 """
 
 from __future__ import annotations
@@ -11,18 +11,18 @@ from collections import deque
 from tactsim.errors import ConvergenceError, InvalidQuantity
 
 WINDOW = 100
-"""Linear solutions over which headway is measured: more than half of the shipped cases take fewer in all, and a step that is cut
-seven times before it succeeds no more."""
+"""Linear solutions over which progress is measured: more than half of the shipped cases need fewer in all, and a step that is cut
+seven times before it converges needs no more."""
 MOST_FURTHER = 600
-"""Linear solutions that the rest of the way may take at the recent headway, beside those of the steps that were asked for: twice
-as many as the shipped cases take at most from beginning to end (13 to 357, measured). A grasp that went on to converge was
-expected to take 472 more at its worst, those that crept thousands."""
+"""Linear solutions that the rest of the path may need at the recent rate, besides those of the requested steps: twice
+as many as the shipped cases need at most from beginning to end (13 to 357, measured). For a grasp that did converge the largest
+estimate was 472; for those that stagnated it was thousands."""
 PER_STEP = 60
-"""Further ones for each step that was asked for: a step in space with friction takes 60 at most where nothing is wrong."""
+"""Further ones for each requested step: a 3D step with friction takes 60 at most where nothing is wrong."""
 SHORTEST_REST = 0.05
-"""Part of the way that the rest counts as at least: headway may not shrink without end just before the target."""
+"""Least fraction of the path that the rest counts as, so that progress may not vanish just before the target."""
 MOST_STEPS = 50_000
-"""Steps that a path may be asked to take. The shortest, of a section with few elements, take 10 ms, so many ten minutes."""
+"""Most steps that may be requested. The shortest, of a section with few elements, take 10 ms: in all some ten minutes."""
 
 
 def check_steps(count: float, what: str) -> None:
