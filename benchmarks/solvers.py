@@ -20,7 +20,8 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.linear import IterativeSolver, LinearSystem, SinglePardiso, resolved
+from tactsim.fem.linear import IterativeSolver, LinearSystem, resolved
+from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.block_model import GraspModel

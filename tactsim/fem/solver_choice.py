@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.body import Body
-from tactsim.fem.linear import LinearSolver, SinglePardiso, direct_solver
+from tactsim.fem.linear import LinearSolver, direct_solver
+from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 
 LARGEST_FACTOR = 600_000

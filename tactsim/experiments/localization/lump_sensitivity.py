@@ -21,7 +21,8 @@ from scipy.sparse.linalg import splu
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.fem.linear import SymmetricPardiso, direct_solver
+from tactsim.fem.linear import direct_solver
+from tactsim.fem.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.mechanics.block_model import CLOSING, SIDES, GraspModel
