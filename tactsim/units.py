@@ -53,7 +53,7 @@ def _registry() -> Any:
 
 
 def check_increasing(**lists: Sequence[float]) -> None:
-    """Nothing if every list increases strictly.
+    """Check that every list increases strictly.
 
     Raises
     ------

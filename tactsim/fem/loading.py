@@ -56,7 +56,7 @@ class StepControl:
 
 @dataclass(frozen=True)
 class Event(Generic[State]):
-    """A sign change from negative to positive of ``value`` along the path, located to ``tolerance`` of the load parameter."""
+    """A sign change of ``value`` from negative to positive along the path, located to ``tolerance`` in the load parameter."""
 
     value: Callable[[State], float]
     tolerance: float
@@ -85,7 +85,7 @@ class PathFollower(Generic[State]):
         Raises
         ------
         ConvergenceError
-            If no step longer than the smallest one converges, or steps make no headway; the message names the load reached.
+            If no step longer than the smallest one converges, or the path makes no progress; the message names the load reached.
         InvalidQuantity
             If the largest step is so short that there would be too many.
         """

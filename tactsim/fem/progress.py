@@ -26,12 +26,12 @@ MOST_STEPS = 50_000
 
 
 def check_steps(count: float, what: str) -> None:
-    """Refuse a path that is asked to take too many steps.
+    """Refuse a path of too many requested steps.
 
     Raises
     ------
     InvalidQuantity
-        Naming ``what`` asks for them.
+        Naming ``what`` requests them.
     """
     if not count <= MOST_STEPS:
         raise InvalidQuantity(f"{what} asks for {count:.3g} steps; allowed: up to {MOST_STEPS}; take longer or fewer ones")
@@ -40,8 +40,8 @@ def check_steps(count: float, what: str) -> None:
 class Headway:
     """Watches one path from ``start`` to ``target``.
 
-    Headway is measured in proportion to the way already gone, as the logarithm of that way: steps that begin very short and
-    grow by a factor each, as after a sudden change, make headway from the first one on.
+    Progress is measured by the logarithm of the distance covered: steps that begin very short and grow by a factor each, as
+    after a sudden change, count as progress from the first one on.
     """
 
     def __init__(self, start: float, target: float):
@@ -49,14 +49,14 @@ class Headway:
         self._marks: deque[tuple[int, float]] = deque([(0, 0.0)])
 
     def spent(self, solutions: int, place: float, steps: float, failure: ConvergenceError | None = None) -> None:
-        """Take note of ``solutions`` more linear ones, of the ``place`` reached, and of how many more ``steps`` are asked for.
+        """Count ``solutions`` more linear ones up to the ``place`` reached, with so many more ``steps`` requested.
 
-        ``failure`` is why the last step was not accepted, if it was not.
+        ``failure`` is the error of the last step if it was rejected.
 
         Raises
         ------
         ConvergenceError
-            If the rest of the way would take too many at the recent headway.
+            If the rest of the path would need too many at the recent rate.
         """
         total = self._marks[-1][0] + max(solutions, 1)
         share = (place - self._start) / (self._target - self._start)

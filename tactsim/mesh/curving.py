@@ -23,7 +23,7 @@ Array = np.ndarray
 LEAST_CURVATURE = 0.2
 """Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""
 SMALLEST_SHARE = 0.25
-"""Part of the way to its surface below which a mid-node goes back between its corners."""
+"""Fraction of the displacement onto its surface below which a mid-node returns to the midpoint of its edge."""
 LEAST_QUALITY = 0.02
 """Mean ratio below which a mesh is refused."""
 _EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
@@ -137,7 +137,7 @@ def check(block: BlockMesh, size: Array) -> None:
 
 
 def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> tuple[QuadraticMesh, int]:
-    """The mesh with the mid-nodes of interfaces on them, and how many stay short of them to keep elements sound."""
+    """The mesh with the mid-nodes of interfaces on them, and the number of those that stay off them to keep elements valid."""
     edges = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
     patch = np.tile(walls.patch, 3)
     unique, number = np.unique(edges, axis=0, return_inverse=True)

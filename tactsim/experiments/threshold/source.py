@@ -87,7 +87,7 @@ class ClosedFormSource(FrozenModel):
         return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return [
             "closed form: linear, incompressible tissue, frictionless contact, small displacements",
             "past the touch the small sensor is a solid punch of the hole's radius that the tissue meets as fast as it rises",
@@ -108,7 +108,7 @@ class RunSource(FrozenModel):
         return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 
@@ -139,7 +139,7 @@ class IndentationSource(FrozenModel):
         return ContactCurve.of_result(result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 
@@ -179,7 +179,7 @@ class CurveSource(FrozenModel):
         return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 
