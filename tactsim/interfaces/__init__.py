@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, final
 
 import numpy as np
 
+from tactsim.interfaces.seeds import seeds_in
 from tactsim.registry import MarkedFunction, mark, register
 from tactsim.relaxation import Relaxation
 from tactsim.units import FrozenModel
@@ -142,6 +143,10 @@ class Experiment(CaseKind):
 
     history_units: ClassVar[dict[str, str]] = {}
     """Unit of every value that an accepted step records."""
+
+    def seeds(self) -> dict[str, int]:
+        """Every seed of random numbers by its key path, such as ``readout.seed``; empty if nothing is random."""
+        return dict(seeds_in(self))
 
     @abstractmethod
     def begin(self) -> Course:

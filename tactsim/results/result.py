@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.errors import ConvergenceError, Interrupted
+from tactsim.errors import INTERRUPTED, ConvergenceError
 
 
 class Status(StrEnum):
@@ -22,7 +22,7 @@ class Status(StrEnum):
     @property
     def exit_code(self) -> int:
         """Exit code of the command line."""
-        return {"converged": 0, "failed": ConvergenceError.exit_code, "interrupted": Interrupted.exit_code}[self.value]
+        return {"converged": 0, "failed": ConvergenceError.exit_code, "interrupted": INTERRUPTED}[self.value]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 from solids import assert_close, body_of, box, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem import linear
+from tactsim.fem import pardiso
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
 from tactsim.fem.reused_factor import ReusedFactor
@@ -89,13 +89,13 @@ def test_a_closed_solver_takes_a_matrix_of_another_pattern():
 
 def test_pardiso_releases_its_memory_when_it_is_forgotten(monkeypatch):
     phases = []
-    call = linear._call_pardiso
+    call = pardiso._call_pardiso
 
     def noted(solver, phase, system, right):
         phases.append(phase)
         return call(solver, phase, system, right)
 
-    monkeypatch.setattr(linear, "_call_pardiso", noted)
+    monkeypatch.setattr(pardiso, "_call_pardiso", noted)
     solver = direct_solver("pardiso")
     solved(solver, *tangent_of(2, axes=2))
     assert phases == [12, 33]

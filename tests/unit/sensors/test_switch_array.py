@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scipy.special import ndtr
 
 from tactsim.errors import InvalidQuantity
-from tactsim.sensors.switch_array import SwitchArray, false_switching_rate, rising
+from tactsim.sensors.switch_array import SwitchArray, rising
 from tactsim.sensors.switch_reading import SwitchState, read_switches
 
 RATE, STEP = 1e-3, 1e-3
@@ -69,6 +70,16 @@ def test_streaming_is_offline(cuts):
     assert len(ended[0].closings) == 5
     lost = read_switches(array, *(values[4000:] for values in signals))
     assert lost.ended != whole.ended, "without the state of the first block"
+
+
+def false_switching_rate(times: float) -> float:
+    r"""Share of the samples of an open switch that `rising` takes, with a threshold of ``times`` its white Gaussian noise.
+
+    .. math:: P(x_N > k,\ x_N > x_{N-1}) = \int_k^\infty \varphi \Phi\, dx = \tfrac12 (1 - \Phi(k)^2)
+
+    """
+    tail = float(ndtr(-times))
+    return tail * (1 - tail / 2)
 
 
 @pytest.mark.parametrize("times", [2.0, 3.0, 3.5])
