@@ -6,6 +6,7 @@ Jaws may penetrate by a thousandth of the closing: what the default tolerance le
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.setup import Embedded
@@ -64,6 +65,11 @@ def predicted(plain, monkeypatch):
 
 
 def test_adjoint_is_the_difference(plain, difference, monkeypatch):
+    """Mutants: the jaws swapped, the wrong sign, and the adjoint of one jaw for both."""
     expected = predicted(plain, monkeypatch)
-    assert np.abs(expected - difference).max() < AGREEMENT * np.abs(difference).max()
-    assert not np.abs((1 + 3 * AGREEMENT) * expected - difference).max() < AGREEMENT * np.abs(difference).max()
+
+    def check(expected):
+        assert np.abs(expected - difference).max() < AGREEMENT * np.abs(difference).max()
+
+    check(expected)
+    assert_kills(check, swapped=(expected[::-1],), sign=(-expected,), one_jaw=(expected[[0, 0]],))

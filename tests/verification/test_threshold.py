@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 from tactsim.case import load_case
 from tactsim.experiments.indentation.path import indentation_path
@@ -55,21 +56,33 @@ def test_threshold_is_located(icf):
 
 
 def test_penetration_and_balance_hold_at_every_step(icf):
+    """Mutants: the force per radian, and the reaction of the step before."""
     record, _ = icf
-    for step in record.steps:
-        assert step.values["max_penetration"] < 1e-4 * RADIUS
-        assert step.values["base_force"] == pytest.approx(step.values["reaction_force"], rel=1e-8)
-        assert step.values["base_force"] != pytest.approx(step.values["reaction_force"] * (1 + 3e-8), rel=1e-8)
+    penetration, base, reaction = (
+        np.array([step.values[name] for step in record.steps]) for name in ("max_penetration", "base_force", "reaction_force")
+    )
+    assert (penetration < 1e-4 * RADIUS).all()
+
+    def check(base, reaction):
+        np.testing.assert_allclose(base, reaction, rtol=1e-8)
+
+    check(base, reaction)
+    assert_kills(check, per_radian=(base / (2 * np.pi), reaction), step_before=(base[1:], reaction[:-1]))
 
 
 def test_friction_stays_inside_its_cone(icf):
+    """Mutant: a friction coefficient lower by a hundredth, as some of the surface slips."""
     _, states = icf
-    for state in states:
-        contact = state.contacts[0]
-        size = np.linalg.norm(contact.state.tangential, axis=0)
-        limit = contact.pair.law.traction_limit(contact.state.pressure)
-        assert (size <= limit * (1 + 1e-8)).all()
-    assert (size > limit * (1 - 3e-8))[limit > 0].any(), "some of the surface slips"
+
+    def check(share):
+        for state in states:
+            contact = state.contacts[0]
+            size = np.linalg.norm(contact.state.tangential, axis=0)
+            limit = share * contact.pair.law.traction_limit(contact.state.pressure)
+            assert (size <= limit * (1 + 1e-8)).all()
+
+    check(1.0)
+    assert_kills(check, friction=(0.99,))
 
 
 def test_force_and_rise_grow_with_the_indentation(icf):

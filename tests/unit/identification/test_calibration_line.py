@@ -33,7 +33,8 @@ def test_exact_data_give_the_line():
     assert fit.slope == pytest.approx(THESIS_LINE.slope, rel=1e-12)
     assert fit.intercept == pytest.approx(THESIS_LINE.intercept, rel=1e-9)
     assert fit.rms < 1e-12
-    assert fit.slope != pytest.approx(1.00001 * THESIS_LINE.slope, rel=3e-6)
+    other = fit_calibration_line(FORCE, voltages(), **DIVIDER | {"load": 1.01e3})
+    assert other.slope != pytest.approx(THESIS_LINE.slope, rel=1e-12), "the load resistor counts"
     assert np.ndim(fit.slope) == 0
 
 

@@ -47,7 +47,7 @@ def test_every_inner_face_has_two_elements_and_the_boundary_is_closed(sectors, t
     points = TaylorHood(sweep.mesh.nodes, elements, "solid").surface_points(facets)
     area = points.weights.sum()
     np.testing.assert_allclose(points.normals @ points.weights / area, 0.0, atol=1e-12)  # round-off
-    assert not np.allclose(points.normals[:, 6:] @ points.weights[6:] / area, 0.0, atol=3e-12), "twin: one facet is missing"
+    assert not np.allclose(points.normals[:, 6:] @ points.weights[6:] / area, 0.0, atol=3e-12), "one facet is missing"
 
 
 @pytest.mark.parametrize(("sectors", "turn"), PARTS)

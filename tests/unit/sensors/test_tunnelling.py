@@ -21,8 +21,8 @@ def test_volume_fraction_from_the_residue():
     filler, matrix = (4.2083 * MILLIGRAM, 560.0), (16.9496 * MILLIGRAM, 910.0)
     assert volume_fraction(filler, matrix) == pytest.approx(0.28747, abs=1e-5)  # five digits are given
     assert volume_fraction((4.2083 * MILLIGRAM, 1800.0), matrix) == pytest.approx(0.112, abs=5e-4)
-    # The thesis rounds the volumes to 0.0075 and 0.0186 cm^3 first.
-    assert pytest.approx(0.2873, abs=6e-5) == 0.0075 / (0.0075 + 0.0186)
+    rounded = (4.2 * MILLIGRAM, 560.0), (16.926 * MILLIGRAM, 910.0)  # volumes of 0.0075 and 0.0186 cm^3, as the thesis has them
+    assert volume_fraction(*rounded) == pytest.approx(0.2873, abs=6e-5)
 
 
 def test_separation_decay_and_their_product():
