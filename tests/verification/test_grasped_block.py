@@ -13,7 +13,6 @@ from solids import box, facets_where, on_plane
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
-from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.fem.loading import PathFollower, StepControl
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -160,24 +159,3 @@ def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
 
 def test_without_contact_on_the_free_faces_they_would_pass_the_jaw():
     assert beyond_the_jaw(("upper", "lower"), closing=0.55e-3) > 50e-6
-
-
-FAR = {
-    "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
-    "inclusions": [
-        {
-            "shape": {"kind": "sphere", "center": (20e-3, 22.1e-3, 7.1e-3), "radius": 4.3e-3},
-            "material": {"kind": "neo_hookean", "c10": 190e3},
-        }
-    ],
-    "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1.2e-3, "duration": 1.0}]},
-    "mesh": {"kind": "graded", "size": 6e-3, "inclusion_size": 5e-3, "edge_size": 2.2e-3, "growth": 1.0},
-    "time": {"steps": 1},
-}
-"""A hard lump near a jaw, closed in one step."""
-
-
-def test_a_far_closing_on_a_hard_lump_ends_in_one_step():
-    result = Grasp.model_validate(FAR).run(lambda step: None)
-    assert result.status == "converged"
-    assert len(result.steps) == 1

@@ -1,7 +1,7 @@
 """Finite-strain relaxation against exact histories: homogeneous, in contact with friction, under a force; error in time.
 
-Mutants: another time constant, swapped coefficients, a missing branch, a step in place of a ramp, a Poisson's ratio of 0.49, and the
-inverse of the relaxation modulus for the creep compliance.
+Mutants: another time constant, swapped coefficients, a missing branch, a step in place of a ramp, a Poisson's ratio of 0.49, and
+the inverse of the relaxation modulus for the creep compliance.
 """
 
 from __future__ import annotations
