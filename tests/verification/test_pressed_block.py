@@ -23,8 +23,6 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mesh.quadratic import from_skfem
 
-NOMINAL = {0.9: 0.855007, 0.8: 2.001562, 0.7: 3.639359}
-"""Nominal pressure at c10 = 1, c01 = 0.25 in uniaxial compression, -2 (l - l^-2)(c10 + c01 / l), to the digits given."""
 MATERIAL = MooneyRivlin2(c10=1.0, c01=0.25)
 MEASURES = ("axisymmetric", "solid")
 
@@ -75,11 +73,10 @@ class Press:
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-@pytest.mark.parametrize("stretch", sorted(NOMINAL))
+@pytest.mark.parametrize("stretch", [0.7, 0.8, 0.9])
 def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
     press = Press(measure, Coulomb(friction=0.0), cells=2).to(stretch)
     nominal = 2 * (stretch**-2 - stretch) * (1 + 0.25 / stretch)
-    assert nominal == pytest.approx(NOMINAL[stretch], abs=5e-7), "the table prints six decimals"
 
     def check(expected):
         np.testing.assert_allclose(

@@ -78,7 +78,7 @@ def test_it_is_least_squares_in_voltage():
     assert fit.noise == pytest.approx(5e-3, rel=0.5)
     half = fit.band(np.array([0.0, 10.0]))
     assert half[0] == pytest.approx(fit.intercept_interval[1] - fit.intercept)
-    assert half[1] < half[0] or half[1] > 0
+    assert 0 < half[1] < half[0], "the line is surer among its points than at their end"
 
 
 def test_linearity_is_the_largest_and_smallest_force_error_over_full_scale():
