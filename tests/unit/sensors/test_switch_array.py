@@ -45,7 +45,7 @@ def test_a_clean_touch_is_right_to_one_sample():
     forces = np.array([closing.force for closing in touch.closings])
     assert (np.abs(forces - STIFFNESS * array.heights) <= 1.001 * STIFFNESS * RATE * STEP).all()
     assert touch.mean_rate(array) == pytest.approx(RATE, rel=STEP)
-    assert touch.mean_rate(array) != pytest.approx(1.003 * RATE, rel=STEP)
+    assert touch.mean_rate(SwitchArray(formula="as_printed")) != pytest.approx(RATE, rel=STEP)
 
 
 def test_both_readings_of_the_mean_rate():
@@ -88,9 +88,12 @@ def test_false_switches_come_as_often_as_the_noise_predicts(times):
     generator = np.random.default_rng(3)
     signals = generator.normal(0, noise, (samples, 5))
     found = rising(signals, times * noise, np.full(5, np.inf)).mean(axis=0)
-    predicted = false_switching_rate(times)
-    assert ((found > predicted / 2) & (found < 2 * predicted)).all()
-    assert not ((found > 3 * predicted / 2) & (found < 6 * predicted)).all()
+
+    def holds(predicted):
+        return ((found > predicted / 2) & (found < 2 * predicted)).all()
+
+    assert holds(false_switching_rate(times))
+    assert not holds(false_switching_rate(times + 0.5))
 
 
 def test_false_switches_of_the_algorithm_and_none_at_eight():

@@ -21,7 +21,7 @@ def test_volume_fraction_from_the_residue():
     filler, matrix = (4.2083 * MILLIGRAM, 560.0), (16.9496 * MILLIGRAM, 910.0)
     assert volume_fraction(filler, matrix) == pytest.approx(0.28747, abs=1e-5)  # five digits are given
     assert volume_fraction((4.2083 * MILLIGRAM, 1800.0), matrix) == pytest.approx(0.112, abs=5e-4)
-    rounded = (0.0075 * 560.0, 560.0), (0.0186 * 910.0, 910.0)  # the thesis rounds the volumes in cm^3 first
+    rounded = (4.2 * MILLIGRAM, 560.0), (16.926 * MILLIGRAM, 910.0)  # volumes of 0.0075 and 0.0186 cm^3, as the thesis has them
     assert volume_fraction(*rounded) == pytest.approx(0.2873, abs=6e-5)
 
 
