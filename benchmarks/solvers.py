@@ -20,7 +20,8 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.linear import SinglePardiso, resolved
+from tactsim.fem.linear import IterativeSolver, LinearSystem, resolved
+from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.block_model import GraspModel
@@ -40,31 +41,31 @@ LONGEST = 500.0
 class Recorded(Exception):
     """Carries the first linear system of Newton's method out of the model."""
 
-    def __init__(self, matrix, nearby, right):  # type: ignore[no-untyped-def]
+    def __init__(self, system: LinearSystem, right: np.ndarray):
         super().__init__("first system")
-        self.matrix, self.nearby, self.right = matrix, nearby, right
+        self.system, self.right = system, right
 
 
-class Recorder:
+class Recorder(IterativeSolver):
     """A solver that solves nothing."""
 
     name = "recorder"
 
-    def factor(self, matrix, nearby=None) -> None:  # type: ignore[no-untyped-def]
-        """Keep the matrix and its neighbour without slip."""
-        self._matrix, self._nearby = matrix, nearby
+    def factor(self, system: LinearSystem) -> None:
+        """Keep the system."""
+        self._system = system
 
     def solve(self, right: np.ndarray, accuracy: float = 0.0) -> np.ndarray:
         """Hand the system out."""
-        raise Recorded(self._matrix, self._nearby, right)
+        raise Recorded(self._system, right)
 
     def close(self) -> None:
-        """Drop the matrices."""
-        del self._matrix, self._nearby
+        """Drop the system."""
+        del self._system
 
 
 def first_system(cells: int):  # type: ignore[no-untyped-def]
-    """Body, tangent, the same without slip, and right-hand side: a hard ball in a block, friction, closed by 0.25 mm."""
+    """Body, first system and right-hand side: a hard ball in a block, friction, closed by 0.25 mm."""
     lines = [np.linspace(0, length, count + 1) for length, count in zip(SIZE, (cells, cells, cells // 2), strict=True)]
     mesh = from_skfem(MeshTet.init_tensor(*lines))
     middles = mesh.nodes[mesh.elements[:, :4]].mean(axis=1)
@@ -80,7 +81,7 @@ def first_system(cells: int):  # type: ignore[no-untyped-def]
     try:
         model.equilibrium(state, CLOSING, state.unknowns)
     except Recorded as recorded:
-        return model.body, recorded.matrix, recorded.nearby, recorded.right
+        return model.body, recorded.system, recorded.right
     raise AssertionError("Newton solved nothing")
 
 
@@ -89,14 +90,14 @@ def child(kind: str, cells: int) -> dict[str, float]:
 
     The direct one factors in the solve, and iterates for the skew part that friction makes.
     """
-    body, matrix, nearby, right = first_system(cells)
+    body, system, right = first_system(cells)
     solver = ReusedFactor(SinglePardiso()) if kind == "direct" else BlockPreconditioned(body)
     begin = time.perf_counter()
-    solver.factor(matrix, nearby)
+    solver.factor(system)
     ready = time.perf_counter()
     figures = {"unknowns": float(len(right)), "setup_seconds": ready - begin}
     try:
-        resolved(solver, matrix, right, ACCURACY)
+        resolved(solver, system.matrix, right, ACCURACY)
         figures["solved"] = 1.0
     except ConvergenceError:
         figures["solved"] = 0.0

@@ -13,9 +13,9 @@
     |   |-- Collapsed             an element is nearly inside out
     |   |-- OutOfTime             the time allowed has passed
     |   `-- OutOfMemory           the memory does not suffice
-    |-- ValidationError       4   a validation row left its recorded state
-    |-- StorageError          5   a file or folder cannot be read or written
-    `-- Interrupted         130   stopped by the user or the system
+    `-- StorageError          5   a file or folder cannot be read or written
+
+Two outcomes of a command are no errors and have an exit code of their own: ``NOT_AS_RECORDED`` and ``INTERRUPTED``.
 """
 
 from __future__ import annotations
@@ -24,6 +24,11 @@ import difflib
 import reprlib
 from collections.abc import Iterable
 from typing import Any, ClassVar
+
+NOT_AS_RECORDED = 4
+"""Exit code of a check whose findings differ from what is recorded: a row of a table, a sample of a data set."""
+INTERRUPTED = 130
+"""Exit code of a command stopped by the user or the system."""
 
 
 class TactsimError(Exception):
@@ -86,22 +91,10 @@ class OutOfMemory(Unfinished):
     """The memory does not suffice; nor would a shorter load step help here."""
 
 
-class ValidationError(TactsimError):
-    """A validation row left its recorded state."""
-
-    exit_code = 4
-
-
 class StorageError(TactsimError, OSError):
     """A file or folder cannot be read or written."""
 
     exit_code = 5
-
-
-class Interrupted(TactsimError):
-    """Stopped by the user or the system."""
-
-    exit_code = 130
 
 
 def suggestion(name: str, allowed: Iterable[str]) -> str:

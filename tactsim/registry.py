@@ -204,7 +204,13 @@ class Registered:
         return {kind: cls for kind, cls in kinds(self.base).items() if self.fits(cls)}
 
     def read(self, value: Any, info: ValidationInfo) -> Any:
-        """The instance that a mapping describes; an instance passes as it is."""
+        """The instance that a mapping describes; an instance passes as it is.
+
+        Raises
+        ------
+        PydanticKnownError
+            If it is no mapping or has no kind.
+        """
         if isinstance(value, self.base) and self.fits(type(value)):
             return value
         if not isinstance(value, Mapping):
@@ -275,7 +281,13 @@ class Named:
         self.what, self.library = what, library
 
     def read(self, value: Any) -> Any:
-        """The shipped set of this name; anything but text passes."""
+        """The shipped set of this name; anything but text passes.
+
+        Raises
+        ------
+        PydanticCustomError
+            If no shipped set has this name, with the nearest one.
+        """
         if not isinstance(value, str):
             return value
         try:

@@ -53,7 +53,7 @@ def _registry() -> Any:
 
 
 def check_increasing(**lists: Sequence[float]) -> None:
-    """Nothing if every list increases strictly.
+    """Check that every list increases strictly.
 
     Raises
     ------
@@ -181,7 +181,6 @@ Frequency = quantity_type("Hz", "5 Hz")
 Speed = quantity_type("m/s", "1 mm/s")
 Angle = quantity_type("rad", "20 deg")
 Resistance = quantity_type("ohm", "10 kohm")
-Resistivity = quantity_type("ohm*m", "500 ohm*cm")
 Conductance = quantity_type("S", "0.5 mS")
 Voltage = quantity_type("V", "5 V")
 Viscosity = quantity_type("Pa*s", "2.9 MPa*s")

@@ -17,7 +17,6 @@ BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", README, re.M | re.S)
 FILES = iter(re.findall(r"Save this as\s+`(\w+\.yaml)`", README))
 NAMES = [next(FILES) if language == "yaml" else "" for language, _ in BLOCKS]
 """Under which name the text tells to save each case."""
-SETUP = "scripts/run"
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,9 @@ from block_problem import read
 
 import tactsim
 from tactsim.fem.body import Body
-from tactsim.fem.linear import SinglePardiso, solved
+from tactsim.fem.linear import solved
 from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.fem.space import TaylorHood
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3

@@ -76,7 +76,13 @@ def kelvin_of(maxwell: GeneralizedMaxwell) -> GeneralizedKelvin:
 
 @contextmanager
 def representable() -> Iterator[None]:
-    """Turns a number that leaves the range of floats inside the block into ``InvalidQuantity``."""
+    """A block in which a number that leaves the range of floats is an error.
+
+    Raises
+    ------
+    InvalidQuantity
+        If strengths or times are so many decades apart that a number overflows.
+    """
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             yield

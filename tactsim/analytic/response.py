@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -37,39 +39,49 @@ def response(model: GeneralizedKelvin | GeneralizedMaxwell, history: History, ti
     piece = np.searchsorted(history.starts, flat, side="right") - 1
     passed = slice(0, piece.max())
     durations = np.diff(history.starts)[passed]
-    spans = (history.pieces.taken(passed), durations), (history.pieces.taken(piece), flat - history.starts[piece], piece)
-    output = _strain(model, *spans) if isinstance(model, GeneralizedKelvin) else _stress(model, history, *spans)
+    whole = _Spans(history.pieces.taken(passed), durations)
+    partial = _Spans(history.pieces.taken(piece), flat - history.starts[piece])
+    if isinstance(model, GeneralizedKelvin):
+        output = _strain(model, whole, partial, piece)
+    else:
+        output = _stress(model, history, whole, partial, piece)
     return np.where(instants < 0, 0.0, output.reshape(instants.shape))
 
 
-def _strain(model: GeneralizedKelvin, passed: tuple[Pieces, Array], asked: tuple[Pieces, Array, Array]) -> Array:
-    """Strain from the pieces passed, with their durations, and from those asked for, with elapsed times and their indices."""
-    pieces, elapsed, index = asked
-    states = np.zeros((len(passed[1]) + 1, model.times.size))
-    carry(passed[1][:, None] / model.times, filtered_input(model.times, *passed), states)
-    inner = np.exp(-elapsed[:, None] / model.times) * states[index] + filtered_input(model.times, pieces, elapsed)
-    strain = model.glassy_compliance * pieces.at(elapsed) + inner @ model.compliances
+@dataclass(frozen=True)
+class _Spans:
+    """Pieces of a history, each from its start over ``elapsed`` (m,) in s."""
+
+    pieces: Pieces
+    elapsed: Array
+
+
+def _strain(model: GeneralizedKelvin, whole: _Spans, partial: _Spans, index: Array) -> Array:
+    """Strain from the whole pieces before, and from the begun piece of each time, with its ``index`` (m,) in the history."""
+    states = np.zeros((len(whole.elapsed) + 1, model.times.size))
+    carry(whole.elapsed[:, None] / model.times, filtered_input(model.times, whole.pieces, whole.elapsed), states)
+    decay = np.exp(-partial.elapsed[:, None] / model.times)
+    inner = decay * states[index] + filtered_input(model.times, partial.pieces, partial.elapsed)
+    strain = model.glassy_compliance * partial.pieces.at(partial.elapsed) + inner @ model.compliances
     if model.fluidity:
-        areas = np.append(0.0, np.cumsum(integral(*passed)))
-        strain += model.fluidity * (areas[index] + integral(pieces, elapsed))
+        areas = np.append(0.0, np.cumsum(integral(whole.pieces, whole.elapsed)))
+        strain += model.fluidity * (areas[index] + integral(partial.pieces, partial.elapsed))
     return strain
 
 
-def _stress(
-    model: GeneralizedMaxwell, history: History, passed: tuple[Pieces, Array], asked: tuple[Pieces, Array, Array]
-) -> Array:
-    """Stress from the pieces passed, with their durations, and from those asked for, with elapsed times and their indices."""
-    pieces, elapsed, index = asked
-    count = len(passed[1])
+def _stress(model: GeneralizedMaxwell, history: History, whole: _Spans, partial: _Spans, index: Array) -> Array:
+    """Stress from the whole pieces before, and from the begun piece of each time, with its ``index`` (m,) in the history."""
+    count = len(whole.elapsed)
     values = history.pieces.taken(slice(0, count + 1)).at(np.zeros(count + 1))
     jumps = np.diff(values, prepend=0.0)
-    jumps[1:] = values[1:] - passed[0].at(passed[1])
+    jumps[1:] = values[1:] - whole.pieces.at(whole.elapsed)
     states = np.empty((count + 1, model.times.size))
     states[0] = jumps[0]
-    gains = filtered_rate(model.times, *passed) + jumps[1:, None]
-    carry(passed[1][:, None] / model.times, gains, states)
-    inner = np.exp(-elapsed[:, None] / model.times) * states[index] + filtered_rate(model.times, pieces, elapsed)
-    return model.equilibrium_modulus * pieces.at(elapsed) + inner @ model.moduli
+    gains = filtered_rate(model.times, whole.pieces, whole.elapsed) + jumps[1:, None]
+    carry(whole.elapsed[:, None] / model.times, gains, states)
+    decay = np.exp(-partial.elapsed[:, None] / model.times)
+    inner = decay * states[index] + filtered_rate(model.times, partial.pieces, partial.elapsed)
+    return model.equilibrium_modulus * partial.pieces.at(partial.elapsed) + inner @ model.moduli
 
 
 def filtered_input(times: Array, pieces: Pieces, elapsed: Array) -> Array:

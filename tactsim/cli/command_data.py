@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, StorageError, TactsimError, ValidationError
+from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimError
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _check(arguments: argparse.Namespace) -> int:
     counts = ", ".join(f"{count} {name}" for name, count in checked.counts.items())
     verdict = f"{len(checked.findings)} findings" if checked.findings else "nothing found"
     console.out(f"{one_line(arguments.store)}: {counts or 'not read'}; {verdict}")
-    return ValidationError.exit_code if checked.findings else 0
+    return NOT_AS_RECORDED if checked.findings else 0
 
 
 def _info(arguments: argparse.Namespace) -> int:
@@ -140,10 +140,9 @@ def _rank(arguments: argparse.Namespace) -> int:
 def _confusion(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.confusion import store_confusion
     from tactsim.dataset.confusion_report import as_text, record, verdict
-    from tactsim.experiments.localization.figures.confusion import confusion_figure
+    from tactsim.experiments.localization.figures.confusion import confusion_png
     from tactsim.localization.estimators.hypotheses import HypothesesEstimator
     from tactsim.localization.interface import ROUNDING_NOISE
-    from tactsim.plotting.canvas import png
 
     if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
@@ -156,7 +155,7 @@ def _confusion(arguments: argparse.Namespace) -> int:
     about = {"store": arguments.store.name, "split": split, "seed": seed, "estimator": estimator.kind, "noise": noise}
     content = record(table, others, about)
     title = f"{arguments.store.name}: {verdict(content)}"
-    drawn = _drawn(lambda: {"confusion.png": lambda: png(confusion_figure(content["counts"], content["classes"], title))})
+    drawn = _drawn(lambda: {"confusion.png": lambda: confusion_png(content["counts"], content["classes"], title)})
     text = as_text(content, drawn)
     _write(folder, content, text, drawn)
     console.out(text.split("\n![")[0].rstrip())
@@ -248,5 +247,5 @@ def _train(arguments: argparse.Namespace) -> int:
     _refuse_file(arguments.out)
     learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
     replace_file(arguments.out, learned.content())
-    console.out(f"{learned.told()}; estimator in {arguments.out}")
+    console.out(f"{learned.summary()}; estimator in {arguments.out}")
     return 0

@@ -10,8 +10,6 @@ from tactsim.cli import console
 from tactsim.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from tactsim.identification.uniaxial import UniaxialFit
     from tactsim.interfaces import Material
 
@@ -71,11 +69,11 @@ def _report(arguments: argparse.Namespace) -> int:
     found = _materials(arguments.material)
     console.out("\n\n".join(material_report(name, material) for name, material in found.items()))
     if arguments.save is not None:
-        from tactsim.cli.figures import material_figure
+        from tactsim.cli.figures.material_curves import material_figure, png
 
         for name, material in found.items():
             place = arguments.save if len(found) == 1 else _numbered(arguments.save, name)
-            _save(material_figure(material, name), place)
+            _save(png(material_figure(material, name)), place)
     return 0
 
 
@@ -101,9 +99,9 @@ def _fit(arguments: argparse.Namespace) -> int:
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
     if arguments.save is not None:
-        from tactsim.cli.figures import fit_figure
+        from tactsim.cli.figures.material_curves import fit_figure, png
 
-        _save(fit_figure(curve, fits, arguments.fit.stem), arguments.save)
+        _save(png(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
     return 0
 
 
@@ -164,12 +162,8 @@ def _check_image(place: Path | None) -> None:
         raise InputError(f"--save {place}: the figure is a PNG file; its name must end in .png")
 
 
-def _save(figure: Figure, place: Path) -> None:
-    import io
-
+def _save(image: bytes, place: Path) -> None:
     from tactsim.results.storage import replace_file
 
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=150)
-    replace_file(place, content.getvalue())
+    replace_file(place, image)
     console.out(f"figure {place}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.cli.interruption import Interruption, interruptible
-from tactsim.errors import Interrupted, InvalidQuantity, StorageError, shown
+from tactsim.errors import INTERRUPTED, InvalidQuantity, StorageError, shown
 
 if TYPE_CHECKING:
     from tactsim.case import Case
@@ -113,7 +113,7 @@ def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:
     """Writes the result, reports it, and returns the exit code of its status."""
-    from tactsim.cli.rendering import rendered_figures
+    from tactsim.cli.figures.result_figures import rendered_figures
     from tactsim.cli.report import last_line, result_report
 
     result = replace(result, title=case.title)
@@ -131,7 +131,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
         if kept:
             console.out(f"  the earlier result, which converged, is kept in {kept}")
         console.out(last_line(result, folder.path, figures))
-    return Interrupted.exit_code if interruption.requested else result.status.exit_code
+    return INTERRUPTED if interruption.requested else result.status.exit_code
 
 
 def _write(
@@ -143,7 +143,8 @@ def _write(
     from tactsim.results.writing import fill
 
     case_id = case.case_id
-    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set)
+    seeds = case.experiment.seeds()
+    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set, seeds=seeds)
     fill(folder, result, case_id=case_id, provenance=origin, figures=figures)
     keep = result.status is not Status.CONVERGED and not arguments.force and _converged(folder.path)
     return folder.publish(keep_earlier=keep)

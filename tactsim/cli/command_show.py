@@ -88,7 +88,7 @@ def _show_result(arguments: argparse.Namespace) -> int:
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
-        from tactsim.cli.rendering import rendered_figures
+        from tactsim.cli.figures.result_figures import rendered_figures
         from tactsim.results.storage import replace_file
 
         figures, warnings = rendered_figures(stored.result)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.cli.interruption import interruptible
-from tactsim.errors import ConvergenceError, InputError, Interrupted
+from tactsim.errors import INTERRUPTED, ConvergenceError, InputError
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -176,5 +176,5 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
             console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")
         console.out(f"data set {arguments.out}; check it with: tactsim data check {arguments.out}")
     if stopped:
-        return Interrupted.exit_code
+        return INTERRUPTED
     return ConvergenceError.exit_code if failed else 0

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactsim.cli import console
-from tactsim.errors import InputError, ValidationError
+from tactsim.errors import NOT_AS_RECORDED, InputError
 
 if TYPE_CHECKING:
     from tactsim.validation import TableOutcome
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     left = [f"{outcome.name}.{row.row.id}" for outcome in outcomes for row in outcome.rows if not row.held]
     wrong = [*left, *(fault.partition(":")[0] for fault in loaded.faults)]
     console.out(f"{'left their recorded state: ' + ', '.join(wrong) if wrong else 'every row holds'}; report {arguments.out}")
-    return ValidationError.exit_code if wrong else 0
+    return NOT_AS_RECORDED if wrong else 0
 
 
 def _progress(line: str) -> None:

@@ -21,7 +21,7 @@ from tactsim.cli import (
     command_validate,
     console,
 )
-from tactsim.errors import InputError, Interrupted, StorageError, TactsimError
+from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
 from tactsim.outside.environment import check_environment
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return int(end.code or 0)
     except KeyboardInterrupt:
         console.error("interrupted")
-        return Interrupted.exit_code
+        return INTERRUPTED
     except TactsimError as error:
         console.error(traceback.format_exc() if debug else str(error))
         return error.exit_code

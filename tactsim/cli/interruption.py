@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from tactsim.errors import Interrupted
+from tactsim.errors import INTERRUPTED
 
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
@@ -33,7 +33,7 @@ class Interruption:
     def receive(self, number: int, frame: FrameType | None) -> None:
         """Handles a signal."""
         if self.requested:
-            os._exit(Interrupted.exit_code)
+            os._exit(INTERRUPTED)
         self.requested = True
         if not self._deferred:
             raise KeyboardInterrupt

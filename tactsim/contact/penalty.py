@@ -23,7 +23,8 @@ SLIP_SHARE = 10.0
 class Regularisation:
     """Penalty in Pa/m that bounds the penetration by ``tolerance`` in m, and the stiffness that decides the state of a point.
 
-    ``softest`` in Pa is a pressure scale of the tissue (a small-strain modulus) that bounds the penalty from below.
+    ``softest`` in Pa is a pressure scale of the tissue (a small-strain modulus) that bounds the penalty from below,
+    ``switch_length`` in m the pressure scale over the switch stiffness.
     """
 
     tolerance: float
@@ -32,7 +33,7 @@ class Regularisation:
     largest_pressure: float = 0.0
 
     augments = False
-    """Whether the forces found serve as multipliers of the next solution, instead of a stiffer penalty."""
+    """Whether the tractions of a solution become multipliers of the next one, instead of a stiffer penalty."""
 
     @property
     def penalty(self) -> float:
@@ -40,15 +41,15 @@ class Regularisation:
         return max(self.softest, EXPECTED_RISE * self.largest_pressure) / (TARGET_SHARE * self.tolerance)
 
     def excess(self, penetration: float, elastic_slip: float) -> float:
-        """Lengths in m over the largest that are allowed; up to one they are small enough."""
+        """Penetration in m over the tolerance; at most one if it is small enough."""
         return penetration / self.tolerance
 
     def seen(self, pressure: float) -> Self:
-        """Adapted to the largest contact pressure in Pa of an accepted step; it never softens."""
+        """Adapted to the largest contact pressure in Pa of a solution; the penalty never decreases."""
         return replace(self, largest_pressure=max(pressure, self.largest_pressure))
 
     def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
-        """The pair with this regularisation; ``state`` is what the last solution left at its points."""
+        """The pair with this regularisation, given the state that the last solution left at its points."""
         penalty = self.penalty
         return pair.with_penalty(penalty, TANGENTIAL_SHARE * penalty, self._switch)
 
@@ -70,11 +71,11 @@ class Augmentation(Regularisation):
     augments = True
 
     def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
-        """The pair with penalties that suit the last pressure at each point, for slip as for penetration."""
+        """The pair with normal and tangential penalties in proportion to the last pressure at each point."""
         pressure = 0.0 if state is None else state.pressure
         penalty = np.maximum(self.softest, EXPECTED_RISE * pressure) / self.softness
         return pair.with_penalty(penalty, penalty, self._switch)
 
     def excess(self, penetration: float, elastic_slip: float) -> float:
-        """Lengths in m over the largest that are allowed; up to one they are small enough."""
+        """Penetration and elastic slip in m over the largest allowed; at most one if both are small enough."""
         return max(penetration / self.tolerance, elastic_slip / (SLIP_SHARE * self.tolerance))

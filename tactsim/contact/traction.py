@@ -16,7 +16,7 @@ from tactsim.interfaces import ContactLaw, RigidBody
 Array = np.ndarray
 
 AT_LIMIT = 1e-9
-"""A point slips if its traction is this near to the limit."""
+"""A point slips if its tangential traction is within this part of the limit."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,8 @@ class ContactState:
     """What the last accepted step left at n surface points, in the body's frame.
 
     ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
-    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``crept`` (d, n) way
-    in m along the body since a point touched, in all steps in which friction held it: exact contact has none.
+    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``crept`` (d, n)
+    elastic slip in m since the point touched, summed over the steps in which friction held it; exact stick has none.
     """
 
     pressure: Array
@@ -41,9 +41,9 @@ class ContactState:
         return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
 
     def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
-        """The same step with the forces found for it as multipliers: solved once more, it needs far less penetration and slip.
+        """The same step with the tractions of its last solution as multipliers (augmented Lagrangian).
 
-        Of the forces found only a ``share`` is taken, the rest from the multipliers before.
+        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before.
         """
         pressure, tangential = now.pressure, now.tangential
         if share < 1:
@@ -78,15 +78,15 @@ class ContactTraction:
         return ContactState(self.pressure, self.tangential, self.points, self.normal, crept=crept)
 
     def iterate(self) -> ContactIterate:
-        """Its forces, for Newton to carry."""
+        """Its tractions, as the first iterate of Newton."""
         return ContactIterate(self.pressure, self.tangential)
 
     def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
-        """Way (n,) in m that points moved along the body since a state although friction holds them."""
+        """Distance (n,) in m that sticking points have moved along the body since a state."""
         return np.asarray(np.linalg.norm(self._held_travel(state, pair), axis=0))
 
     def _held_travel(self, state: ContactState, pair: ContactPair) -> Array:
-        """That way (d, n) as a vector, zero where friction does not hold."""
+        """That displacement (d, n) in m, zero where a point does not stick."""
         travel = self.points - state.points
         along = np.einsum("in,in->n", self.normal, travel)
         held = (self.pressure > 0) & (
@@ -97,7 +97,7 @@ class ContactTraction:
 
 @dataclass(frozen=True)
 class ContactIterate:
-    """Contact forces as unknowns of their own during Newton: ``pressure`` (n,) and ``tangential`` (d, n) in Pa."""
+    """Contact tractions as separate unknowns of Newton: ``pressure`` (n,) and ``tangential`` (d, n) in Pa."""
 
     pressure: Array
     tangential: Array
@@ -108,12 +108,12 @@ class ContactPair:
     """Tissue surface against one rigid body.
 
     ``penalty`` and ``tangential_penalty`` in Pa/m are regularisations, not properties of the tissue: the contact is closed to
-    pressure / penalty and sticks to traction / tangential_penalty. They may be stiff because Newton carries the contact
-    forces as unknowns of their own, updated by their linearisation and condensed point by point (the mixed integration point
+    pressure / penalty and sticks to traction / tangential_penalty. They may be stiff because the contact tractions are separate
+    unknowns of Newton, updated by their linearisation and condensed point by point (the mixed integration point
     method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
     against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
     doi:10.1137/060671061). ``grip`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
-    ``held_limit`` (n,) in Pa, if given, limits the tangential traction whatever the pressure (friction after Tresca).
+    ``held_limit`` (n,) in Pa, if given, limits the tangential traction independently of the pressure (Tresca friction).
     """
 
     body: RigidBody
@@ -125,7 +125,7 @@ class ContactPair:
     held_limit: Array | None = None
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
-        """The same pair, regularised otherwise (all in Pa/m)."""
+        """The same pair with other penalties and another switch stiffness, all in Pa/m."""
         return replace(self, penalty=penalty, tangential_penalty=tangential_penalty, switch_stiffness=switch_stiffness)
 
     def traction_limit(self, pressure: Array) -> Array:
@@ -140,21 +140,21 @@ class ContactPair:
         return bool(self.traction_limit(np.ones(1)).any())
 
     def limit_slope(self, pressure: Array) -> Array:
-        """How the limit (n,) grows with the pressure."""
+        """Derivative (n,) of the limit with respect to the pressure, dimensionless."""
         if self.held_limit is not None:
             return np.zeros_like(pressure)
         return self.grip * self.law.traction_limit_slope(pressure)
 
     def with_held_limit(self, pressure: Array) -> ContactPair:
-        """The same pair with the limits that hold under pressures (n,) in Pa."""
+        """The same pair with the limits at pressures (n,) in Pa kept whatever the pressure becomes."""
         return replace(self, held_limit=self.traction_limit(pressure))
 
     def iterate(self, state: ContactState) -> ContactIterate:
-        """Where Newton starts: the forces of the last accepted step."""
+        """First iterate of Newton: the tractions of the last accepted step."""
         return ContactIterate(state.pressure, state.tangential)
 
     def converged(self, points: Array, state: ContactState) -> ContactTraction:
-        """Traction at points (d, n) by the return mapping itself: what holds at the end of a step."""
+        """Traction at points (d, n) in m by the return mapping, as at the end of a step."""
         gap, normal, hessian = self.body.signed_distance(points)
         pressure = np.maximum(0.0, state.multiplier - self.penalty * gap)
         trial, _ = self._elastic_trial(points, normal, hessian, state)
@@ -167,8 +167,8 @@ class ContactPair:
     def linearised(self, points: Array, state: ContactState, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative at points (d, n), each point open, sticking or slipping as the iterate decides.
 
-        The pressure of a closed point may come out negative on the way; it opens in the next iteration. A slipping point takes
-        the direction of its slip, unless that has turned back against the force it carries.
+        The pressure of a closed point may become negative during the iterations; the point opens in the next one. The traction of
+        a slipping point has the direction of its elastic trial, unless that opposes the traction of the iterate.
         """
         gap, normal, hessian = self.body.signed_distance(points)
         closing = state.multiplier - self.penalty * gap
@@ -177,7 +177,7 @@ class ContactPair:
         weight = np.where(iterate.pressure > 0, iterate.pressure, np.maximum(pressure, 0.0))
         slope = np.where(closed, -self.penalty, 0.0) * normal
         trial, trial_slope = self._elastic_trial(points, normal, hessian, state)
-        decider, decider_slope = self._decider(iterate.tangential, normal, hessian, (trial, trial_slope))
+        decider, decider_slope = self._decider(iterate.tangential, normal, hessian, trial, trial_slope)
         limit = self.traction_limit(weight)
         slips = closed & (np.linalg.norm(decider, axis=0) > limit)
         sticks = closed & ~slips
@@ -204,7 +204,7 @@ class ContactPair:
         )
         return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
 
-    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: tuple[Array, Array]) -> tuple[Array, Array]:
+    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
         """Traction (d, n) whose size decides between stick and slip, and its derivative.
 
         It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
@@ -213,7 +213,7 @@ class ContactPair:
         across = np.einsum("in,in->n", carried, normal)
         plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
         in_plane = carried - across * normal
-        return in_plane + share * (trial[0] - in_plane), (1 - share) * plane_slope + share * trial[1]
+        return in_plane + share * (trial - in_plane), (1 - share) * plane_slope + share * trial_slope
 
     def _elastic_trial(self, points: Array, normal: Array, hessian: Array, state: ContactState) -> tuple[Array, Array]:
         """Trial traction (d, n) if nothing slipped, and its derivative: the old one turned to the new tangent plane, minus

@@ -17,23 +17,23 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.body import Body
-from tactsim.fem.linear import LARGEST_RESIDUAL, direct_solver
+from tactsim.fem.linear import LARGEST_RESIDUAL, IterativeSolver, LinearSystem, direct_solver
 from tactsim.fem.two_level import TwoLevel, free_rows
 
 Array = np.ndarray
 
 RESTART = 80
-"""Directions kept; the systems of a grasp need 30 to 60 for Newton's accuracy."""
+"""Search directions before a restart; the systems of a grasp need 30 to 60 for Newton's accuracy."""
 MOST_CYCLES = 6
 FINEST = 1e-11
-"""Smallest error over its size that is asked; below, round-off of the stiff contact rules."""
+"""Smallest relative error requested; below it, round-off of the stiff contact dominates."""
 BULK = 1.0
 """b, bulk over shear modulus of the augmentation."""
 SHARE = 0.3
-"""Part of the largest residual that ``linear.solved`` admits."""
+"""Fraction of the largest residual that ``linear.solved`` accepts."""
 
 
-class BlockPreconditioned:
+class BlockPreconditioned(IterativeSolver):
     """A solver for the tangents of one body by GMRES; deterministic, its memory is some copies of the matrix.
 
     The residual is measured without units: each force over the root of its stiffness, each volume over that of its compliance.
@@ -50,15 +50,15 @@ class BlockPreconditioned:
         self._matrix: csr_matrix | None = None
         self.iterations = 0
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Make the preconditioner of a matrix.
+    def factor(self, system: LinearSystem) -> None:
+        """Make the preconditioner of the system's matrix.
 
         Raises
         ------
         ConvergenceError
             If a part of it is singular or the matrix holds numbers that are not finite.
         """
-        split = self._split
+        split, matrix = self._split, system.matrix
         if not np.isfinite(matrix.data).all():
             raise ConvergenceError("the tangent holds numbers that are not finite")
         self._matrix = matrix
@@ -113,7 +113,7 @@ class BlockPreconditioned:
         self._matrix = None
 
     def _above(self, left: Array, right: Array, goal: float) -> bool:
-        """Whether a residual is above the goal or above what a solution may leave anywhere."""
+        """Whether a residual exceeds the goal, or its largest entry what a solution may leave."""
         largest = SHARE * LARGEST_RESIDUAL * float(np.abs(right).max())
         return not (np.linalg.norm(self._scale * left) <= 1.01 * goal and np.abs(left).max() <= largest)
 

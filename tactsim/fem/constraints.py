@@ -10,7 +10,7 @@ Array = np.ndarray
 
 
 class Constraints:
-    """Unknowns that Newton must not move; their values are put into the iterate beforehand."""
+    """Unknowns with prescribed values, which the initial guess holds and Newton does not change."""
 
     def __init__(self, fixed: Array, pattern: Pattern):
         self.fixed = np.unique(fixed)

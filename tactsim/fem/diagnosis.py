@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactsim.fem.body import Body, Kinematics
-from tactsim.fem.external_forces import Interface
+from tactsim.fem.external_forces import AnyInterface
 
 Array = np.ndarray
 
@@ -44,7 +44,7 @@ def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> s
 
 
 def not_finite_in_words(
-    body: Body, kinematics: Kinematics, internal: Array, interfaces: Sequence[Interface], tractions: Sequence[Array]
+    body: Body, kinematics: Kinematics, internal: Array, interfaces: Sequence[AnyInterface], tractions: Sequence[Array]
 ) -> str:
     """The first element whose deformation, nodal force or contact traction is no finite number, and which of these it is."""
     for what, finite in (("deformation", kinematics.F), ("stress", body.energy_slopes(kinematics, second=False))):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -11,31 +11,66 @@ from tactsim.fem.surface import SurfaceAssembly
 Array = np.ndarray
 
 
-class Interface(Protocol):
-    """Forces at the points of one surface that depend on where the points are, and on forces carried by Newton's iterate."""
+class LinearisedTraction(Protocol):
+    """Traction at the n points of a surface and its derivative with respect to their positions."""
+
+    @property
+    def traction(self) -> Array:
+        """Traction (d, n) in Pa."""
+
+    @property
+    def derivative(self) -> Array:
+        """Derivative (d, d, n) in Pa/m."""
+
+    @property
+    def coupling(self) -> Array:
+        """The part (d, d, n) of the derivative in Pa/m without which it is symmetric but for curvature."""
+
+
+class LinearisedContact(LinearisedTraction, Protocol):
+    """The linearised traction of a rigid body that may be apart from the surface."""
+
+    @property
+    def gap(self) -> Array:
+        """Gap (n,) in m, negative where the body is penetrated."""
+
+    @property
+    def points(self) -> Array:
+        """Positions (d, n) in m in the frame of the body."""
+
+
+Iterate = TypeVar("Iterate")
+Now = TypeVar("Now", bound=LinearisedTraction)
+
+
+class Interface(Protocol[Iterate, Now]):
+    """Forces at the points of one surface that depend on where the points are, and on forces that Newton carries as unknowns."""
 
     @property
     def surface(self) -> SurfaceAssembly:
         """The surface that the forces act on."""
 
-    def start(self) -> Any:
+    def start(self) -> Iterate:
         """The carried forces at the beginning."""
 
-    def settled(self, displacement: Array) -> Any:
-        """The carried forces that hold at displacements (d, n) of the points."""
+    def settled(self, displacement: Array) -> Iterate:
+        """The carried forces in equilibrium with displacements (d, n) of the points."""
 
     def converged(self, displacement: Array) -> Array:
-        """Traction (d, n) in Pa that holds at displacements (d, n) of the points."""
+        """Traction (d, n) in Pa in equilibrium with displacements (d, n) of the points."""
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa that is lost in the round-off of the positions."""
 
-    def linearised(self, displacement: Array, carried: Any) -> Any:
-        """An object with ``traction`` (d, n) in Pa, ``derivative`` (d, d, n) in Pa/m, and ``coupling``, the part of the
-        derivative without which it is symmetric but for curvature."""
+    def linearised(self, displacement: Array, carried: Iterate) -> Now:
+        """Traction and derivative at displacements (d, n), as the carried forces decide the state of each point."""
 
-    def advanced(self, now: Any, carried: Any, step: Array, damping: float) -> Any:
+    def advanced(self, now: Now, carried: Iterate, step: Array, damping: float) -> Iterate:
         """The carried forces after the points moved by ``damping * step``."""
+
+
+AnyInterface = Interface[Any, Any]
+"""An interface whatever it carries: Newton only hands the carried forces back to it."""
 
 
 class FollowerLoad(Protocol):

@@ -1,39 +1,33 @@
-"""Sparse direct solution: MKL Pardiso where it installs, SuperLU elsewhere."""
+"""Linear systems: what a solver offers, SuperLU, the choice of a direct solver, and solutions that are checked."""
 
 from __future__ import annotations
 
-import copy
-import ctypes
-import functools
 import importlib.util
 import platform
-import weakref
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from tactsim.errors import ConvergenceError, InputError, OutOfMemory
-from tactsim.fem.threads import SERIAL_UNKNOWNS
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
 
 Array = np.ndarray
 
 LARGEST_RESIDUAL = 1e-3
-"""Of a linear solution over its right-hand side; solvable systems, with stiff contact too, leave 1e-13 or so, singular ones 1."""
+"""Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
 LOOSENESS = 10.0
 """How much larger the largest entry of a residual may be, relatively, than its accuracy in the mean."""
 
-GENERAL, SYMMETRIC_INDEFINITE = 11, -2
-"""Pardiso's kinds of matrices."""
-INDEFINITE_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1, 20: 1}
-"""Own settings, nested dissection, refinement only after perturbed pivots, which are perturbed by 1e-13 only, scaling, matching,
-Bunch and Kaufman's pivots: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
 
+@dataclass(frozen=True)
+class LinearSystem:
+    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well as its own."""
 
-SINGLE_PRECISION = 27
-"""Which of Pardiso's settings asks for matrices and vectors in single precision."""
-NO_MEMORY = (-2, -9)
-"""Pardiso's errors for want of memory (oneMKL Developer Reference, pardiso, table of error indicators)."""
+    matrix: csr_matrix
+    nearby: csr_matrix
 
 
 class DirectSolver(Protocol):
@@ -41,150 +35,35 @@ class DirectSolver(Protocol):
 
     name: str
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Factor a matrix; its pattern must be that of the first one. ``nearby`` is one nearly symmetric and as good a guide."""
+    def factor(self, matrix: csr_matrix) -> None:
+        """Factor a matrix; its pattern must be that of the first one."""
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last matrix; its error over its size may be ``accuracy``."""
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,) of the last matrix."""
 
     def close(self) -> None:
         """Release the factor's memory."""
 
 
-class Pardiso:
-    """MKL Pardiso for nonsymmetric matrices, through pypardiso's binding; its memory goes when the object goes."""
+class IterativeSolver(ABC):
+    """Solves systems of one sparse pattern to a requested accuracy."""
 
-    name = "pardiso"
+    name: str
 
-    def __init__(self) -> None:
-        self._solver = _fresh_binding(GENERAL)
-        self._system: tuple[Array, Array, Array] | None = None
+    @abstractmethod
+    def factor(self, system: LinearSystem) -> None:
+        """Take a system and make its preconditioner."""
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Factor the matrix; analyses the pattern on the first call."""
-        if self._system is None:
-            indptr, indices = self._structure(matrix)
-            self._release = weakref.finalize(self, _call_pardiso, self._solver, -1, (np.zeros(0),) * 3, np.zeros(0))
-            phase = 12
-        else:
-            _, indptr, indices = self._system
-            phase = 22
-        self._system = (self._entries(matrix), indptr, indices)
-        _call_pardiso(self._solver, phase, self._system, np.zeros(matrix.shape[0]))
-
-    def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
-        """Row starts and columns, counted from one."""
-        return matrix.indptr.astype(np.int32) + 1, matrix.indices.astype(np.int32) + 1
-
-    def _entries(self, matrix: csr_matrix) -> Array:
-        """Values of the entries of the structure."""
-        return matrix.data
-
+    @abstractmethod
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,)."""
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
-        return _call_pardiso(self._solver, 33, self._system, right)
+        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``."""
 
+    @abstractmethod
     def close(self) -> None:
-        """Release MKL's memory; the next matrix may have another pattern."""
-        if self._system is not None:
-            self._release()
-            self._system = None
+        """Release the preconditioner's memory."""
 
 
-class SymmetricPardiso(Pardiso):
-    """MKL Pardiso for the symmetric part of indefinite matrices of a symmetric pattern: half the work of the general one."""
-
-    name = "pardiso_symmetric"
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._solver = _fresh_binding(SYMMETRIC_INDEFINITE)
-        for index, value in INDEFINITE_SETTINGS.items():
-            self._solver.iparm[index] = value
-
-    def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
-        rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-        self._mirror = np.lexsort((rows, matrix.indices))
-        self._upper = np.flatnonzero(matrix.indices >= rows)
-        starts = np.concatenate([[0], np.cumsum(np.bincount(rows[self._upper], minlength=matrix.shape[0]))])
-        return starts.astype(np.int32) + 1, matrix.indices[self._upper].astype(np.int32) + 1
-
-    def _entries(self, matrix: csr_matrix) -> Array:
-        return (matrix.data[self._upper] + matrix.data[self._mirror[self._upper]]) / 2
-
-
-class SinglePardiso(SymmetricPardiso):
-    """The symmetric factor in single precision: half the memory to read, so half the time, for solutions that guide an iteration.
-
-    What is not a number, or too large for it, must never reach MKL.
-    """
-
-    name = "pardiso_single"
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._solver.iparm[SINGLE_PRECISION] = 1
-
-    def _entries(self, matrix: csr_matrix) -> Array:
-        entries = super()._entries(matrix)
-        if not np.abs(entries).max() < np.finfo(np.float32).max:
-            raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
-        return entries.astype(np.float32)
-
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
-        size = float(np.abs(right).max())
-        return size * super().solve(right / size) if size else np.zeros_like(right)
-
-
-def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array) -> Array:
-    """One phase of Pardiso: 12 analyse and factor, 22 factor, 33 solve, -1 release; ``system`` is data, indptr and indices."""
-    single = bool(solver.iparm[SINGLE_PRECISION])
-    right = np.ascontiguousarray(right, dtype=np.float32 if single else np.float64)
-    solution = np.zeros_like(right)
-    error = ctypes.c_int32(0)
-    integer, real = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_float if single else ctypes.c_double)
-
-    def number(value: int) -> Any:
-        return ctypes.byref(ctypes.c_int32(value))
-
-    data, indptr, indices = system
-    threads = solver.libmkl.MKL_Set_Num_Threads_Local
-    before = threads(ctypes.c_int(1 if len(data) and len(right) < SERIAL_UNKNOWNS else 0))
-    solver._mkl_pardiso(
-        solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0])),
-        number(1),
-        number(1),
-        number(solver.mtype),
-        number(phase),
-        number(len(right)),
-        data.ctypes.data_as(real),
-        indptr.ctypes.data_as(integer),
-        indices.ctypes.data_as(integer),
-        solver.perm.ctypes.data_as(integer),
-        number(1),
-        solver.iparm.ctypes.data_as(integer),
-        number(0),
-        right.ctypes.data_as(real),
-        solution.ctypes.data_as(real),
-        ctypes.byref(error),
-    )
-    threads(ctypes.c_int(before))
-    if error.value in NO_MEMORY:
-        raise OutOfMemory(f"the memory does not suffice for a factor of {len(right)} unknowns; take larger elements")
-    if error.value != 0:
-        raise ConvergenceError(f"the sparse direct solver failed (Pardiso error {error.value}); is the body held?")
-    return solution.astype(float, copy=False)
-
-
-def _fresh_binding(kind: int) -> Any:
-    """pypardiso's binding for a kind of matrix, with handles of its own."""
-    binding = _pardiso_binding(kind)
-    fresh = copy.copy(binding)
-    fresh.pt, fresh.iparm, fresh.perm = np.zeros_like(binding.pt), np.zeros_like(binding.iparm), np.zeros_like(binding.perm)
-    return fresh
+LinearSolver = DirectSolver | IterativeSolver
 
 
 class SuperLU:
@@ -195,8 +74,14 @@ class SuperLU:
     def __init__(self) -> None:
         self._factor: Any = None
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Factor the matrix with a minimum-degree order."""
+    def factor(self, matrix: csr_matrix) -> None:
+        """Factor the matrix with a minimum-degree order.
+
+        Raises
+        ------
+        ConvergenceError
+            If the matrix is singular.
+        """
         from scipy.sparse.linalg import splu
 
         try:
@@ -204,8 +89,14 @@ class SuperLU:
         except RuntimeError as error:
             raise ConvergenceError(f"the sparse direct solver failed ({error}); is the body held?") from error
 
-    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,)."""
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,).
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
         if self._factor is None:
             raise InputError("factor a matrix before solving")
         return self._factor.solve(right)
@@ -216,9 +107,9 @@ class SuperLU:
 
 
 def solved(
-    solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0, nearby: csr_matrix | None = None
+    solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0, nearby: csr_matrix | None = None
 ) -> Array:
-    """Solution (n,) of one linear system that truly solves it, to an error over its size of ``accuracy`` if that is cheaper.
+    """Checked solution (n,) of one linear system, to an error over its size of ``accuracy`` by an iterative solver.
 
     Neither solver reports a singular matrix reliably: both replace zero pivots and return huge numbers.
 
@@ -227,11 +118,14 @@ def solved(
     ConvergenceError
         If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
     """
-    solver.factor(matrix, nearby)
+    if isinstance(solver, IterativeSolver):
+        solver.factor(LinearSystem(matrix, matrix if nearby is None else nearby))
+    else:
+        solver.factor(matrix)
     return resolved(solver, matrix, right, accuracy)
 
 
-def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
+def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
     """Solution (n,) for another right-hand side with the factor that the solver holds.
 
     Raises
@@ -239,7 +133,7 @@ def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: f
     ConvergenceError
         As ``solved``.
     """
-    solution = solver.solve(right, accuracy)
+    solution = solver.solve(right, accuracy) if isinstance(solver, IterativeSolver) else solver.solve(right)
     left = float(np.abs(matrix @ solution - right).max())
     if not left <= max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max()):
         raise ConvergenceError(
@@ -250,7 +144,13 @@ def resolved(solver: DirectSolver, matrix: csr_matrix, right: Array, accuracy: f
 
 
 def direct_solver(name: str | None = None) -> DirectSolver:
-    """The named solver ("pardiso" or "superlu"), by default the fastest that is installed."""
+    """The solver of this name (pardiso_single, pardiso_symmetric, pardiso or superlu), by default the fastest that is installed.
+
+    Raises
+    ------
+    InputError
+        If there is no such solver.
+    """
     if name is None:
         installed = importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
         name = "pardiso" if installed else "superlu"
@@ -260,11 +160,3 @@ def direct_solver(name: str | None = None) -> DirectSolver:
     if name not in kinds:
         raise InputError(f"unknown linear solver {name!r}; allowed: {', '.join(kinds)}")
     return kinds[name]()
-
-
-@functools.cache
-def _pardiso_binding(kind: int) -> Any:
-    """A solver for a kind of matrix that has never been used, to copy: making one searches the disk for MKL for 0.2 s."""
-    import pypardiso
-
-    return pypardiso.PyPardisoSolver(mtype=kind)

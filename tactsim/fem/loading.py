@@ -48,7 +48,7 @@ class StepControl:
     many_iterations: int = 12
 
     def next_step(self, step: float, iterations: int) -> float:
-        """Length of the step after one that took so many iterations."""
+        """Length of the step after one of length ``step`` that took ``iterations`` Newton iterations."""
         if iterations <= self.few_iterations:
             return min(step * self.growth, self.largest)
         return step if iterations <= self.many_iterations else step * self.shrink
@@ -56,14 +56,14 @@ class StepControl:
 
 @dataclass(frozen=True)
 class Event(Generic[State]):
-    """A sign change from negative to positive of ``value`` along the path, located to ``tolerance`` of the load parameter."""
+    """A sign change of ``value`` from negative to positive along the path, located to ``tolerance`` in the load parameter."""
 
     value: Callable[[State], float]
     tolerance: float
 
 
 class PathFollower(Generic[State]):
-    """Advances a state by accepted load steps; ``rejected`` counts the steps that had to be cut back.
+    """Advances a state by accepted load steps; ``rejected`` counts the steps that were cut back.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class PathFollower(Generic[State]):
         Raises
         ------
         ConvergenceError
-            If no step longer than the smallest one converges, or steps make no headway; the message names the load reached.
+            If no step longer than the smallest one converges, or the path makes no progress; the message names the load reached.
         InvalidQuantity
             If the largest step is so short that there would be too many.
         """

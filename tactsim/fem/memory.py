@@ -1,4 +1,4 @@
-r"""What a body of relaxing materials remembers, advanced exactly for a stress history that is linear over each step.
+r"""History variables of a body of relaxing materials, advanced exactly for a stress history that is linear over each step.
 
 With :math:`S_e` the isochoric second Piola-Kirchhoff stress of the energy and one overstress per relaxation time,
 
@@ -8,8 +8,8 @@ With :math:`S_e` the isochoric second Piola-Kirchhoff stress of the energy and o
     h = \Delta t / \tau_i
 
 The last term is that of the parabola through three states, :math:`\psi = (1 + e^{-h}) / 2h - (1 - e^{-h}) / h^2`; it is zero
-while the history is linear, and left out after a kink. Without it a step much longer than a relaxation time would be of first
-order only. A step of no time is elastic.
+while the history is linear, and left out after a jump of its slope. Without it a step much longer than a relaxation time would be
+of first order only. A step of zero duration is elastic.
 
 Source: Simo & Hughes 1998, Computational Inelasticity, section 10.3; Taylor, Pister & Goudreau 1970,
 doi:10.1002/nme.1620020106 (recursion); Holzapfel 2000, Nonlinear Solid Mechanics, section 6.10.
@@ -26,19 +26,19 @@ from tactsim.fem.body import Body, Kinematics, PastStress
 Array = np.ndarray
 
 ROUND_OFF = 128 * np.finfo(float).eps
-"""Stress over the shear modulus that a solution may miss: F is one plus small numbers."""
+"""Round-off of the stress over the shear modulus: F is one plus small numbers."""
 NOISE_GROWTH = 8
 """Sum of the coefficients of the differences, on even steps."""
 MEAN_OF_CUBIC = 0.25
-"""Bound of the mean of what the parabola misses, over the slope at its end times the step."""
+"""Bound of the mean error of the parabola, over the slope of the error at its end times the step."""
 LARGEST_GROWTH = 2.4
-"""Growth of a step beyond which no parabola is laid through it: 1 + sqrt 2 is the limit of stability of such formulas."""
+"""Ratio of two steps beyond which no parabola is fitted: 1 + sqrt 2 is the limit of stability of such formulas."""
 MOST_EARLIER = 3
 """States that the error of a step needs."""
 COMPONENTS = (np.array([0, 1, 2, 0, 1, 0]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of the six components of a symmetric tensor."""
 DOUBLE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-"""How often each component stands in the tensor."""
+"""Multiplicity of each component in the tensor."""
 
 
 @dataclass(frozen=True)
@@ -85,21 +85,21 @@ class Memory:
 
     @classmethod
     def at_rest(cls, body: Body, series: Series) -> Memory:
-        """Nothing has happened yet."""
+        """The stress-free state at the beginning."""
         shape = (6, *body.points.weights.shape)
         return cls(series, np.zeros(shape), np.zeros((len(series.times), *shape)))
 
     @property
     def stress(self) -> Array:
-        """Isochoric part of the stress (6, E, Q) in Pa that holds now."""
+        """Isochoric part of the present stress (6, E, Q) in Pa."""
         return self.series.equilibrium[:, None] * self.elastic + self.overstress.sum(axis=0)
 
     def at_kink(self) -> Memory:
-        """The same memory where the history goes on with another slope."""
+        """The same variables where the slope of the history jumps."""
         return replace(self, earlier=())
 
     def past(self, time_step: float) -> PastStress:
-        """What a step of this length in s starts from."""
+        """Coefficients of a step of this length in s from here."""
         kept, mean, bend = self.series.faded(time_step)
         share, rest = self._bend(time_step)
         weight = (mean + share * bend).sum(axis=0)
@@ -108,7 +108,7 @@ class Memory:
         return PastStress(self.series.equilibrium + weight, np.ascontiguousarray(stress))
 
     def advanced(self, elastic: Array, time_step: float) -> Memory:
-        """After a step of this length in s to the elastic stress (6, E, Q)."""
+        """The variables after a step of this length in s to the elastic stress (6, E, Q) in Pa."""
         kept, mean, bend = (factor[:, None, :, None] for factor in self.series.faded(time_step))
         share, rest = self._bend(time_step)
         overstress = kept * self.overstress + mean * (elastic - self.elastic) + bend * (share * elastic + rest)
@@ -136,7 +136,7 @@ def elastic_stress(body: Body, state: Kinematics) -> Array:
 
 
 def mean_stress(body: Body, state: Kinematics, stress: Array) -> Array:
-    """Mean Cauchy stress (E, Q) in Pa of a second Piola-Kirchhoff stress (6, E, Q): its part of the hydrostatic stress."""
+    """Mean Cauchy stress (E, Q) in Pa of a second Piola-Kirchhoff stress (6, E, Q) in Pa: its hydrostatic part."""
     if not stress.any():
         return np.zeros(state.J.shape)
     C = np.einsum("iJeq,iKeq->JKeq", state.F, state.F)[COMPONENTS]
@@ -159,9 +159,9 @@ def size_of(body: Body, stress: Array) -> float:
 def step_error(body: Body, memory: Memory) -> float:
     r"""Estimated error of the stress over its size after the last step, when steps like it go on; zero for the first of a piece.
 
-    The parabola misses the elastic stress by :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6`. A short relaxation time
-    feels the slope of that at the end of a step, a long one its mean, which fading memory keeps from accumulating. The second
-    step of a piece is judged by the whole bend. What the round-off of F = 1 + ... can make of the differences does not count.
+    The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6` in the elastic stress. A short relaxation
+    time responds to its slope at the end of a step, a long one to its mean, which fading memory keeps from accumulating. For the
+    second step of a piece the whole curvature counts as the error. Differences within the round-off of F = 1 + ... do not count.
     """
     if len(memory.earlier) < 2:
         return 0.0

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
 from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
+from tactsim.fem.balance import Balance, ExternalForces, NewtonState, Scales, point_displacements
 from tactsim.fem.body import Body, Kinematics, PastStress
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
-from tactsim.fem.external_forces import FollowerLoad, Interface
-from tactsim.fem.linear import DirectSolver, direct_solver, resolved, solved
+from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
+from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
 
 Array = np.ndarray
@@ -22,16 +23,10 @@ Array = np.ndarray
 
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
-"""A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, goes in a circle."""
-ROUND_OFF = 128 * np.finfo(float).eps
-"""Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
-
-
+"""A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, is part of a cycle."""
 FORCING, LARGEST_FORCING = 0.05, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
-
-
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
 
@@ -45,7 +40,7 @@ class NewtonOptions:
     max_iterations: int = 25
     smallest_damping: float = 1 / 256
     search_halvings: int = 5
-    """How often a step is halved for a smaller residual, once the residual has moved in circles."""
+    """How often a step is halved for a smaller residual, once the residual has cycled."""
     patience: int = 8
     """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
     start_patience: int | None = None
@@ -59,7 +54,7 @@ class NewtonOptions:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A converged state: the unknowns, the deformation, the traction at each interface, and how Newton got there."""
+    """A converged state: the unknowns, the deformation, the traction at each interface, and the residuals on the way there."""
 
     unknowns: Array
     kinematics: Kinematics
@@ -74,37 +69,21 @@ class Equilibrium:
         return len(self.history) - 1
 
 
-@dataclass(frozen=True)
-class _Iterate:
-    """Where Newton is: ``internal`` less external nodal forces in N, the interfaces' moves in m and tractions in Pa, the relative
-    ``residual``, and the root of the sum of all squared ``unbalanced`` forces in N."""
-
-    unknowns: Array
-    kinematics: Kinematics
-    travel: float
-    internal: Array
-    moved: list[Array]
-    tractions: tuple[Array, ...]
-    residual: float
-    unbalanced: float
-
-
 class Problem:
-    """A body with fixed unknowns, interfaces and loads; keeps the sparse solver between solutions."""
+    """A body with fixed unknowns; keeps the sparse solver between solutions."""
 
-    def __init__(self, body: Body, fixed: Array, *, solver: DirectSolver | None = None, options: NewtonOptions | None = None):
+    def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
         self.body = body
         self.constraints = Constraints(fixed, body.pattern)
         self.solver = solver or direct_solver()
         self.options = options or NewtonOptions()
-        self._volume_scale = body.points.weights.sum() / len(body.space.pressure_corners)
-        self._noise = ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim)
+        self._scales = Scales.of(body)
 
     def solve(
         self,
         guess: Array,
         *,
-        interfaces: Sequence[Interface] = (),
+        interfaces: Sequence[AnyInterface] = (),
         loads: Sequence[FollowerLoad] = (),
         nodal_force: Array | None = None,
         push: PrescribedForce | None = None,
@@ -117,10 +96,10 @@ class Problem:
         Parameters
         ----------
         guess : (size,) unknowns
-        interfaces, loads, nodal_force : what acts on the body
-        push : the force that the interfaces must exert, if it is prescribed instead of their place
-        travel : first guess of their travel in m
-        past : what materials that relax remember
+        interfaces, loads, nodal_force : what acts on the body; nodal forces (size,) in N
+        push : load control: the force that the interfaces must exert, if it is prescribed instead of their displacement
+        travel : first guess of their displacement in m under load control
+        past : history variables of materials that relax
         coarse : a residual that suffices, if it is above the tolerance of the options
 
         Raises
@@ -130,129 +109,109 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        options, history = self.options, []
-        tolerance = max(options.tolerance, coarse)
         body = self.body if past is None else self.body.with_past(past)
-        carried = [interface.start() for interface in interfaces]
-        unknowns, halvings = guess.copy(), 0
-        kinematics = self._admissible(unknowns, 0.0)
-        if kinematics is None:
-            worst = inside_out_in_words(body, body.kinematics(unknowns))
-            raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
-        forces = (interfaces, loads, nodal_force, push)
-        state = self._balance(body, unknowns, kinematics, travel, forces)
-        searching = False
-        for iteration in range(options.max_iterations + 1):
+        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, push)
+        balance = Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
+        return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(guess.copy(), travel)
+
+    def displacements(
+        self, unknowns: Array, interfaces: Sequence[AnyInterface], push: PrescribedForce | None, travel: float
+    ) -> list[Array]:
+        """Displacement (d, n) in m of the points of each interface, relative to its travel under load control."""
+        return point_displacements(self.body, unknowns, interfaces, push, travel)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step of the ``unknowns`` (size,), and of the ``travel`` of the interfaces in m under load control."""
+
+    unknowns: Array
+    travel: float
+
+
+class _Solution:
+    """The iterations of one solution, until the relative residual is below ``goal``."""
+
+    def __init__(self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float):
+        self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
+        self._body, self._forces = balance.body, balance.forces
+        self._carried: list[Any] = [interface.start() for interface in self._forces.interfaces]
+        self._history: list[float] = []
+        self._halvings, self._searching = 0, False
+
+    def run(self, guess: Array, travel: float) -> Equilibrium:
+        """The equilibrium; raises as `Problem.solve` says."""
+        state, history = self._start(guess, travel), self._history
+        for iteration in range(self._options.max_iterations + 1):
             history.append(state.residual)
-            if history[-1] < tolerance:
+            if history[-1] < self._goal:
                 return Equilibrium(state.unknowns, state.kinematics, state.tractions, tuple(history), state.travel)
-            exhausted = iteration == options.max_iterations or halvings > options.most_halvings
-            if exhausted or not np.isfinite(history[-1]) or self._stagnates(history):
+            exhausted = iteration == self._options.max_iterations or self._halvings > self._options.most_halvings
+            if exhausted or not np.isfinite(history[-1]) or self._stagnates():
                 break
             check_time()
-            if searching := searching or self._cycles(history):
-                carried = [i.settled(d) for i, d in zip(interfaces, state.moved, strict=True)]
-            now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.moved, carried, strict=True)]
-            needed = SHARE_OF_TOLERANCE * tolerance / history[-1]
-            accuracy = min(max(FORCING * history[-1], needed), LARGEST_FORCING)
-            step, further = self._linear_step(body, state, (interfaces, now, loads, accuracy), push)
-            damping, admissible = self._damped(state.unknowns, step, state.kinematics)
-            halvings += round(-np.log2(damping))
-            search = options.search_halvings if searching else 0
-            damping, state = self._searched(body, state, (step, further), (damping, admissible, search), forces)
-            moves = self.displacements(step, interfaces, push, further)
-            carried = [i.advanced(n, c, move, damping) for i, n, c, move in zip(interfaces, now, carried, moves, strict=True)]
+            state = self._iterated(state)
+        self._give_up(state)
+
+    def _start(self, unknowns: Array, travel: float) -> NewtonState:
+        kinematics = self._admissible(unknowns, 0.0)
+        if kinematics is None:
+            worst = inside_out_in_words(self._body, self._body.kinematics(unknowns))
+            raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
+        return self._balance.at(unknowns, kinematics, travel)
+
+    def _iterated(self, state: NewtonState) -> NewtonState:
+        """The state after one more step; the carried forces follow."""
+        interfaces = self._forces.interfaces
+        if not self._searching and self._cycles():
+            self._searching = True
+        if self._searching:
+            self._carried = [i.settled(d) for i, d in zip(interfaces, state.displacements, strict=True)]
+        now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.displacements, self._carried, strict=True)]
+        step = self._linear_step(state, now)
+        damping, after = self._searched(state, step, *self._damped(state, step))
+        moves = point_displacements(self._body, step.unknowns, interfaces, self._forces.load_control, step.travel)
+        together = zip(interfaces, now, self._carried, moves, strict=True)
+        self._carried = [i.advanced(n, c, move, damping) for i, n, c, move in together]
+        return after
+
+    def _give_up(self, state: NewtonState) -> NoReturn:
+        history = self._history
         if not np.isfinite(history[-1]):
-            where = not_finite_in_words(body, state.kinematics, state.internal, interfaces, state.tractions)
+            interfaces = self._forces.interfaces
+            where = not_finite_in_words(self._body, state.kinematics, state.internal, interfaces, state.tractions)
             raise ConvergenceError(f"after {len(history)} iterations {where} is no finite number", history)
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
-    def _balance(self, body: Body, unknowns: Array, kinematics: Kinematics, travel: float, forces: tuple[Any, ...]) -> _Iterate:
-        """The iterate at these unknowns with the forces that hold there."""
-        interfaces, loads, nodal_force, push = forces
-        internal = body.residual(unknowns, kinematics)
-        scale = np.abs(internal[: body.space.displacement_size]).max()
-        internal -= self._nodal(unknowns, loads, nodal_force)
-        moved = self.displacements(unknowns, interfaces, push, travel)
-        tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
-        noise = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
-        residual, unbalanced = self._residual_norm(internal, scale, interfaces, (tractions, noise))
-        if push is not None:
-            surfaces = [interface.surface for interface in interfaces]
-            residual = max(residual, push.error(surfaces, tractions, noise, self.options.tolerance))
-        return _Iterate(unknowns, kinematics, travel, internal, moved, tractions, residual, unbalanced)
-
-    def _searched(
-        self,
-        body: Body,
-        before: _Iterate,
-        way: tuple[Array, float],
-        start: tuple[float, Kinematics, int],
-        forces: tuple[Any, ...],
-    ) -> tuple[float, _Iterate]:
-        """The step length, halved some times at most until the unbalanced forces shrink, and where it leads."""
-        (step, further), (damping, kinematics, most) = way, start
-        for halved in range(most + 1):
+    def _searched(self, before: NewtonState, step: _Step, damping: float, kinematics: Kinematics) -> tuple[float, NewtonState]:
+        """The step length and the state after it; once the residual has cycled, halved until the unbalanced forces shrink."""
+        for halved in range((self._options.search_halvings if self._searching else 0) + 1):
             if halved:
                 damping /= 2
-                kinematics = body.kinematics(before.unknowns + damping * step)
-            travel = before.travel + damping * further
-            after = self._balance(body, before.unknowns + damping * step, kinematics, travel, forces)
+                kinematics = self._body.kinematics(before.unknowns + damping * step.unknowns)
+            after = self._balance.at(before.unknowns + damping * step.unknowns, kinematics, before.travel + damping * step.travel)
             if after.unbalanced < before.unbalanced:
                 break
         return damping, after
 
-    @staticmethod
-    def _cycles(history: list[float]) -> bool:
-        """Whether the residual is back where it was: contact points switch in a circle. From then on Newton linearises the forces
-        that hold, not those it carries, and halves steps that raise the unbalanced forces."""
-        return len(history) > CYCLE_AFTER and history[-1] > CYCLE_RATIO * min(history[-5:-1])
+    def _cycles(self) -> bool:
+        """Whether the residual has returned to where it was, as when contact points change their state in a cycle. From then on
+        Newton linearises at the forces that belong to the displacement, and halves steps that raise the unbalanced forces."""
+        return len(self._history) > CYCLE_AFTER and self._history[-1] > CYCLE_RATIO * min(self._history[-5:-1])
 
-    def _stagnates(self, history: list[float]) -> bool:
-        """Whether the last iterations brought nothing, as when contact points switch to and fro, or the first ones."""
-        patience, start = self.options.patience, self.options.start_patience
+    def _stagnates(self) -> bool:
+        """Whether the last iterations, or the first ones, have not halved the residual, as when contact points alternate."""
+        patience, start, history = self._options.patience, self._options.start_patience, self._history
         if start is not None and len(history) > start and min(history) > 0.5 * history[0]:
             return True
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
-    def _nodal(self, unknowns: Array, loads: Sequence[FollowerLoad], nodal_force: Array | None) -> Array:
-        u, _ = self.body.space.split(unknowns)
-        total = np.zeros(self.body.space.size)
-        for load in loads:
-            total += load.force(u)
-        return total if nodal_force is None else total + nodal_force
-
-    def displacements(
-        self, unknowns: Array, interfaces: Sequence[Interface], push: PrescribedForce | None, travel: float
-    ) -> list[Array]:
-        """Displacement (d, n) of each surface relative to the travel of its interface."""
-        moved = [interface.surface.points.interpolate(self.body.space.split(unknowns)[0]) for interface in interfaces]
-        if push is None:
-            return moved
-        return [displacement - travel * e[:, None] for displacement, e in zip(moved, push.directions, strict=True)]
-
-    def _residual_norm(
-        self, internal: Array, scale: float, interfaces: Sequence[Interface], forces: tuple[Any, Any]
-    ) -> tuple[float, float]:
-        """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
-        error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
-        residual, split = internal.copy(), self.body.space.displacement_size
-        scale, noise = max(scale, float(np.abs(internal[:split]).max())), self._noise.copy()
-        for interface, traction, lost in zip(interfaces, *forces, strict=True):
-            force = interface.surface.force(traction)
-            scale = max(scale, float(np.abs(force).max()))
-            residual -= force
-            noise += interface.surface.largest_force(lost)[:split]
-        residual = self.constraints.free(residual)
-        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.options.tolerance)).max()
-        relative = float(max(unbalanced, np.abs(residual[split:]).max() / self._volume_scale))
-        return relative, float(np.linalg.norm(residual[:split]))
-
-    def _linear_step(
-        self, body: Body, state: _Iterate, parts: tuple[Any, ...], push: PrescribedForce | None
-    ) -> tuple[Array, float]:
-        """Newton's step of the unknowns, and of the interfaces' travel if their force is prescribed."""
-        interfaces, now, loads, accuracy = parts
+    def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> _Step:
+        """Newton's step of the unknowns, and of the interfaces' travel under load control."""
+        needed = SHARE_OF_TOLERANCE * self._goal / state.residual
+        accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
+        body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
+        constraints, solver = self._balance.constraints, self._solver
         residual, data = state.internal.copy(), body.tangent(state.unknowns, state.kinematics)
         coupling = np.zeros(len(data))
         for interface, force in zip(interfaces, now, strict=True):
@@ -261,32 +220,32 @@ class Problem:
             if force.coupling.any():
                 coupling += interface.surface.stiffness(force.coupling)
         u, _ = body.space.split(state.unknowns)
-        for load in loads:
+        for load in self._forces.loads:
             data += load.stiffness(u)
-        matrix = body.pattern.matrix(self.constraints.apply(data))
-        nearby = body.pattern.matrix(self.constraints.apply(data - coupling)) if coupling.any() else matrix
-        step = solved(self.solver, matrix, -self.constraints.free(residual), accuracy, nearby)
-        if push is None:
-            return step, 0.0
-        border = push.border([interface.surface for interface in interfaces], now)
-        along = resolved(self.solver, matrix, self.constraints.free(border.column), accuracy)
-        further = border.travel(step, along)
-        return step + further * along, further
+        matrix = body.pattern.matrix(constraints.apply(data))
+        nearby = body.pattern.matrix(constraints.apply(data - coupling)) if coupling.any() else matrix
+        step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
+        if control is None:
+            return _Step(step, 0.0)
+        border = control.border([interface.surface for interface in interfaces], now)
+        along = resolved(solver, matrix, constraints.free(border.column), accuracy)
+        travel = border.travel(step, along)
+        return _Step(step + travel * along, travel)
 
-    def _damped(self, unknowns: Array, step: Array, before: Kinematics) -> tuple[float, Kinematics]:
+    def _damped(self, before: NewtonState, step: _Step) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""
-        floor, damping = self.options.volume_floor * min(1.0, float(before.J.min())), 1.0
-        while damping >= self.options.smallest_damping:
-            after = self._admissible(unknowns + damping * step, floor)
+        floor, damping = self._options.volume_floor * min(1.0, float(before.kinematics.J.min())), 1.0
+        while damping >= self._options.smallest_damping:
+            after = self._admissible(before.unknowns + damping * step.unknowns, floor)
             if after is not None:
+                self._halvings += round(-np.log2(damping))
                 return damping, after
             damping /= 2
-        worst = inside_out_in_words(self.body, self.body.kinematics(unknowns + 2 * damping * step))
+        worst = inside_out_in_words(self._body, self._body.kinematics(before.unknowns + 2 * damping * step.unknowns))
         raise ConvergenceError(f"an element turns inside out in the direction that Newton wants: {worst}")
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
-        after = self.body.kinematics(unknowns)
-        nonlinear = ~self.body.linear
-        J = after.J[nonlinear]
+        after = self._body.kinematics(unknowns)
+        J = after.J[~self._body.linear]
         ok = np.isfinite(after.F).all() and (not J.size or J.min() > floor)
         return after if ok else None

@@ -107,6 +107,7 @@ def linear_stress(F, shear_modulus, work):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True)
 def linear_tangent(shear_modulus, A):  # type: ignore[no-untyped-def]
+    """dS/dF (9, 9) at fixed pressure of the isochoric stress of a linear elastic material, in Pa."""
     A[:, :] = 0.0
     for i in range(3):
         for j in range(3):

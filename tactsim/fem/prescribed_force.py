@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tactsim.errors import ConvergenceError
+from tactsim.fem.external_forces import LinearisedContact
 from tactsim.fem.surface import SurfaceAssembly
 
 Array = np.ndarray
@@ -53,7 +53,7 @@ class PrescribedForce:
     directions: tuple[Array, ...]
     force: float
 
-    def border(self, surfaces: Sequence[SurfaceAssembly], now: Sequence[Any]) -> Border:
+    def border(self, surfaces: Sequence[SurfaceAssembly], now: Sequence[LinearisedContact]) -> Border:
         """The border of the linear system for contacts with ``traction`` and ``derivative`` on their surfaces."""
         slope, missing = 0.0, self.force
         column, row = np.zeros(surfaces[0].size), np.zeros(surfaces[0].size)
@@ -87,7 +87,7 @@ class PrescribedForce:
         return abs(missing) / max(abs(self.force), lost / tolerance)
 
 
-def _approach(contact: Any) -> float:
+def _approach(contact: LinearisedContact) -> float:
     """Travel in m that brings a body into touch with the point nearest to it, and a little further."""
     nearest = int(contact.gap.argmin())
     return float(contact.gap[nearest] + TOUCH * np.abs(contact.points[:, nearest]).max())

@@ -1,6 +1,6 @@
-"""Headway along a path of loads or times: whether the rest of the way can still be expected to end.
+"""Progress along a path of loads or times: whether the rest of the path can still be expected to be completed.
 
-A path is given up by the number of linear solutions, never by the clock, so that the same case ends alike on every machine.
+A path is given up by the number of linear solutions, never by the clock, so that a case ends the same way on every machine.
 """
 
 from __future__ import annotations
@@ -11,27 +11,27 @@ from collections import deque
 from tactsim.errors import ConvergenceError, InvalidQuantity
 
 WINDOW = 100
-"""Linear solutions over which headway is measured: more than half of the shipped cases take fewer in all, and a step that is cut
-seven times before it succeeds no more."""
+"""Linear solutions over which progress is measured: more than half of the shipped cases need fewer in all, and a step that is cut
+seven times before it converges needs no more."""
 MOST_FURTHER = 600
-"""Linear solutions that the rest of the way may take at the recent headway, beside those of the steps that were asked for: twice
-as many as the shipped cases take at most from beginning to end (13 to 357, measured). A grasp that went on to converge was
-expected to take 472 more at its worst, those that crept thousands."""
+"""Linear solutions that the rest of the path may need at the recent rate, besides those of the requested steps: twice
+as many as the shipped cases need at most from beginning to end (13 to 357, measured). For a grasp that did converge the largest
+estimate was 472; for those that stagnated it was thousands."""
 PER_STEP = 60
-"""Further ones for each step that was asked for: a step in space with friction takes 60 at most where nothing is wrong."""
+"""Further ones for each requested step: a 3D step with friction takes 60 at most where nothing is wrong."""
 SHORTEST_REST = 0.05
-"""Part of the way that the rest counts as at least: headway may not shrink without end just before the target."""
+"""Least fraction of the path that the rest counts as, so that progress may not vanish just before the target."""
 MOST_STEPS = 50_000
-"""Steps that a path may be asked to take. The shortest, of a section with few elements, take 10 ms, so many ten minutes."""
+"""Most steps that may be requested. The shortest, of a section with few elements, take 10 ms: in all some ten minutes."""
 
 
 def check_steps(count: float, what: str) -> None:
-    """Refuse a path that is asked to take too many steps.
+    """Refuse a path of too many requested steps.
 
     Raises
     ------
     InvalidQuantity
-        Naming ``what`` asks for them.
+        Naming ``what`` requests them.
     """
     if not count <= MOST_STEPS:
         raise InvalidQuantity(f"{what} asks for {count:.3g} steps; allowed: up to {MOST_STEPS}; take longer or fewer ones")
@@ -40,8 +40,8 @@ def check_steps(count: float, what: str) -> None:
 class Headway:
     """Watches one path from ``start`` to ``target``.
 
-    Headway is measured in proportion to the way already gone, as the logarithm of that way: steps that begin very short and
-    grow by a factor each, as after a sudden change, make headway from the first one on.
+    Progress is measured by the logarithm of the distance covered: steps that begin very short and grow by a factor each, as
+    after a sudden change, count as progress from the first one on.
     """
 
     def __init__(self, start: float, target: float):
@@ -49,14 +49,14 @@ class Headway:
         self._marks: deque[tuple[int, float]] = deque([(0, 0.0)])
 
     def spent(self, solutions: int, place: float, steps: float, failure: ConvergenceError | None = None) -> None:
-        """Take note of ``solutions`` more linear ones, of the ``place`` reached, and of how many more ``steps`` are asked for.
+        """Count ``solutions`` more linear ones up to the ``place`` reached, with so many more ``steps`` requested.
 
-        ``failure`` is why the last step was not accepted, if it was not.
+        ``failure`` is the error of the last step if it was rejected.
 
         Raises
         ------
         ConvergenceError
-            If the rest of the way would take too many at the recent headway.
+            If the rest of the path would need too many at the recent rate.
         """
         total = self._marks[-1][0] + max(solutions, 1)
         share = (place - self._start) / (self._target - self._start)

@@ -14,36 +14,46 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator, gcrotmk
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.linear import DirectSolver
+from tactsim.fem.linear import DirectSolver, IterativeSolver, LinearSystem
 
 Array = np.ndarray
 
 WORTH_A_FACTOR = 30
 """Solutions with a factor that cost as much as a new one; the system after them is factored."""
 MOST_OF_ONE = 24
-"""Solutions that one system may take with an old factor; if it needs more, it is factored."""
+"""Most solutions with an old factor for one system before the system itself is factored."""
 MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
 FINEST = 1e-12
 """Smallest error over its size that is asked of an iteration."""
 
 
-class ReusedFactor:
+class ReusedFactor(IterativeSolver):
     """A direct solver that factors rarely; what it returns depends on the systems that it has solved before, to ``accuracy``."""
 
     def __init__(self, direct: DirectSolver):
         self.name = f"{direct.name}, reused"
         self.factorisations = self.solutions = 0
-        self._direct, self._matrix, self._nearby = direct, None, None
+        self._direct = direct
+        self._matrix: csr_matrix | None = None
+        self._nearby: csr_matrix | None = None
         self._current, self._spent = False, WORTH_A_FACTOR
 
-    def factor(self, matrix: csr_matrix, nearby: csr_matrix | None = None) -> None:
-        """Keep the matrix; it, or the one nearby, is factored only if the last factor no longer helps."""
-        self._matrix, self._nearby = matrix, matrix if nearby is None else nearby
+    def factor(self, system: LinearSystem) -> None:
+        """Keep the system; its nearby matrix is factored only once the last factor no longer pays."""
+        self._matrix, self._nearby = system.matrix, system.nearby
         self._current = False
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``."""
+        """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``.
+
+        Raises
+        ------
+        InputError
+            If there is no matrix yet.
+        ConvergenceError
+            If the right-hand side holds numbers that are not finite.
+        """
         if self._matrix is None:
             raise InputError("factor a matrix before solving")
         if not np.isfinite(right).all():
@@ -67,7 +77,7 @@ class ReusedFactor:
         self._matrix, self._nearby, self._current, self._spent = None, None, False, WORTH_A_FACTOR
 
     def _iterated(self, right: Array, accuracy: float, *, cycles: int) -> tuple[Array, bool]:
-        """Flexible GMRES, which judges the true residual although the factor is rounded; whether it got there."""
+        """Solution by flexible GMRES, which measures the true residual even with a rounded factor; whether it converged."""
         guide = LinearOperator((len(right), len(right)), matvec=self._counted, dtype=float)
         restart = MOST_OF_ONE - 1  # and one more direction instead of those of the cycle before
         solution, _ = gcrotmk(self._matrix, right, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)

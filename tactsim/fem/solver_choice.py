@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.body import Body
-from tactsim.fem.linear import DirectSolver, SinglePardiso, direct_solver
+from tactsim.fem.linear import LinearSolver, direct_solver
+from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 
 LARGEST_FACTOR = 600_000
@@ -16,7 +17,7 @@ thirteen systems with four factors. Memory is the bound: it grows like the unkno
 this was measured with factors in double precision; those in single precision take half."""
 
 
-def solver_for(body: Body, *, largest_factor: int = LARGEST_FACTOR) -> DirectSolver:
+def solver_for(body: Body, *, largest_factor: int = LARGEST_FACTOR) -> LinearSolver:
     """A factor of the symmetric part that preconditions what follows, or the iteration above ``largest_factor`` unknowns."""
     if body.space.size > largest_factor:
         return BlockPreconditioned(body)

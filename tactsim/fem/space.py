@@ -21,6 +21,8 @@ VOLUME_ORDER = {2: 4, 3: 2}
 """Degree of the volume quadrature: 6 points on a triangle (the hoop term is rational), 4 on a tetrahedron."""
 SURFACE_ORDER = {2: 5, 3: 4}
 """Degree of the surface quadrature: 3 points on an edge, 6 on a triangle."""
+FACET_POINTS: Array = get_quadrature(FACET_ELEMENTS[3], SURFACE_ORDER[3])[0].T
+"""Quadrature points (6, 2) of a triangular facet on the reference triangle."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,13 @@ class TaylorHood:
         return np.hstack([u, self.displacement_size + self.pressures])
 
     def volume_points(self, order: int | None = None) -> VolumePoints:
-        """Tabulate the shape functions at the points of a rule of the given degree."""
+        """Tabulate the shape functions at the points of a rule of the given degree.
+
+        Raises
+        ------
+        InputError
+            If an element is inverted or flat.
+        """
         displacement, pressure = _ELEMENTS[self.dim]
         X, W = get_quadrature(displacement, order or VOLUME_ORDER[self.dim])
         values, local = tabulate(displacement, X)

@@ -1,4 +1,4 @@
-"""Marching in time with a controlled error: steps grow and shrink with an estimate of what each of them misses."""
+"""Marching in time with a controlled error: the estimated error of each step decides the length of the next."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class TimeEvent(Generic[State]):
 
 
 class TimeMarcher(Generic[State]):
-    """Advances a state through a smooth stretch of time; ``rejected`` counts the steps that were taken back.
+    """Advances a state through a smooth span of time; ``rejected`` counts the steps that were rejected.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class TimeMarcher(Generic[State]):
         Raises
         ------
         ConvergenceError
-            If no step longer than the smallest one is accepted, or steps make no headway; the message names the time reached.
+            If no step longer than the smallest one is accepted, or no progress is made; the message names the time reached.
         InvalidQuantity
             If there would be too many steps.
         """

@@ -1,4 +1,4 @@
-"""Springs far weaker than the tissue that keep a body from drifting while nothing holds it."""
+"""Springs far weaker than the tissue that suppress rigid-body motion while no contact holds the body."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WEAKNESS = 1e-8
 
 
 class WeakHold:
-    """Springs to ground on every node, by its volume; what they take is of the order of ``WEAKNESS`` and can be asked for."""
+    """Springs to ground on every node, in proportion to its volume; their relative error is of the order of ``WEAKNESS``."""
 
     def __init__(self, body: Body):
         space = body.space

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.stats import t as student
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
@@ -64,12 +64,12 @@ class CalibrationFit:
 
 
 def fit_calibration_line(
-    force: Any,
-    voltage: Any,
+    force: ArrayLike,
+    voltage: ArrayLike,
     *,
     supply: float,
     load: float,
-    saturated: Any = None,
+    saturated: ArrayLike | None = None,
     confidence: float = 0.95,
     full_scale: float | None = None,
 ) -> CalibrationFit:
@@ -109,17 +109,17 @@ def fit_calibration_line(
         raise InvalidQuantity(f"confidence is {confidence:g}; allowed: between 0 and 1")
     if full_scale is not None and not 0 < full_scale < np.inf:
         raise InvalidQuantity(f"full_scale is {full_scale:g} N; allowed: above 0")
-    force, voltage, used = _checked(force, voltage, saturated)
-    measured = divider_conductance(np.where(used, voltage, 0.0), supply=supply, load=load)
-    slope, intercept = _gauss_newton(force, voltage, measured, used, {"supply": supply, "load": load})
-    fitted = slope * force + intercept
-    residual = np.where(used, voltage - supply * load * fitted / (1 + load * fitted), 0.0)
+    forces, voltages, used = _checked(force, voltage, saturated)
+    measured = divider_conductance(np.where(used, voltages, 0.0), supply=supply, load=load)
+    slope, intercept = _gauss_newton(forces, voltages, measured, used, {"supply": supply, "load": load})
+    fitted = slope * forces + intercept
+    residual = np.where(used, voltages - supply * load * fitted / (1 + load * fitted), 0.0)
     sensitivity = np.where(used, divider_slope(fitted, supply=supply, load=load), 0.0)
     points = np.count_nonzero(used, axis=0)
     noise = np.sqrt((residual**2).sum(axis=0) / (points - 2))
-    covariance = noise**2 * _cofactors(force, sensitivity)
-    error = np.where(used, (measured - intercept) / slope - force, 0.0)
-    scale = force.max(axis=0, where=used, initial=0.0) if full_scale is None else np.full(slope.shape, full_scale)
+    covariance = noise**2 * _cofactors(forces, sensitivity)
+    error = np.where(used, (measured - intercept) / slope - forces, 0.0)
+    scale = forces.max(axis=0, where=used, initial=0.0) if full_scale is None else np.full(slope.shape, full_scale)
     reach = student.ppf(0.5 + confidence / 2, points - 2) * np.sqrt(np.stack([covariance[0, 0], covariance[1, 1]]))
     return CalibrationFit(
         slope=slope,
@@ -138,10 +138,10 @@ def fit_calibration_line(
     )
 
 
-def _checked(force: Any, voltage: Any, saturated: Any) -> tuple[Array, Array, Array]:
+def _checked(applied: ArrayLike, measured: ArrayLike, saturated: ArrayLike | None) -> tuple[Array, Array, Array]:
     """Forces and voltages of one shape, and the points that can be used."""
     try:
-        force, voltage = np.asarray(force, dtype=float), np.asarray(voltage, dtype=float)
+        force, voltage = np.asarray(applied, dtype=float), np.asarray(measured, dtype=float)
     except (TypeError, ValueError):
         raise InvalidQuantity("forces and voltages must be arrays of real numbers") from None
     if force.ndim == 1 and voltage.ndim > 1:

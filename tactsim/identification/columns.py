@@ -59,12 +59,12 @@ def _column(table: Table, cell: str, units: dict[str, str]) -> tuple[str, float]
         raise InvalidQuantity(f"{place}: unknown column {table.quoted_header(cell)}; {allowed}")
     unit = (match["unit"] or "").strip()
     if not unit:
-        told = f"write it in brackets after the name, like '{name} [{units[name]}]'"
-        raise InvalidQuantity(f"{place}: column {name!r} has no unit; {told}")
+        hint = f"write it in brackets after the name, like '{name} [{units[name]}]'"
+        raise InvalidQuantity(f"{place}: column {name!r} has no unit; {hint}")
     if unit == units[name]:
         return name, 1.0
     try:
         return name, parse_quantity(f"1 {unit}", "dimensionless" if units[name] == "1" else units[name])
     except InvalidQuantity as error:
-        told = f": {error}" if table.quotable else f" has another unit than {units[name]}"
-        raise InvalidQuantity(f"{place}: column {name!r}{told}") from None
+        hint = f": {error}" if table.quotable else f" has another unit than {units[name]}"
+        raise InvalidQuantity(f"{place}: column {name!r}{hint}") from None

@@ -11,7 +11,7 @@ from tactsim.identification.dma_objective import part_sensitivities
 from tactsim.identification.dma_spectrum import relative_noise
 from tactsim.interfaces import Array
 
-TOLD = 0.5
+DETERMINED = 0.5
 """Assumption: the data tell a constant, or a product of powers of them, if the standard error of its logarithm is below this."""
 
 
@@ -33,22 +33,22 @@ class Determination:
     """Root mean square relative noise."""
 
     @property
-    def told(self) -> Array:
-        """Whether the data tell each constant, shape (p,)."""
-        return self.relative_errors < TOLD
+    def determined(self) -> Array:
+        """Whether the data determine each constant, shape (p,)."""
+        return self.relative_errors < DETERMINED
 
     @property
     def determined_combinations(self) -> int:
-        """Number of independent combinations of log constants whose standard error is below ``TOLD``."""
-        return int((self.singular_values * TOLD > 1).sum())
+        """Number of independent combinations of log constants whose standard error is below ``DETERMINED``."""
+        return int((self.singular_values * DETERMINED > 1).sum())
 
     def statement(self) -> str:
         """The finding in one sentence."""
-        told = [name for name, yes in zip(self.names, self.told, strict=True) if yes]
-        hidden = [name for name, yes in zip(self.names, self.told, strict=True) if not yes]
+        determined = [name for name, yes in zip(self.names, self.determined, strict=True) if yes]
+        hidden = [name for name, yes in zip(self.names, self.determined, strict=True) if not yes]
         return (
             f"{self.data_count} numbers with a relative noise of {self.noise:.2g} determine {self.determined_combinations} "
-            f"combinations of the {len(self.names)} constants; they tell {', '.join(told) or 'none'} alone, "
+            f"combinations of the {len(self.names)} constants; they tell {', '.join(determined) or 'none'} alone, "
             f"and do not tell {', '.join(hidden) or 'none'}: trust the curves, not the constants"
         )
 

@@ -23,7 +23,7 @@ SAMPLES_PER_PERIOD = 4.0
 MOST_UNEXPLAINED = 0.5
 """Part of the variance of the signals that a refined frequency may leave: a sine at a wrong frequency leaves nearly all."""
 SMALLEST_NOISE = 1e-13
-"""Smallest relative noise that is told of exact signals."""
+"""Smallest relative noise that is reported, that of exact signals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,19 +140,18 @@ def complex_modulus(signals: DmaSignals, *, refine: bool = False) -> ModulusEsti
     Source: Ferry 1980, Viscoelastic Properties of Polymers, chapter 1; thesis section 4.4, eq. 4.4.2.
     """
     frequency = _refined_frequency(signals) if refine else signals.frequency
-    load, load_covariance = _oscillation(signals, signals.load, frequency)
-    displacement, displacement_covariance = _oscillation(signals, signals.displacement, frequency)
+    load = _oscillation(signals, signals.load, frequency)
+    displacement = _oscillation(signals, signals.displacement, frequency)
     shape = signals.height / signals.area
-    modulus = shape * load / displacement
+    modulus = shape * load.amplitude / displacement.amplitude
     if not (modulus.real > 0 and modulus.imag > 0):
         raise InvalidQuantity(
             f"at {frequency:g} Hz the elastic modulus is {modulus.real:g} Pa and the viscous {modulus.imag:g} Pa; allowed: > 0. "
             "Load and displacement must both be positive in compression, and the displacement lags"
         )
     compliance = 1 / modulus
-    inner = (load_covariance, displacement_covariance)
-    modulus_errors = _errors(modulus, (1 / load, -1 / displacement), inner)
-    compliance_errors = _errors(compliance, (-1 / load, 1 / displacement), inner)
+    modulus_errors = _errors(modulus, load, displacement)
+    compliance_errors = _errors(compliance, displacement, load)
     relative = (compliance_errors[0] / compliance.real, compliance_errors[1] / -compliance.imag)
     return ModulusEstimate(frequency, complex(modulus), modulus_errors, relative)
 
@@ -181,22 +180,31 @@ def _design(time: Array, frequency: float) -> Array:
     return np.column_stack([np.cos(phase), np.sin(phase), np.ones_like(phase), middle / np.ptp(middle)])
 
 
-def _oscillation(signals: DmaSignals, values: Array, frequency: float) -> tuple[complex, Array]:
-    """a - i b, and the covariance of (a, b), shape (2, 2)."""
+@dataclass(frozen=True)
+class _Oscillation:
+    """Complex ``amplitude`` a - i b of a signal, and the ``covariance`` (2, 2) of (a, b)."""
+
+    amplitude: complex
+    covariance: Array
+
+
+def _oscillation(signals: DmaSignals, values: Array, frequency: float) -> _Oscillation:
+    """The oscillation of one signal (n,) at a frequency in Hz."""
     design = _design(signals.time, frequency)
     coefficients, *_ = np.linalg.lstsq(design, values, rcond=None)
     residual = values - design @ coefficients
     variance = residual @ residual / (residual.size - coefficients.size)
-    return complex(coefficients[0], -coefficients[1]), variance * np.linalg.inv(design.T @ design)[:2, :2]
+    covariance = variance * np.linalg.inv(design.T @ design)[:2, :2]
+    return _Oscillation(complex(coefficients[0], -coefficients[1]), covariance)
 
 
-def _errors(value: complex, factors: tuple[complex, complex], covariances: tuple[Array, Array]) -> tuple[float, float]:
-    """Standard errors of the real and the imaginary part of a product that changes by ``value * factor * d(a - i b)``."""
+def _errors(ratio: complex, numerator: _Oscillation, denominator: _Oscillation) -> tuple[float, float]:
+    """Standard errors of the real and imaginary part of a ``ratio`` in proportion to that of two amplitudes, to first order."""
     variance = np.zeros(2)
-    for factor, covariance in zip(factors, covariances, strict=True):
-        step = value * factor * np.array([1, -1j])
+    for sign, signal in ((1, numerator), (-1, denominator)):
+        step = ratio * (sign / signal.amplitude) * np.array([1, -1j])
         for k, row in enumerate((step.real, step.imag)):
-            variance[k] += row @ covariance @ row
+            variance[k] += row @ signal.covariance @ row
     return float(np.sqrt(variance[0])), float(np.sqrt(variance[1]))
 
 

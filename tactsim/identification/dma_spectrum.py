@@ -17,7 +17,7 @@ SHORTEST, LONGEST = 1e-2, 1e4
 
 MOST_ITERATIONS = 10_000
 ROUND_OFF = 1e-13
-"""Smallest relative noise that is told apart: what the data lose as floats."""
+"""Smallest relative noise that matters: the round-off of the data as floats."""
 
 
 def retardation_grid(frequencies: Array) -> Array:

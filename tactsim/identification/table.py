@@ -50,7 +50,13 @@ class Table:
         return self.cells(number, line)
 
     def cells(self, number: int, line: str) -> list[str]:
-        """The cells of a line, without blanks around them."""
+        """The cells of a line, without blanks around them.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the line is no row of a table.
+        """
         try:
             return [cell.strip() for cell in next(csv.reader([line]), [])]
         except csv.Error as error:

@@ -42,7 +42,7 @@ SMALLEST_SHEAR_FRACTION = 0.1
 """Assumption: a stable fit keeps every shear modulus of the ellipticity conditions above this part of its value at rest."""
 
 NEGLIGIBLE = 1e-9
-"""Part of the data that a stable fit must explain to be told from round-off."""
+"""Part of the data that a stable fit must explain to be distinguished from round-off."""
 
 STRETCH_STATES = 31
 """Values per principal stretch at which a stable fit imposes its conditions, even in the logarithm."""

@@ -99,8 +99,8 @@ def _column(table: Table, allowed: tuple[str, ...]) -> tuple[int, str, str]:
                 break
     if len(found) != 1:
         header = table.quoted_header(", ".join(table.header))
-        told = f"{', '.join(allowed)}, like 'strain [%], nominal stress [kPa]'"
-        raise InvalidQuantity(f"{one_line(table.name)}: header {header} must have exactly one column of {told}")
+        needed = f"{', '.join(allowed)}, like 'strain [%], nominal stress [kPa]'"
+        raise InvalidQuantity(f"{one_line(table.name)}: header {header} must have exactly one column of {needed}")
     return found[0]
 
 

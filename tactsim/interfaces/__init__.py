@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self, TypeVar, final
 import numpy as np
 
 from tactsim.interfaces.run import Course, Progress, run_experiment
+from tactsim.interfaces.seeds import seeds_in
 from tactsim.registry import Kind as Kind
 from tactsim.registry import MarkedFunction, mark
 from tactsim.relaxation import Relaxation
@@ -123,6 +124,10 @@ class Experiment(CaseKind):
 
     history_units: ClassVar[dict[str, str]] = {}
     """Unit of every value that an accepted step records."""
+
+    def seeds(self) -> dict[str, int]:
+        """Every seed of random numbers by its key path, such as ``readout.seed``; empty if nothing is random."""
+        return dict(seeds_in(self))
 
     @abstractmethod
     def begin(self) -> Course:

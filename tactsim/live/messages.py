@@ -9,10 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 
 from tactsim.errors import TactsimError
-from tactsim.experiments.localization.figures.views import COLOURS, ESTIMATE
+from tactsim.experiments.localization.figures.views import ESTIMATE, colour_table
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.estimating import shown_signal
 from tactsim.live.scene import Frame, PageScene
@@ -52,7 +51,7 @@ def scene_message(scene: PageScene, **more: Any) -> str:
         "jaws": jaws,
         "shape": SHAPE,
         "truth": scene.inclusions is not None,
-        "colours": colour_table(),
+        "colours": colour_table(LEVELS + 1),
         "true_colour": TRUE_COLOUR,
         "estimate_colour": ESTIMATE,
     }
@@ -62,11 +61,6 @@ def scene_message(scene: PageScene, **more: Any) -> str:
 def shapes_message(scene: PageScene) -> str:
     """The shapes of the true inclusions, which take up to a second or two for a curved artery."""
     return plain_json({"is": "shapes", "inclusions": drawn_inclusions(scene)})
-
-
-def colour_table() -> list[int]:
-    """Red, green and blue of 256 levels."""
-    return np.round(255 * colormaps[COLOURS](np.arange(LEVELS + 1))[:, :3]).astype(int).ravel().tolist()
 
 
 def plain_json(content: Mapping[str, Any]) -> str:

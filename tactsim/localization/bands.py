@@ -133,6 +133,12 @@ def band_image(signals: Array, pixels: int, form: Form = "corrected") -> Array:
 
 
 def check_count(what: str, count: int, least: int = 1) -> None:
-    """Refuse a number of things that is not whole or less than ``least``."""
+    """Refuse a number of things that is not whole or less than ``least``.
+
+    Raises
+    ------
+    InvalidQuantity
+        Naming what is counted, the count and the least one.
+    """
     if isinstance(count, bool) or int(count) != count or count < least:
         raise InvalidQuantity(f"the number of {what} is {count}; allowed: whole numbers from {least} on")

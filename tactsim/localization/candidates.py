@@ -1,4 +1,4 @@
-"""Balls and straight tubes that could lie in a block, with the change of force that each makes for a contrast of one."""
+"""Balls and straight tubes that could lie in a block, with the change of force of each for unit contrast."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LINE_STEP = 1e-3
 ANGLES = 12
 """Directions of tubes over half a turn."""
 CUTS = (0.25, 0.5, 0.75)
-"""Parts of its way through the block after which a tube may end."""
+"""Fractions of a line's length in the block at which a tube may end."""
 SAME_SPREAD = float(np.sqrt(5 / 4))
 """Radius of the ball over that of the circle with the same second moment along a diameter: r^2 / 5 and r^2 / 4."""
 
@@ -42,21 +42,21 @@ class Candidates:
 
     @property
     def centers(self) -> Array:
-        """Middles (n, 3) in m."""
+        """Centres (n, 3) in m."""
         return (self.begins + self.ends) / 2
 
     def __len__(self) -> int:
         return len(self.radii)
 
     def chosen(self, which: Array) -> Candidates:
-        """Those of a mask or of indices."""
+        """The candidates of a mask (n,) or of indices (m,)."""
         parts = (self.begins, self.ends, self.radii, self.signals)
         return Candidates(self.kind, *(part[which] for part in parts))
 
     def overlaps(self, one: int) -> Array:
-        """Which candidates (n,) meet the given one, which can then not be there as well.
+        """Which candidates (n,) overlap the given one and so exclude it.
 
-        Balls meet nearer than the sum of their radii; tubes, which are straight and level, where their lines come that near.
+        Balls overlap closer than the sum of their radii, straight level tubes where their centre lines come that close.
         """
         reach = self.radii + self.radii[one]
         if self.kind == "sphere":

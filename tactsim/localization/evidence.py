@@ -27,12 +27,12 @@ BEGINNINGS = 4
 DRAWS = 32
 """Bodies drawn near the best pairs, each of which is paired with every other one."""
 ROUNDS = 2
-"""Turns of the search, in which either body of a pair moves to its best place with the other at rest."""
+"""Sweeps of the search; in each, either body of a pair moves to its best place while the other stays."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a class of bodies explains.
+    """How well a class of bodies explains a change.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Change:
         return self.variance / self.contrast_spread**2
 
     def single(self, candidates: Candidates) -> Found:
-        """One of the candidates."""
+        """The evidence of single bodies: one of the candidates alone."""
         along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
         evidence = along**2 / stiff / (2 * self.variance) - np.log(stiff / self.ridge) / 2
         total = float(logsumexp(evidence))
@@ -125,17 +125,17 @@ class Change:
         return np.where(swap, other, first), np.where(swap, first, other)
 
     def _whole(self, evidence: float) -> float:
-        """With the part that all candidates share."""
+        """Log evidence with the part that all candidates share."""
         return evidence + nothing(self.values, self.variance)
 
 
 def nothing(values: Array, variance: float) -> float:
-    """Logarithm of the probability of a change (taxels,) in N if it is all errors of this variance, but for a common constant."""
+    """Log probability of a change (taxels,) in N that is noise of this variance only, up to a common constant."""
     return float(-(values @ values) / (2 * variance) - values.size / 2 * np.log(variance))
 
 
 class _Table:
-    """What pairing a candidate with all others needs."""
+    """Products of all candidates with the change, from which the evidence of pairs follows."""
 
     def __init__(self, candidates: Candidates, change: Change):
         self.candidates, self.change = candidates, change
@@ -145,7 +145,7 @@ class _Table:
     def beside(self, one: int) -> Array:
         """Log evidence (n,) of every candidate as the second one beside a given first, minus infinity where they overlap."""
         cross = self.candidates.signals @ self.candidates.signals[one]
-        found = _pair_evidence(self.along, self.along[one], self.stiff, self.stiff[one], cross, self.change)
+        found = _pair_evidence(self.along, self.along[one], a=self.stiff, b=self.stiff[one], cross=cross, change=self.change)
         found[self.candidates.overlaps(one)] = -np.inf
         return found
 
@@ -166,8 +166,11 @@ class _Table:
         return int(np.argmin(away + (self.candidates.radii - coarse.radii[number]) ** 2))
 
 
-def _pair_evidence(u: Array, w: Array, a: Array, b: Array, cross: Array, change: Change) -> Array:
-    """Log evidence without the common part, from the products with the change, the squares and the product of two signals."""
+def _pair_evidence(u: Array, w: Array, *, a: Array, b: Array, cross: Array, change: Change) -> Array:
+    """Log evidence, without the common part, of pairs of signals.
+
+    ``u`` and ``w`` are the products of the two signals with the change, ``a`` and ``b`` their squares, ``cross`` their product.
+    """
     determinant = a * b - cross**2
     explained = (b * u**2 - 2 * cross * u * w + a * w**2) / determinant
     return explained / (2 * change.variance) - np.log(determinant / change.ridge**2) / 2
@@ -177,7 +180,9 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
     """The best pairs of the coarse grid, no two of which share a body."""
     table = _Table(coarse, change)
     cross = coarse.signals @ coarse.signals.T
-    evidence = _pair_evidence(table.along[:, None], table.along, table.stiff[:, None], table.stiff, cross, change)
+    evidence = _pair_evidence(
+        table.along[:, None], table.along, a=table.stiff[:, None], b=table.stiff, cross=cross, change=change
+    )
     for one in range(len(coarse)):
         evidence[one, coarse.overlaps(one)] = -np.inf
     found: list[tuple[int, int]] = []

@@ -68,26 +68,32 @@ class LearnedWeights:
     def place(self, features: Array) -> tuple[Array, Array]:
         """Mean (4,) of x, y, z and radius in m and their covariance (4, 4) in m^2."""
         height = float(self.block_size[2])
-        told = np.concatenate([network((features - self.middle)[None] / self.scale) for network in self.places])
-        mean = told.mean(axis=0) * height + np.append(self.block_size / 2, 0.0)
-        away = (told - told.mean(axis=0)) * height
+        outputs = np.concatenate([network((features - self.middle)[None] / self.scale) for network in self.places])
+        mean = outputs.mean(axis=0) * height + np.append(self.block_size / 2, 0.0)
+        away = (outputs - outputs.mean(axis=0)) * height
         size = np.exp(2 * float(self.growth[0] + self.growth[1] * features[-2]))
-        return mean, away.T @ away / len(told) + size * height**2 * self.covariance
+        return mean, away.T @ away / len(outputs) + size * height**2 * self.covariance
 
     def check(self, readings: Readings) -> None:
-        """Refuse readings of another matrix or block than those that were learned."""
+        """Refuse readings of another matrix or block than those of the training data.
+
+        Raises
+        ------
+        InputError
+            Naming both matrices or both blocks.
+        """
         if readings.layout != self.layout:
             raise InputError(
                 f"the estimator was trained on the matrix {self.layout}, the readings are of {readings.layout}; train it anew"
             )
         if not np.allclose(readings.block_size, self.block_size, rtol=1e-6):
-            told = [np.asarray(size).tolist() for size in (self.block_size, readings.block_size)]
+            learned, given = (np.asarray(size).tolist() for size in (self.block_size, readings.block_size))
             raise InputError(
-                f"the estimator was trained on a block of {told[0]} m, the readings are of one of {told[1]} m; train it anew"
+                f"the estimator was trained on a block of {learned} m, the readings are of one of {given} m; train it anew"
             )
 
-    def told(self) -> str:
-        """In words."""
+    def summary(self) -> str:
+        """Number of networks and weights, and of the grasps held out, in words."""
         count = sum(matrix.size for matrix in self.places[0].matrices)
         return f"{len(self.places)} networks of {count} weights, {self.held_out} lumps held out"
 
@@ -146,14 +152,19 @@ def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
     ----------
     change, reference : (n, jaw, row, column) in N
     noise : (n,) or one number, in N
+
+    Raises
+    ------
+    InputError
+        If a reference has no force.
     """
     flat, whole = change.reshape(len(change), -1), np.abs(reference).reshape(len(reference), -1).sum(axis=1)
     if not (whole > 0).all():
         raise InputError("the reference has no force; needed: a grasp that has closed")
     size = np.linalg.norm(flat, axis=1)
     least = TINY * whole
-    told = np.log(np.maximum(size, least) / whole), np.log(np.maximum(noise, least) / whole)
-    return np.column_stack([flat / np.maximum(size, least)[:, None], *told])
+    logarithms = np.log(np.maximum(size, least) / whole), np.log(np.maximum(noise, least) / whole)
+    return np.column_stack([flat / np.maximum(size, least)[:, None], *logarithms])
 
 
 def _count(value: Array) -> int:

@@ -154,6 +154,12 @@ class GaussianRegion(Region):
 
 
 def check_probability(probability: float) -> None:
-    """Refuse a probability that is not between 0 and 1."""
+    """Refuse a probability that is not between 0 and 1.
+
+    Raises
+    ------
+    InvalidQuantity
+        Naming the probability.
+    """
     if not 0 < probability < 1:
         raise InvalidQuantity(f"a region of probability {probability}; allowed: above 0 and below 1")

@@ -122,6 +122,11 @@ def joined(images: Array, join: Join = "shared_once") -> Array:
     - ``shared_once``: below each other, the row that two have in common once: P (M - 1) + 1 rows, 2 M - 1 for two (errata E24);
     - ``stacked``: below each other, 2 M rows for two, as eq. 6.3.4 is printed;
     - ``added``: their sum, M rows, as the text before eq. 6.3.1 says.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the images have another shape or no pixels.
     """
     found = np.asarray(images, dtype=float)
     if found.ndim != 3 or 0 in found.shape:

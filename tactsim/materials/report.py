@@ -13,7 +13,7 @@ from tactsim.units import format_quantity
 def material_report(name: str, material: Material) -> str:
     """A text of several lines: source, constants with units, small-strain moduli, ranges of stability.
 
-    ``name`` is a shipped set or what the user calls the material; source and fit are told for the unchanged constants of a set.
+    ``name`` is a shipped set or what the user calls the material; source and fit are given for the unchanged constants of a set.
     """
     entry = LIBRARY.get(name)
     lines = [f"{name} ({material.kind})", *_origin_lines(entry, material), "", "Constants"]

@@ -14,7 +14,7 @@ from tactsim.fem.body import Body, PastStress
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.solver_choice import solver_for
-from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
+from tactsim.fem.space import FACET_POINTS, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
@@ -184,13 +184,3 @@ def touchable_facets(nodes: Array, facets: Mapping[str, Array]) -> dict[str, Arr
         "upper": np.concatenate([facets["upper"], beside[higher]]),
         "lower": np.concatenate([facets["lower"], beside[~higher]]),
     }
-
-
-def _facet_points() -> Array:
-    """Quadrature points (Q, 2) of a facet on the reference triangle."""
-    from skfem.quadrature import get_quadrature
-
-    return get_quadrature(FACET_ELEMENTS[3], SURFACE_ORDER[3])[0].T
-
-
-FACET_POINTS = _facet_points()

@@ -67,7 +67,13 @@ class LayersSource(BlockMeshSettings):
     kind: Literal["layers"]
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m around its only inclusion."""
+        """The mesh of a block of this size in m around its only inclusion.
+
+        Raises
+        ------
+        InputError
+            If there is not exactly one inclusion.
+        """
         if len(inclusions) != 1:
             raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
         block = morphed_block(size, inclusions[0], _sizes(self))
@@ -93,7 +99,13 @@ class GradedSource(BlockMeshSettings):
         return GAP_SHARE * self.inclusion_size
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m around its only inclusion, if any."""
+        """The mesh of a block of this size in m around its only inclusion, if any.
+
+        Raises
+        ------
+        InputError
+            If there is more than one inclusion.
+        """
         if len(inclusions) > 1:
             raise InputError(f"mesh.kind: graded serves one inclusion or none, not {len(inclusions)}; take kind: tetrahedra")
         block = graded_block(size, inclusions[0] if inclusions else None, _sizes(self))
@@ -113,7 +125,13 @@ class StructuredSource(FrozenModel):
         return TOUCHING
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m."""
+        """The mesh of a block of this size in m.
+
+        Raises
+        ------
+        InputError
+            If the cells are so coarse that no element lies in an inclusion.
+        """
         block = structured_block(size, self.cells, inclusions)
         for number, volume in enumerate(block.volumes[:, 0]):
             if volume == 0:
@@ -143,7 +161,13 @@ class FileSource(FrozenModel):
         return TOUCHING
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh in the file, checked against the block and the number of inclusions."""
+        """The mesh in the file, checked against the block and the number of inclusions.
+
+        Raises
+        ------
+        InputError
+            If the mesh has other regions or another size than the block of the case.
+        """
         started = time.perf_counter()
         numbered = None if self.regions is None else {_tag(name): region for name, region in self.regions.items()}
         mesh = read_mesh(self.path, numbered, unit=self.unit, tag=self.tag)

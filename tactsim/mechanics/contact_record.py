@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any, ClassVar, Protocol
+from typing import ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -45,7 +45,10 @@ class FollowedPath(Protocol):
         """Steps that were taken back."""
 
 
-class ContactRecord(ABC):
+Model = TypeVar("Model", bound=ContactModel)
+
+
+class ContactRecord(ABC, Generic[Model]):
     """Collects the accepted states of a run, and says what was found.
 
     Parameters
@@ -65,14 +68,14 @@ class ContactRecord(ABC):
     }
     """Unit of what is recorded of every state; a run need not record all."""
 
-    def __init__(self, model: Any, path: FollowedPath, *, tolerance: float, stiffest: float = math.inf):
+    def __init__(self, model: Model, path: FollowedPath, *, tolerance: float, stiffest: float = math.inf):
         self.model, self.path, self.tolerance = model, path, tolerance
         self.steps: list[StepRecord] = []
         self.event: StepRecord | None = None
         """The step at which what the run looks for happened; None if it did not."""
         self.quality = ContactQuality(stiffest)
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
-        self._kept: dict[str, tuple[ContactModel, TimedState]] = {}
+        self._kept: dict[str, tuple[Model, TimedState]] = {}
 
     def accept(self, state: TimedState, *, event: bool = False) -> StepRecord:
         """Record an accepted state, and whether it is the event.

@@ -10,6 +10,8 @@ Array = np.ndarray
 
 TOUCH = 1e-15
 """Gap at touch over the size of what is touched."""
+MISSED = 100.0
+"""Way over that size after which a body has passed."""
 MOST_APPROACHES = 1000
 """Steps of the approach; each is as long as the gap, which shrinks fast unless the body misses the surface."""
 
@@ -17,8 +19,8 @@ MOST_APPROACHES = 1000
 def first_touch(body: RigidBody, points: Array, *, begin: Array, direction: Array, size: float) -> Array | None:
     """Place (d,) in m of a body's reference point at which it first touches points (d, n); None if it passes beside them.
 
-    It moves from ``begin`` (d,) in m, clear of the points, along the unit vector ``direction``; ``size`` in m is that of the
-    touched body.
+    It moves from ``begin`` (d,) in m, clear of the points and not far from them, along the unit vector ``direction``; ``size`` in
+    m is that of the touched body.
     """
     travel = 0.0
     for _ in range(MOST_APPROACHES):
@@ -27,4 +29,6 @@ def first_touch(body: RigidBody, points: Array, *, begin: Array, direction: Arra
         if gap <= TOUCH * size:
             return place
         travel += gap
+        if travel > MISSED * size:
+            break
     return None

@@ -1,9 +1,10 @@
-"""The inclusion of a case file: any registered kind, told apart by ``kind``; and what a set of them must satisfy."""
+"""The inclusion of a case file: any registered kind; and what a set of them must satisfy."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -46,9 +47,18 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
         body = inclusion.solids(size)[0]
         _check_extent(body, size, name)
         inclusion.check_in_block(size, gap, name)
-        solids.append((name, body, len(inclusion.solids(size)) > 1))
+        solids.append(_Embedded(name, body, hollow=len(inclusion.solids(size)) > 1))
     for first, second in itertools.combinations(solids, 2):
         _check_apart(first, second, size, gap)
+
+
+@dataclass(frozen=True)
+class _Embedded:
+    """The outer body of an inclusion, with the inclusion's name and whether it is hollow."""
+
+    name: str
+    body: Solid
+    hollow: bool
 
 
 def _check_extent(body: Solid, size: Array, name: str) -> None:
@@ -61,18 +71,17 @@ def _check_extent(body: Solid, size: Array, name: str) -> None:
         raise InvalidQuantity(f"{name} measures {large}; allowed: less than the block, {most}; is its unit right?")
 
 
-def _check_apart(first: tuple[str, Solid, bool], second: tuple[str, Solid, bool], size: Array, gap: float) -> None:
-    """Refuse two bodies, each with its name and whether it is hollow, that are nearer than ``gap``."""
-    for (name, body, hollow), (other, other_body, _) in ((first, second), (second, first)):
-        distance = body.signed_distance(_samples(other_body, size))
+def _check_apart(first: _Embedded, second: _Embedded, size: Array, gap: float) -> None:
+    """Refuse two bodies that are nearer than ``gap`` in m."""
+    for one, other in ((first, second), (second, first)):
+        distance = one.body.signed_distance(_samples(other.body, size))
         if distance.max() < 0:
-            raise InvalidQuantity(
-                f"{other} lies inside {name}; allowed: inclusions {'beside' if hollow else 'outside'} each other"
-            )
+            where = "beside" if one.hollow else "outside"
+            raise InvalidQuantity(f"{other.name} lies inside {one.name}; allowed: inclusions {where} each other")
         if distance.min() < gap:
             nearest, allowed = format_quantity(float(abs(distance.min())), "m"), format_quantity(gap, "m")
             how = f"overlap by {nearest}" if distance.min() < 0 else f"are {nearest} apart"
-            raise InvalidQuantity(f"{name} and {other} {how}; allowed: at least {allowed} between inclusions")
+            raise InvalidQuantity(f"{one.name} and {other.name} {how}; allowed: at least {allowed} between inclusions")
 
 
 def _samples(body: Solid, size: Array) -> Array:

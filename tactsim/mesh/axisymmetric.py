@@ -29,6 +29,11 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
     interfaces : heights in m of the top, of each boundary between layers and of the base; a region lies between each two
     size : wanted element size at points in m
     rings : radii in m of circles on the top that must be nodes: the refined mesh is shifted by less than an element for them
+
+    Raises
+    ------
+    InputError
+        If the mesh would have too many elements, or the wanted size is not positive somewhere.
     """
     heights = np.unique(np.asarray(interfaces, float))
     step = min(radius, max(np.diff(heights).min() * SLENDER, np.ptp(heights) / 2))

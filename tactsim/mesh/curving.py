@@ -23,7 +23,7 @@ Array = np.ndarray
 LEAST_CURVATURE = 0.2
 """Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""
 SMALLEST_SHARE = 0.25
-"""Part of the way to its surface below which a mid-node goes back between its corners."""
+"""Fraction of the displacement onto its surface below which a mid-node returns to the midpoint of its edge."""
 LEAST_QUALITY = 0.02
 """Mean ratio below which a mesh is refused."""
 _EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
@@ -137,7 +137,7 @@ def check(block: BlockMesh, size: Array) -> None:
 
 
 def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> tuple[QuadraticMesh, int]:
-    """The mesh with the mid-nodes of interfaces on them, and how many stay short of them to keep elements sound."""
+    """The mesh with the mid-nodes of interfaces on them, and the number of those that stay off them to keep elements valid."""
     edges = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
     patch = np.tile(walls.patch, 3)
     unique, number = np.unique(edges, axis=0, return_inverse=True)
@@ -159,7 +159,13 @@ def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> 
 
 
 def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
-    """Outward boundary facets (F, 6) by name: the faces of the block, and "lumen:k" for the wall of the empty space in k."""
+    """Outward boundary facets (F, 6) by name: the faces of the block, and "lumen:k" for the wall of the empty space in k.
+
+    Raises
+    ------
+    ConvergenceError
+        If a facet of the boundary lies on no face of the block.
+    """
     facets, _ = mesh.boundary_facets()
     numbers = np.full(len(facets), -1)
     for face, (_, axis, end) in enumerate(FACES):
@@ -180,7 +186,7 @@ def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
 
 
 def _kept(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array, Interfaces]:
-    """Everything without the tetrahedra outside and in empty spaces, nodes numbered anew."""
+    """Everything without the tetrahedra outside and in empty spaces, nodes renumbered."""
     used, renumbered = np.unique(simplices[labels >= 0], return_inverse=True)
     triangles = np.searchsorted(used, walls.triangles)
     return corners[used], renumbered.reshape(-1, 4), labels[labels >= 0], Interfaces(triangles, walls.patch)

@@ -12,9 +12,9 @@ from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 
 Array = np.ndarray
 EDGE_SHARE = 1 / 3
-"""Thickness of the cells at the faces over that far away, where none is given."""
+"""Thickness of the cells at the faces over that of the cells far from them, if none is given."""
 ROOM = 0.4
-"""How far the box of rounded cells reaches from the lump to the face, as a part of that way."""
+"""Distance of the box of rounded cells from the lump over that of the face from the lump."""
 NEAR = 0.8
 """Gaps below which the box reaches to a face that a jaw presses, over the thickness of cells at the faces: two cells in so thin a
 gap are too flat for their width."""
@@ -23,7 +23,7 @@ REACH = 2.0
 CORE_ROOM = 0.5
 """Half width of the box over that of the lump, at least where the lines lie away from it."""
 LEAST_BETWEEN = 3
-"""Cells across the box from jaw to jaw, at least; two miss the volume of a ball by 0.6 %."""
+"""Least number of cells across the box from jaw to jaw; with two, the volume of a ball is wrong by 0.6 %."""
 LEAST_ALONG, LEAST_ALONG_CLOSE, PAIRED = 4, 6, 2
 """Cells across the box along the jaws, at least, and around a lump that is close to a jaw. Their number is even, so that a corner
 lies above the pole of the lump: with five the pressure over a hard ball of two thirds of the height, 2 mm from a jaw, is 12 % too
@@ -34,9 +34,9 @@ about as wide as the root of twice the product of radius and gap."""
 SMALL, FAR = 1 / 3, 0.9
 """Height over the block's below which, and gap over the half width above which three cells suffice: the lump is felt little."""
 GATHER = 0.2
-"""How far the lines around a close lump gather at its middle, where the pressure is largest; 0 leaves them even."""
+"""How much the lines around a close lump crowd at its centre, where the pressure is largest; 0 is even spacing."""
 NEAREST = 0.5
-"""Part of a cell that must be left before it is added to those from a face to the box."""
+"""Least fraction of a cell that must remain for another cell between a face and the box."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
 
 
 def _shares(across: int, gather: float) -> Array:
-    """Ascending parts of the way from the middle of the box to its sides, -1 to 1, at which its ``across`` cells end."""
+    """Ascending relative positions, -1 to 1 from side to side of the box, at which its ``across`` cells end."""
     even = np.linspace(-1, 1, across + 1)
     return (1 - gather) * even + gather * even**3
 
@@ -105,7 +105,7 @@ def _through(left: Array, center: float, length: float, shares: Array, settings:
 
 
 def _left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
-    """Ways in m that the box leaves to faces ``gaps`` away from the lump; none to a face that a jaw presses and that is near."""
+    """Distances in m of the box from faces ``gaps`` away from the lump; zero from a pressed face that is near."""
     near = gaps < NEAR * _edge(settings)
     return np.where(pressed & near, 0.0, (1 - ROOM) * gaps)
 

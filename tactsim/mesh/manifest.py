@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import lru_cache
 from pathlib import Path
 
@@ -9,9 +10,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened
+from tactsim.outside.json_text import read_json
 from tactsim.units import FrozenModel
 
-MANIFEST = "manifest.yaml"
+MANIFEST = "manifest.json"
 
 
 class ManifestEntry(FrozenModel):
@@ -58,17 +60,14 @@ def entries(folder: Path) -> tuple[ManifestEntry, ...]:
         state = place.stat()
     except OSError:
         return ()
-    return _entries(place, state.st_mtime_ns)
+    return _entries(place, (state.st_mtime_ns, state.st_size))
 
 
 @lru_cache(maxsize=4)
-def _entries(place: Path, modified: int) -> tuple[ManifestEntry, ...]:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
+def _entries(place: Path, version: tuple[int, int]) -> tuple[ManifestEntry, ...]:
     try:
-        return _ENTRIES.validate_python(tuple(YAML(typ="safe", pure=True).load(opened(place, "description").text()) or ()))
-    except (OSError, YAMLError, ValidationError, TypeError, ValueError) as error:
+        return _ENTRIES.validate_python(read_json(opened(place, "description").text(), str(place)))
+    except (OSError, ValidationError, StorageError, ValueError) as error:
         raise StorageError(f"cannot read {place}: {error}") from None
 
 
@@ -78,11 +77,10 @@ def add_entry(folder: Path, entry: ManifestEntry) -> None:
     Raises
     ------
     StorageError
-        If it cannot be written.
+        If it is damaged or cannot be written.
     """
-    lines = [f"{'- ' if k == 0 else '  '}{key}: {value!r}\n" for k, (key, value) in enumerate(entry.model_dump().items())]
+    listed = [known.model_dump() for known in (*entries(folder), entry)]
     try:
-        with open(folder / MANIFEST, "a", encoding="utf-8") as file:
-            file.write("".join(lines))
+        (folder / MANIFEST).write_text(json.dumps(listed, indent=1) + "\n", encoding="utf-8")
     except OSError as error:
         raise StorageError(f"cannot write {folder / MANIFEST}: {error.strerror or error}") from None

@@ -95,7 +95,7 @@ def stored_block_mesh(
 
 
 def cache_folder() -> Path:
-    """The user's folder of meshes, which can be made again."""
+    """The user's cache folder of meshes."""
     return user_cache("meshes")
 
 
@@ -159,7 +159,7 @@ def _read(place: Path, size: Array, inclusions: Sequence[Inclusion], key: str) -
 
 
 def _kept(block: BlockMesh, place: Path) -> bool:
-    """Put a mesh into the cache unless a sound one is there; whether it was put. A cache that refuses costs only time."""
+    """Write a mesh into the cache unless a valid one is there; whether it was written. An unwritable cache only costs time."""
     waiting = place.with_name(f".{place.name}.{os.getpid()}-{threading.get_ident()}.partial")
     try:
         place.parent.mkdir(parents=True, exist_ok=True)

@@ -69,7 +69,7 @@ def swept(section: QuadraticMesh, sectors: int, turn: float = 2 * np.pi) -> Swep
     simplices = numbers[simplices[..., 0], simplices[..., 1] % planes]
     angles = np.where(on_axis[places[:, 0]], 0.0, turn / sectors * places[:, 1])
     straight = quadratic_mesh(_turned(section.nodes[places[:, 0]], angles), simplices, section.regions[triangles])
-    return _rounded(straight, section, places, (sectors, turn))
+    return _rounded(straight, section, places, sectors=sectors, turn=turn)
 
 
 def _prisms(triangles: Array, on_axis: Array, sectors: int) -> tuple[Array, Array]:
@@ -85,9 +85,8 @@ def _prisms(triangles: Array, on_axis: Array, sectors: int) -> tuple[Array, Arra
     return np.concatenate(found), np.concatenate(owners)
 
 
-def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, sweep: tuple[int, float]) -> Swept:
+def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, sectors: int, turn: float) -> Swept:
     """The mesh with the middles of its edges half way in angle; ``places`` (n, 2) are section node and plane of the corners."""
-    sectors, turn = sweep
     ends = places[straight.elements[:, _EDGES]].reshape(-1, 2, 2)
     middles, first = np.unique(straight.elements[:, 4:].ravel(), return_index=True)
     ends = ends[first]

@@ -1,4 +1,4 @@
-"""Better shaped tetrahedra by moving their corners, each along what it must stay on."""
+"""Smoothing: better shaped tetrahedra by moving corners, each along the surface or edge that it must stay on."""
 
 from __future__ import annotations
 

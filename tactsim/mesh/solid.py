@@ -85,7 +85,13 @@ class Inclusion(CaseKind):
 
 
 def check_bounds(bounds: Array, size: Array, gap: float, name: str) -> None:
-    """Refuse bounds (2, 3) that leave a block of size (3,) or come nearer to a face than ``gap``, all in m."""
+    """Refuse bounds (2, 3) that leave a block of size (3,) or come nearer to a face than ``gap``, all in m.
+
+    Raises
+    ------
+    InvalidQuantity
+        Naming the body, the face and the least distance.
+    """
     for face, axis, end in FACES:
         distance = float(size[axis] - bounds[1, axis] if end else bounds[0, axis])
         if distance < gap:

@@ -100,7 +100,13 @@ def _unpacked(arrays: dict[str, Array]) -> MeshArrays:
 
 
 def main(path: str, answer: str, largest: str) -> int:
-    """Read one file and write its arrays; what the child process does."""
+    """Read one file and write its arrays; what the child process does.
+
+    Raises
+    ------
+    MemoryError
+        If the file does not fit into the memory.
+    """
     import warnings
 
     import meshio

@@ -130,7 +130,13 @@ def document_text(result: Result, case_id: str) -> str:
 
 
 def plain_json(value: Any, place: tuple[str, ...], lost: list[str]) -> Any:
-    """``value`` as plain JSON values; the places of numbers that are not finite are added to ``lost``."""
+    """``value`` as plain JSON values; the places of numbers that are not finite are added to ``lost``.
+
+    Raises
+    ------
+    TypeError
+        If JSON cannot hold a value, naming its place.
+    """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, dict):

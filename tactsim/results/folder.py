@@ -144,7 +144,13 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
 
 
 def check_replaceable(path: Path, replace: bool) -> None:
-    """Refuses a place that is taken by something which must not be replaced."""
+    """Refuses a place that is taken by something which must not be replaced.
+
+    Raises
+    ------
+    StorageError
+        Naming what is in the way and how to replace it.
+    """
     if not os.path.lexists(path) or (path.is_dir() and not path.is_symlink() and not any(path.iterdir())):
         return
     if path.is_symlink() or not path.is_dir():

@@ -9,19 +9,29 @@ from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
 
 from tactsim import __version__
+from tactsim.code_identity import code_identity
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "numba", "pypardiso", "pydantic", "ruamel.yaml", "pint")
 
 
 def provenance(
-    case: Mapping[str, Any], case_id: str, *, case_file: str = "", overrides: Sequence[str] = (), seed: int | None = None
+    case: Mapping[str, Any],
+    case_id: str,
+    *,
+    case_file: str = "",
+    overrides: Sequence[str] = (),
+    seeds: Mapping[str, int] | None = None,
 ) -> dict[str, Any]:
-    """The content of ``provenance.json`` for a resolved case; of ``case_file`` only the name is kept."""
+    """The content of ``provenance.json`` for a resolved case and its ``seeds`` by key path, with only the name of ``case_file``.
+
+    ``code`` is the version of tactsim and a hash of its source: a result can be compared with one of the same code only.
+    """
     return {
         "case_id": case_id,
         "case_file": _without_folders(case_file),
         "overrides": [_without_folders(override) for override in overrides],
-        "seed": seed,
+        "seeds": dict(seeds or {}),
+        "code": code_identity(),
         "versions": {"tactsim": __version__, "python": platform.python_version(), **_package_versions()},
         "platform": {"system": platform.system(), "machine": platform.machine()},
         "case": _without_folders(dict(case)),

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from tactsim.errors import ConvergenceError, InputError, Interrupted, StorageError, shown
+from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, shown
 from tactsim.results.scene import Scene, UnreadableScene
 
 AnyScene = TypeVar("AnyScene", bound=Scene)
@@ -25,7 +25,7 @@ class Status(StrEnum):
     @property
     def exit_code(self) -> int:
         """Exit code of the command line."""
-        return {"converged": 0, "failed": ConvergenceError.exit_code, "interrupted": Interrupted.exit_code}[self.value]
+        return {"converged": 0, "failed": ConvergenceError.exit_code, "interrupted": INTERRUPTED}[self.value]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,13 @@ from tactsim.outside.text import one_line
 
 @contextmanager
 def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
-    """Turns the system's refusal into an error that names the path."""
+    """Turns the system's refusal into an error that names the path.
+
+    Raises
+    ------
+    StorageError
+        If the system refuses a file within the block, with the path and the reason.
+    """
     try:
         yield
     except StorageError:

@@ -10,7 +10,6 @@ from pydantic import Field
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Array
 from tactsim.registry import Named
-from tactsim.sensors.divider import divider_conductance
 from tactsim.units import Conductance, ConductancePerForce, FrozenModel
 
 
@@ -61,16 +60,6 @@ class LinearCalibration(FrozenModel):
                 "allowed: 0 or more, as the sensor only carries pressure"
             )
         return np.maximum(self.slope * force + self.intercept, 0.0)
-
-    def force_from_voltage(self, voltage: Array, *, supply: float, load: float) -> Array:
-        """Force in N for voltages in V over a load resistor in ohm at a supply in V (2.2.1).
-
-        Raises
-        ------
-        InvalidQuantity
-            If a voltage is not finite or not below the supply.
-        """
-        return self.force(divider_conductance(voltage, supply=supply, load=load))
 
 
 MILLISIEMENS = 1e-3

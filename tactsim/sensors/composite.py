@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from tactsim.registry import Named
 from tactsim.sensors.tunnelling import LOOSEST_PACKING, particle_separation, tunnelling_decay
 from tactsim.units import (
     Area,
@@ -91,13 +89,3 @@ class Composite(FrozenModel):
                     f"{name} gives a strain of {strain:.3g} at the largest_force; allowed: below 0.5 (modulus, area or force?)"
                 )
         return self
-
-
-def _shipped() -> Mapping[str, Composite]:
-    from tactsim.sensors.composite_library import LIBRARY  # it is made of this module's class
-
-    return LIBRARY
-
-
-AnyComposite = Annotated[Composite, Named("composite", _shipped)]
-"""A composite in a model: the name of a shipped one, or its numbers."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from tactsim.registry import shipped
+from tactsim.registry import Named, shipped
 from tactsim.sensors.composite import Composite
 from tactsim.sensors.tunnelling import contact_coefficient
 
@@ -39,6 +39,9 @@ LIBRARY: dict[str, Composite] = {
     ),
 }
 """Name -> composite."""
+
+AnyComposite = Annotated[Composite, Named("composite", lambda: LIBRARY)]
+"""A composite in a model: the name of a shipped one, or its numbers."""
 
 
 def named_composite(name: str) -> Composite:

@@ -19,8 +19,7 @@ from pydantic import Field
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import Sensor
-from tactsim.sensors.composite import AnyComposite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.force_history import checked_conductances, checked_forces, checked_times
 from tactsim.sensors.tunnelling import relative_resistance
 from tactsim.units import Area, format_quantity

@@ -26,14 +26,16 @@ def film_quantities(film: Film) -> dict[str, Quantity]:
 def film_assumptions(film: Film) -> tuple[str, ...]:
     """What is assumed of the film."""
     composite = film.composite
-    told = [
+    assumptions = [
         f"film: {composite.source}",
         "creep with coefficients that follow the force (errata E29), which gives eq. 2.3.1 under a constant force",
         f"the coefficients of creep depend on the pressure; they were measured on {composite.reference_area * 1e6:.4g} mm²",
     ]
     if film.magnification != 1:
-        told.append("the unstrained resistance is inverse to the active area, the contact resistance depends on the force alone")
-    return tuple(told)
+        assumptions.append(
+            "the unstrained resistance is inverse to the active area, the contact resistance depends on the force alone"
+        )
+    return tuple(assumptions)
 
 
 def film_warnings(film: Film, largest: float) -> tuple[str, ...]:

@@ -31,10 +31,10 @@ class ForceReading(ForceElectronics):
 
 def read_variables(voltage: str, force: str) -> dict[str, tuple[str, str]]:
     """Unit and description by name of what is read, with noise and without."""
-    told: dict[str, tuple[str, str]] = {}
+    variables: dict[str, tuple[str, str]] = {}
     for ending, words in (("", "with noise"), (CLEAN, "without noise: what film, electronics and calibration alone make of it")):
-        told |= {f"voltage{ending}": ("V", f"{voltage}, {words}"), f"read_force{ending}": ("N", f"{force}, {words}")}
-    return told
+        variables |= {f"voltage{ending}": ("V", f"{voltage}, {words}"), f"read_force{ending}": ("N", f"{force}, {words}")}
+    return variables
 
 
 def latest(times: Array, at: Array) -> Array:

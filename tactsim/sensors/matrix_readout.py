@@ -60,7 +60,7 @@ class MatrixReadout(ForceElectronics):
         ----------
         time, force : array
             Forces are linear between times. A taxel cannot be pulled: small tensions of a
-            numerical contact are left out and told.
+            numerical contact are set to zero and reported.
         area : float
             Of a taxel in m^2.
 

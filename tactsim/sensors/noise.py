@@ -52,7 +52,13 @@ class Noise(FrozenModel):
 
 
 def required(generator: np.random.Generator | None) -> np.random.Generator:
-    """The generator, or an error that asks for one."""
+    """The random generator that noise needs.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there is none.
+    """
     if not isinstance(generator, np.random.Generator):
         raise InvalidQuantity("a chain with noise needs a random generator; pass numpy.random.default_rng(seed)")
     return generator

@@ -33,8 +33,8 @@ def range_errors(force: Array, reading: Array, borders: Sequence[float]) -> tupl
     for low, high in itertools.pairwise(borders):
         chosen = (force >= low) & ((force <= high) if high == borders[-1] else (force < high))
         error = (reading - force)[chosen]
-        told = (root_mean_square(error), float(np.abs(error).max())) if error.size else (0.0, 0.0)
-        found.append(ForceRange(low, high, int(error.size), *told))
+        rms, largest = (root_mean_square(error), float(np.abs(error).max())) if error.size else (0.0, 0.0)
+        found.append(ForceRange(low, high, int(error.size), rms, largest))
     return tuple(found)
 
 

@@ -136,7 +136,7 @@ class SignalChain(FrozenModel):
 
     @property
     def largest_voltage(self) -> float:
-        """Last number in V below the supply: a finite conductance."""
+        """Largest floating-point voltage in V below the supply, at which the conductance is still finite."""
         return float(np.nextafter(self.supply, 0))
 
     def conductance_step(self, conductance: Array) -> Array:

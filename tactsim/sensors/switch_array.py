@@ -6,7 +6,6 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.special import ndtr
 
 from tactsim.errors import InvalidQuantity
 from tactsim.units import Force, FrozenModel, Length, format_quantity
@@ -109,13 +108,3 @@ def rising(signals: Array, threshold: float, before: Array) -> Array:
     """
     earlier = np.concatenate([before[None], signals[:-1]])
     return (signals > threshold) & (signals > earlier)
-
-
-def false_switching_rate(times: float) -> float:
-    r"""Share of the samples of an open switch that :func:`rising` takes, with a threshold of ``times`` its white Gaussian noise.
-
-    .. math:: P(x_N > k,\ x_N > x_{N-1}) = \int_k^\infty \varphi \Phi\, dx = \tfrac12 (1 - \Phi(k)^2)
-
-    """
-    tail = float(ndtr(-times))
-    return tail * (1 - tail / 2)

@@ -23,6 +23,11 @@ def tunnelling_decay(barrier: float) -> float:
     barrier : float
         Height of the potential barrier between two particles in J, > 0.
 
+    Raises
+    ------
+    InvalidQuantity
+        If the barrier is not positive.
+
     Source: thesis, eq. 2.1.4; J. G. Simmons 1963, doi:10.1063/1.1702682.
     """
     if not barrier > 0:
@@ -42,6 +47,11 @@ def particle_separation(diameter: float, volume_fraction: float) -> float:
     volume_fraction : float
         phi, between 0 and pi/6.
 
+    Raises
+    ------
+    InvalidQuantity
+        If the diameter is not positive or the volume fraction out of its range.
+
     Source: thesis, eq. 2.1.8, after S. Wu 1985, doi:10.1016/0032-3861(85)90015-1.
     """
     if not 0 < volume_fraction < LOOSEST_PACKING:
@@ -59,28 +69,17 @@ def volume_fraction(filler: tuple[float, float], matrix: tuple[float, float]) ->
     filler, matrix : (float, float)
         Mass in kg and density in kg/m^3 of the residue and of what burnt off, > 0.
 
+    Raises
+    ------
+    InvalidQuantity
+        If a mass or a density is not positive.
+
     Source: thesis, section 2.3.
     """
     if min(*filler, *matrix) <= 0:
         raise InvalidQuantity(f"masses and densities are {(*filler, *matrix)} kg, kg/m^3; allowed: > 0")
     filled, empty = filler[0] / filler[1], matrix[0] / matrix[1]
     return filled / (filled + empty)
-
-
-def junction_resistance(separation: float, area: float, decay: float) -> float:
-    r"""Tunnelling resistance in ohm between two particles.
-
-    .. math:: R_m = \frac{8 \pi h s}{3 a^2 \gamma q^2} e^{\gamma s}
-
-    Parameters
-    ----------
-    separation, area, decay : float
-        s in m, a^2 in m^2, gamma in 1/m.
-
-    Source: thesis, eq. 2.1.3 with the Planck constant that is missing there in the numerator.
-    """
-    scale = 8 * np.pi * constants.h * separation / (3 * area * decay * constants.e**2)
-    return float(scale * np.exp(decay * separation))
 
 
 def relative_resistance(strain: ArrayLike, exponent: float) -> Array:
@@ -112,6 +111,11 @@ def contact_coefficient(resistivities: tuple[float, float], hardness: float) -> 
         Of composite and electrode in ohm m.
     hardness : float
         Meyer hardness of the softer one in Pa.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the resistivities have no positive sum or the hardness is not positive.
 
     Source: thesis, eq. 2.1.12, after R. Holm, Electric Contacts, 1967.
     """

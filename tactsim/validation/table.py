@@ -12,9 +12,6 @@ from tactsim.units import FrozenModel, parse_quantity
 from tactsim.validation.calls import Call, any_call, callable_now
 from tactsim.validation.study import Study
 
-TABLE_SCHEMA = "tactsim/thesis-table/1"
-MANIFEST_SCHEMA = "tactsim/thesis-manifest/1"
-
 
 class Tolerance(FrozenModel):
     """How far the found number may be from the expected one, and why."""

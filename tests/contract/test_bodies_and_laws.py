@@ -80,7 +80,7 @@ def test_tractions_stay_in_the_cone_and_never_pull(kind, law, dim):
     assert (size <= law.traction_limit(found.pressure) * (1 + 1e-8)).all()
     np.testing.assert_allclose(np.einsum("in,in->n", found.tangential, found.normal), 0, atol=1e-9 * max(size.max(), 1))
     if np.isfinite(law.traction_limit(found.pressure)).all():
-        assert not (size * (1 + 3e-8) <= law.traction_limit(found.pressure) * (1 - 1e-8)).all(), "some points slip"
+        assert (size >= law.traction_limit(found.pressure) * (1 - 1e-8)).any(), "some points slip"
 
 
 @pytest.mark.parametrize(("kind", "dim"), PLACED)

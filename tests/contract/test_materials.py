@@ -93,27 +93,25 @@ def test_tangent_is_the_derivative_of_the_stress(kind):
     tangent = material.tangent(F, pressure)
     assert_equal_to(tangent, expected, material.shear_modulus)
     with pytest.raises(AssertionError):
-        assert_equal_to(tangent * (1 + 3 * ROUND_OFF), expected, material.shear_modulus)
+        assert_equal_to(_altered(material).tangent(F, pressure), expected, material.shear_modulus)
 
 
 @every_kind
 def test_tangent_has_the_symmetry_of_a_second_derivative(kind):
     material, F = KINDS[kind].example(), deformations()
-    tangent = material.tangent(F, pressures(material))
+    pressure = pressures(material)
+    tangent = material.tangent(F, pressure)
     assert_equal_to(tangent, tangent.transpose(2, 3, 0, 1, 4), material.shear_modulus)
-    tangent[0, 1, 2, 2] += 3 * ROUND_OFF * np.abs(tangent).max()
+    without_potential = tangent + np.einsum("iJn,kLn->iJkLn", material.first_piola_kirchhoff(F, pressure), F)
     with pytest.raises(AssertionError):
-        assert_equal_to(tangent, tangent.transpose(2, 3, 0, 1, 4), material.shear_modulus)
+        assert_equal_to(without_potential, without_potential.transpose(2, 3, 0, 1, 4), material.shear_modulus)
 
 
 @every_kind
 def test_volume_change_and_its_gradient_agree(kind):
     material, F = KINDS[kind].example(), deformations()
     expected = gradient(material.volume_change, F)
-    found = material.volume_change_gradient(F)
-    assert_equal_to(found, expected, 1.0)
-    with pytest.raises(AssertionError):
-        assert_equal_to(found * (1 + 3 * ROUND_OFF), expected, 1.0)
+    assert_equal_to(material.volume_change_gradient(F), expected, 1.0)
 
 
 @every_kind
@@ -155,7 +153,7 @@ def test_the_observer_and_the_orientation_do_not_matter(kind):
 
 
 def test_linear_elasticity_is_seen_not_to_be_objective():
-    """Twin of the test above."""
+    """Mutant of the test above."""
     material = KINDS["linear_elastic"].example()
     with pytest.raises(AssertionError):
         assert_equal_to(*rotated_and_turned_stress(material), material.shear_modulus)
@@ -206,14 +204,16 @@ def test_json_round_trip(kind):
     assert adapter.validate_json(text) == material
     assert json.loads(text)["kind"] == kind
     assert adapter.validate_python(material.model_dump()) == material
-    first = next(name for name, value in json.loads(text).items() if name != "kind" and value is not None)
-    assert adapter.validate_python(material.model_dump() | _changed(material, first)) != material
+    assert _altered(material) != material
 
 
-def _changed(material: Material, name: str) -> dict:
-    """One constant a thousandth larger, inside a mapping of constants if need be."""
-    value = getattr(material, name)
-    return {name: {key: x * 1.001 for key, x in value.items()} if isinstance(value, dict) else value * 1.001}
+def _altered(material: Material) -> Material:
+    """With its first constant a thousandth larger, every one of them if they come in a mapping."""
+    constants = material.model_dump()
+    name = next(name for name, value in constants.items() if name != "kind" and value is not None)
+    value = constants[name]
+    changed = {key: x * 1.001 for key, x in value.items()} if isinstance(value, dict) else value * 1.001
+    return type(material).model_validate(constants | {name: changed})
 
 
 @every_kind
@@ -250,7 +250,7 @@ def test_two_classes_of_one_kind_are_refused_with_both_modules():
 
 
 def test_a_wrong_energy_is_seen():
-    """Twin: an energy that its gradient does not belong to."""
+    """Mutant: an energy that its gradient does not belong to."""
 
     class Wrong(NeoHookean):
         def energy(self, I1, I2):

@@ -10,8 +10,8 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
+from tactsim.fem.space import FACET_POINTS
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.block_model import FACET_POINTS
 from tactsim.mechanics.surface_forces import taxel_forces
 from tactsim.mesh.affordable import MOST_UNKNOWNS, estimated_unknowns, unknowns_of_cells
 from tactsim.mesh.axisymmetric import section_mesh
@@ -53,7 +53,7 @@ def test_meshes_too_large_are_refused_at_once(name: str, mesh: str, message: str
 def test_sectors_of_a_fine_section_are_counted_before_they_are_swept():
     case = load_case(CASES / "annulus_icf_3d.yaml", ["experiment.mesh={finest: 10 um, growth: 0.3, sectors: 90}"])
     with pytest.raises(InputError, match=r"mesh\.sectors: about .* unknowns; allowed: up to 3e\+06"):
-        case.experiment.space_model()
+        case.experiment.model()
 
 
 def test_a_section_far_wider_than_thick_is_refused():

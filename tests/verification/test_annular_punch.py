@@ -1,4 +1,7 @@
-"""The annular punch against tables, limits and its own integral equation, evaluated by an independent quadrature."""
+"""The annular punch against tables, limits and its own integral equation, evaluated by an independent quadrature.
+
+Every check fails with a wrong model: another formula, the other base, a wrong constant, measure or kernel.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.integrate import quad, quad_vec
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipkm1, j0
@@ -62,11 +66,9 @@ def rounding(digits):
     return 0.51 * 10.0**-digits
 
 
-def agrees(found, expected, tolerance):
-    """Whether ``found`` lies within ``tolerance`` and the test can fail: three tolerances off it does not."""
-    near = np.allclose(found, expected, rtol=0, atol=tolerance)
-    twins = (np.allclose(found, np.asarray(expected) + shift * tolerance, rtol=0, atol=tolerance) for shift in (-3, 3))
-    return near and not any(twins)
+def assert_near(found, expected, tolerance):
+    """Every number within ``tolerance``."""
+    np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
 
 
 def exact_rows():
@@ -76,71 +78,135 @@ def exact_rows():
 
 @pytest.mark.parametrize(("beta", "kappa", "axis"), exact_rows())
 def test_half_space_table(beta, kappa, axis):
+    """Mutants: the printed formula of the thesis, and the first term of the rise in the ratio."""
     punch = solve_annular_punch(beta)
-    assert agrees(punch.force_factor, kappa, rounding(10))
-    assert agrees(1 - punch.rise_factor, axis, rounding(8))
-    assert agrees(force_factor(beta), kappa, rounding(10))
-    assert agrees(rise_factor(beta), 1 - axis, rounding(8))
+
+    def check(found_factor, found_rise):
+        assert_near(found_factor, kappa, rounding(10))
+        assert_near(1 - found_rise, axis, rounding(8))
+
+    check(punch.force_factor, punch.rise_factor)
+    check(force_factor(beta), rise_factor(beta))
+    assert_kills(
+        check,
+        thesis=(force_factor(beta, "thesis_4_2_21"), punch.rise_factor),
+        first_term_of_the_rise=(punch.force_factor, 4 * beta / np.pi**2),
+    )
 
 
 @pytest.mark.parametrize(("base", "poisson_ratio"), SOLID)
 def test_solid_punch_on_layers(base, poisson_ratio):
-    for slenderness, expected in zip(SLENDERNESS, SOLID[base, poisson_ratio], strict=True):
-        punch = solve_annular_punch(0.0, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
-        assert agrees(punch.force_factor, expected, rounding(4)), slenderness
+    """Mutants: the other base, the diameter in place of the radius, Poisson's ratio wrong by a hundredth.
+
+    Friction at the base has no part in the pressure on a slipping layer, and there Poisson's ratio only scales the force.
+    """
+
+    def check(base, poisson_ratio, scale=1.0):
+        punches = [
+            solve_annular_punch(0.0, radius_over_thickness=scale * s, base=base, poisson_ratio=poisson_ratio) for s in SLENDERNESS
+        ]
+        assert_near([punch.force_factor for punch in punches], expected, rounding(4))
+
+    expected = SOLID[base, poisson_ratio]
+    check(base, poisson_ratio)
+    other = "slipping" if base == "bonded" else "bonded"
+    assert_kills(check, base=(other, poisson_ratio), diameter=(base, poisson_ratio, 2.0))
+    if base == "bonded":
+        assert_kills(check, poisson_ratio=(base, poisson_ratio - 0.01))
 
 
 @pytest.mark.parametrize(("slenderness", "base", "beta", "factor", "axis"), RINGS)
 def test_rings_on_layers(slenderness, base, beta, factor, axis):
-    punch = solve_annular_punch(beta, radius_over_thickness=slenderness, base=base)
-    assert agrees(punch.force_factor, factor, rounding(4))
-    if axis is not None:
-        assert agrees(1 - punch.rise_factor, axis, rounding(3))
+    """Mutants: the other base, the width of the ring in place of its radius."""
+
+    def check(base, slenderness):
+        punch = solve_annular_punch(beta, radius_over_thickness=slenderness, base=base)
+        assert_near(punch.force_factor, factor, rounding(4))
+        if axis is not None:
+            assert_near(1 - punch.rise_factor, axis, rounding(3))
+
+    check(base, slenderness)
+    other = "slipping" if base == "bonded" else "bonded"
+    assert_kills(check, base=(other, slenderness), width=(base, (1 - beta) * slenderness))
 
 
 def test_pressure_profile():
-    found = solve_annular_punch(0.5).pressure_over_mean(list(PROFILE))
-    assert agrees(found, list(PROFILE.values()), rounding(5))
+    """Mutants: the mean over the disc instead of the ring, a ring with a wider hole, a layer below."""
+
+    def check(punch, over=1.0):
+        assert_near(punch.pressure_over_mean(list(PROFILE)) * over, list(PROFILE.values()), rounding(5))
+
+    check(solve_annular_punch(0.5))
+    layer = solve_annular_punch(0.5, radius_over_thickness=0.2)
+    assert_kills(check, disc=(solve_annular_punch(0.5), 1 - 0.5**2), hole=(solve_annular_punch(0.51),), layer=(layer,))
 
 
 @pytest.mark.parametrize("beta", LOWEST)
 def test_least_pressure(beta):
+    """Mutants: the mean over the disc instead of the ring, and the pressure of a solid punch, least at the hole."""
     punch = solve_annular_punch(beta)
-    least = minimize_scalar(lambda r: float(punch.pressure_over_mean(r)), bounds=(beta, 1), method="bounded")
-    assert agrees(least.fun, LOWEST[beta], rounding(3))
-    assert beta < least.x < (1 + beta) / 2 + 1e-3
+
+    def check(pressure):
+        least = minimize_scalar(lambda r: float(pressure(r)), bounds=(beta, 1), method="bounded")
+        assert_near(least.fun, LOWEST[beta], rounding(3))
+        assert beta < least.x < (1 + beta) / 2 + 1e-3
+
+    check(punch.pressure_over_mean)
+    solid = lambda r: (1 - beta**2) ** 0.5 / (1 - r**2) ** 0.5 / 2  # noqa: E731
+    assert_kills(check, disc=(lambda r: (1 - beta**2) * punch.pressure_over_mean(r),), solid=(solid,))
 
 
-def thin_ring(beta):
+def thin_ring(beta, near=16.0):
     r"""Force factor of a ring much thinner than its radius: pi^2 (1 + b) / (4 ln(16 (1 + b) / (1 - b))).
 
     With p r = c / sqrt(1 - y^2) and the kernel ln(8 / |delta|) of near points, half the width in ln r being
     (1 - b) / (1 + b), the displacement is c ln(16 (1 + b) / (1 - b)) / (half width), and kappa the integral of p r.
     """
-    return np.pi**2 * (1 + beta) / (4 * np.log(16 * (1 + beta) / (1 - beta)))
+    return np.pi**2 * (1 + beta) / (4 * np.log(near * (1 + beta) / (1 - beta)))
 
 
 def test_thin_rings():
-    """The error is of order d^2 ln(1 / d) in the width d, as the curvature enters the kernel; twin: half the limit is none."""
+    """The error is of order d^2 ln(1 / d) in the width d, as the curvature enters the kernel.
+
+    Mutants: the constant 8 of the kernel left out of the logarithm, and the radius of the middle for the outer one.
+    """
     widths = np.array([0.01, 0.001, 0.0001])
     found = np.array([solve_annular_punch(1 - width).force_factor for width in widths])
-    errors = np.abs(found / thin_ring(1 - widths) - 1)
-    orders = np.diff(np.log(errors / np.log(32 / widths))) / np.diff(np.log(widths))
-    np.testing.assert_allclose(orders, 2, atol=0.1)
-    assert errors[-1] < 1e-8
-    assert abs(found[-1] / (thin_ring(1 - widths[-1]) / 2) - 1) > 0.9
+
+    def check(limits):
+        errors = np.abs(found / limits - 1)
+        orders = np.diff(np.log(errors / np.log(32 / widths))) / np.diff(np.log(widths))
+        np.testing.assert_allclose(orders, 2, atol=0.1)
+        assert errors[-1] < 1e-8
+
+    check(thin_ring(1 - widths))
+    assert_kills(check, kernel=(thin_ring(1 - widths, near=2.0),), radius=(thin_ring(1 - widths) / (1 - widths / 2),))
 
 
 def test_small_holes():
-    """The series stops before b^7, the printed formula of the thesis errs from b^4 on."""
+    """The series stops before b^7, the printed formula of the thesis errs from b^4 on; either is the mutant of the other."""
     beta = np.array([0.025, 0.05, 0.1])
     kappa = np.array([solve_annular_punch(b, tolerance=1e-13).force_factor for b in beta])
-    for formula, order in (("small_hole_series", 7), ("thesis_4_2_21", 4)):
+
+    def check(formula, order):
         errors = np.abs(force_factor(beta, formula) - kappa)
         assert np.log2(errors[2] / errors[1]) == pytest.approx(order, abs=0.1)
-        assert np.log2(errors[2] / errors[1]) != pytest.approx(order + 0.3, abs=0.1)
-    rise = np.array([solve_annular_punch(b, tolerance=1e-13).rise_factor for b in (1e-4, 1e-3)])
-    np.testing.assert_allclose(rise / (1e-4, 1e-3), 4 / np.pi**2, rtol=1e-6)
+
+    check("small_hole_series", 7)
+    check("thesis_4_2_21", 4)
+    assert_kills(check, thesis=("thesis_4_2_21", 7), series=("small_hole_series", 4), smythe=("smythe", 7))
+
+
+def test_the_rise_over_a_small_hole():
+    """4 / pi^2 of the ratio; mutant: 4 / pi, the square left out."""
+    ratios = np.array([1e-4, 1e-3])
+    rise = np.array([solve_annular_punch(b, tolerance=1e-13).rise_factor for b in ratios])
+
+    def check(constant):
+        np.testing.assert_allclose(rise / ratios, constant, rtol=1e-6)
+
+    check(4 / np.pi**2)
+    assert_kills(check, square=(4 / np.pi,))
 
 
 def half_space_part(punch, r):
@@ -191,17 +257,34 @@ def layer_part(punch, radii):
     ],
 )
 def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, base, poisson_ratio):
+    """Mutants: a surface that stays flat beside the ring, the half-space alone, and a hole narrower by a hundredth."""
     punch = solve_annular_punch(beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
     radii = np.array([0.0, 0.5 * beta, 0.99 * beta, 0.7 * beta + 0.3, 0.2 * beta + 0.8, 1.01, 2.0])
-    found = np.array([half_space_part(punch, r) for r in radii])
+    alone = np.array([half_space_part(punch, r) for r in radii])
+    found = alone + layer_part(punch, radii) if slenderness else alone
+
+    def check(found, expected):
+        assert_near(found[3:5], 1, 1e-8)  # quad at the logarithm
+        assert_near(found, expected, 1e-8)
+
+    expected = punch.surface_displacement(radii)
+    check(found, expected)
+    hole = solve_annular_punch(0.99 * beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
+    assert_kills(check, flat=(found, np.ones(len(radii))), hole=(found, hole.surface_displacement(radii)))
     if slenderness:
-        found += layer_part(punch, radii)
-    np.testing.assert_allclose(found[3:5], 1, atol=1e-8)  # quad at the logarithm
-    assert agrees(found, punch.surface_displacement(radii), 1e-8)
+        assert_kills(check, half_space=(alone, expected))
 
 
 def test_a_thin_slipping_layer_is_a_bed_of_springs():
-    """u = p h (1 - nu) / (2 G) away from the edges, so that kappa grows by (pi / 2) (1 - b^2) per a / h."""
-    for beta in (0.0, 0.5):
+    """u = p h (1 - nu) / (2 G) away from the edges, so that kappa grows by (pi / 2) (1 - b^2) per a / h.
+
+    Mutants: springs of the modulus 3 G of uniaxial stress, and springs under the hole too.
+    """
+
+    def check(beta, growth):
         factors = [solve_annular_punch(beta, radius_over_thickness=s, base="slipping").force_factor for s in (10.0, 20.0)]
-        assert agrees((factors[1] - factors[0]) / 10, np.pi / 2 * (1 - beta**2), 5e-4)
+        assert_near((factors[1] - factors[0]) / 10, growth, 5e-4)
+
+    for beta in (0.0, 0.5):
+        check(beta, np.pi / 2 * (1 - beta**2))
+    assert_kills(check, modulus=(0.0, 3 / 8 * np.pi), hole=(0.5, np.pi / 2))

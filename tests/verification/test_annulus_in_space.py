@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.interpolate import PchipInterpolator
 
 from tactsim.case import load_case
@@ -61,6 +62,16 @@ def differences(result, reference):
     return found[:, 1:] / expected - 1
 
 
+def check_differences(apart):
+    """Force and rise differ by less than is demanded."""
+    assert np.abs(apart).max() < DEMANDED, apart
+
+
+def with_force(apart, factor):
+    """Mutant: differences (..., 2) if the force were that of a part of the body."""
+    return (1 + apart) * [factor, 1.0] - 1
+
+
 @pytest.fixture(scope="module")
 def quarter():
     return posed().run()
@@ -70,11 +81,9 @@ def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
     section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run()
     assert quarter.status == section.status == "converged"
     assert quarter.scene.symmetry == "quarter"
-    apart = np.abs(differences(quarter, section)[-1])
-    assert apart.max() < DEMANDED, apart  # on elements as long as the fillet is wide, touched at other points than the section's
-    force = section.quantities["reaction_force"].value
-    for wrong in (force * (1 + 3 * DEMANDED), force / 4):
-        assert abs(wrong / quarter.quantities["reaction_force"].value - 1) > DEMANDED
+    apart = differences(quarter, section)[-1]
+    check_differences(apart)  # on elements as long as the fillet is wide, touched at other points than the section's
+    assert_kills(check_differences, one_quarter=(with_force(apart, 1 / 4),), half=(with_force(apart, 1 / 2),))
 
 
 def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
@@ -82,9 +91,13 @@ def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
     assert values["reaction_force"] == pytest.approx(values["base_force"], rel=1e-8)
     np.testing.assert_array_equal(values["force_vector"][:2], 0.0)
     np.testing.assert_array_equal(values["moment_vector"], 0.0)
-    around, area = np.array(values["pressure_around"]), THIN["body"].area
-    assert around.mean() * area == pytest.approx(values["reaction_force"], rel=1e-10)
-    assert around[1:].mean() * area != pytest.approx(values["reaction_force"], rel=1e-10) or np.ptp(around) < 1e-8 * around[0]
+    body = THIN["body"]
+
+    def check(area):
+        assert np.mean(values["pressure_around"]) * area == pytest.approx(values["reaction_force"], rel=1e-10)
+
+    check(body.area)
+    assert_kills(check, without_a_hole=(np.pi * body.outer_radius**2,), one_quarter=(body.area / 4,))
 
 
 @pytest.mark.slow
@@ -109,8 +122,12 @@ def test_a_leaning_annulus_is_held_in_balance_by_the_base():
     arms = (model.mesh.nodes + u)[model.base_nodes] - state.contacts[0].place
     expected = 2 * np.cross(arms, internal).sum(axis=0) * [0, 1, 0]
     assert abs(expected[1]) > 0.1e-3 * force[2], "the force acts away from the axis"
-    np.testing.assert_allclose(moment, expected, atol=1e-8 * abs(expected[1]))  # Newton's tolerance is 1e-10
-    assert not np.allclose(moment / 2, expected, atol=3e-8 * abs(expected[1]))
+
+    def check(moment):
+        np.testing.assert_allclose(moment, expected, atol=1e-8 * abs(expected[1]))  # Newton's tolerance is 1e-10
+
+    check(moment)
+    assert_kills(check, sign=(-moment,), one_half=(moment / 2,))
     np.testing.assert_allclose(model.base_force(state.unknowns), force, atol=1e-8 * force[2])
 
 
@@ -121,8 +138,12 @@ def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
     for name in ("force_vector", "moment_vector"):
         x, y, z = half.quantities[name].value
         size = np.abs(half.quantities[name].value).max()
-        np.testing.assert_allclose(whole.quantities[name].value, [y, -x, z], atol=1e-6 * size)  # as for the half and quarter
-        assert not np.allclose(whole.quantities[name].value, [x, y, z], atol=3e-6 * size)
+
+        def check(turned, name=name, size=size):
+            np.testing.assert_allclose(whole.quantities[name].value, turned, atol=1e-6 * size)  # as for the half and quarter
+
+        check([y, -x, z])
+        assert_kills(check, not_turned=([x, y, z],), other_way=([-y, x, z],))
     np.testing.assert_allclose(histories(whole), histories(half), rtol=1e-6)
 
 
@@ -130,9 +151,9 @@ def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
 def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
     space, section = (load_case(CASES / name).experiment.run() for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml"))
     assert space.status == section.status == "converged"
-    apart = np.abs(differences(space, section))
-    assert apart.max() < DEMANDED, apart.max(axis=0)
-    for name in ("threshold_force", "threshold_displacement"):
-        exact = section.quantities[name].value
-        assert abs(space.quantities[name].value / exact - 1) < DEMANDED, name
-        assert not abs(exact * (1 + 3 * DEMANDED) / exact - 1) < DEMANDED
+    apart = differences(space, section)
+    check_differences(apart)
+    names = ("threshold_force", "threshold_displacement")
+    thresholds = np.array([space.quantities[name].value / section.quantities[name].value - 1 for name in names])
+    check_differences(thresholds)
+    assert_kills(check_differences, history=(with_force(apart, 1 / 4),), threshold=(with_force(thresholds, 1 / 4),))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from mutants import assert_kills
 
 from tactsim.analytic.durometer import DurometerScale, hertz_force
 from tactsim.contact.coulomb import Coulomb
@@ -42,13 +43,25 @@ def pressed():
 
 
 def test_force_follows_hertz(pressed):
-    force = float(hertz_force(pressed["depth"], RADIUS, MODULUS))
-    assert pressed["spring_force"] == pytest.approx(force, rel=FORCE_TOLERANCE)
-    assert pressed["spring_force"] != pytest.approx(force * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    """Mutants: the diameter for the radius, Young's modulus for E / (1 - nu^2), a Poisson's ratio of 0.49."""
+
+    def check(radius, modulus):
+        force = float(hertz_force(pressed["depth"], radius, modulus))
+        assert pressed["spring_force"] == pytest.approx(force, rel=FORCE_TOLERANCE)
+
+    check(RADIUS, MODULUS)
+    compressible = MODULUS * (1 - 0.5**2) / (1 - 0.49**2)
+    assert_kills(
+        check, diameter=(2 * RADIUS, MODULUS), youngs_modulus=(RADIUS, 0.75 * MODULUS), poisson_ratio=(RADIUS, compressible)
+    )
 
 
 def test_modulus_by_hertz_is_that_of_the_material(pressed):
-    """The same error as that of the force."""
-    assert pressed["hertz_modulus"] == pytest.approx(MODULUS, rel=FORCE_TOLERANCE)
-    assert pressed["hertz_modulus"] != pytest.approx(MODULUS * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    """The same error as that of the force; mutants: the modulus E / (1 - nu^2), and the diameter for the radius."""
+
+    def check(modulus):
+        assert pressed["hertz_modulus"] == pytest.approx(modulus, rel=FORCE_TOLERANCE)
+
+    check(MODULUS)
+    assert_kills(check, plane_strain=(MODULUS / (1 - 0.5**2),), diameter=(MODULUS / 2**0.5,))
     assert pressed["reading"] == pytest.approx(pressed["hertz_reading"], abs=100 * FORCE_TOLERANCE)

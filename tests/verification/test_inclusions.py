@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.optimize import brentq
 from solids import cauchy_stress, held, on_plane
 
@@ -30,9 +31,9 @@ AMPLIFICATION, SPREAD = 0.01, 0.02
 the interface depart by up to 20 %, for the strain is of first order there."""
 
 
-def eshelby(ratio):
-    """Axial stress in the ball over the remote one."""
-    return 1 / 3 + 2 / 3 * ratio / (1 + 0.4 * (ratio - 1))
+def eshelby(ratio, shape=0.4):
+    """Axial stress in the ball over the remote one; ``shape`` is Eshelby's factor of the shear strain."""
+    return 1 / 3 + 2 / 3 * ratio / (1 + shape * (ratio - 1))
 
 
 def pressed_ball(ratio, size, growth=0.6):
@@ -65,11 +66,22 @@ def pressed_ball(ratio, size, growth=0.6):
     [(2.0, 0.4e-3, 0.3), pytest.param(10.0, 0.25e-3, 0.45, marks=pytest.mark.slow)],
 )
 def test_a_ball_concentrates_the_stress_as_eshelby_says(ratio, size, growth):
+    """Mutants: the factor of a cylinder across its axis, another ratio of moduli or its inverse, the mean stress left out."""
     found, spread, _ = pressed_ball(ratio, size, growth)
-    assert abs(found / eshelby(ratio) - 1) < AMPLIFICATION
+
+    def check(expected):
+        assert abs(found / expected - 1) < AMPLIFICATION
+
+    check(eshelby(ratio))
     assert spread < SPREAD
-    wrong = eshelby(1.1 * ratio) if ratio < 5 else eshelby(1.3 * ratio)
-    assert abs(found / wrong - 1) > AMPLIFICATION
+    other = 1.1 * ratio if ratio < 5 else 1.3 * ratio
+    assert_kills(
+        check,
+        cylinder=(eshelby(ratio, shape=0.5),),
+        ratio=(eshelby(other),),
+        without_the_mean_stress=(1.5 * (eshelby(ratio) - 1 / 3),),
+        inverse=(eshelby(1 / ratio),),
+    )
 
 
 INNER, OUTER, WALL, TUBE_TOLERANCE = 4e-3, 8e-3, NeoHookean(c10=10e3), 5e-3
@@ -111,5 +123,10 @@ def test_a_vessel_widens_as_the_thick_tube_does():
     pressure = 0.4 * WALL.shear_modulus
     found, exact = pumped_stretch(pressure), closed_form_stretch(pressure)
     assert exact > 1.3
-    assert abs(found - exact) < TUBE_TOLERANCE * (exact - 1)
-    assert abs(found - closed_form_stretch(1.02 * pressure)) > TUBE_TOLERANCE * (exact - 1)
+
+    def check(expected):
+        assert abs(found - expected) < TUBE_TOLERANCE * (exact - 1)
+
+    check(exact)
+    linear = 1 + pressure / WALL.shear_modulus / 2 * OUTER**2 / (OUTER**2 - INNER**2)
+    assert_kills(check, pressure=(closed_form_stretch(1.02 * pressure),), linear=(linear,))

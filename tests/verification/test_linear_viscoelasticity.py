@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 from tactsim.analytic.atrial import TIMES, atrial_shear_compliance, table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
@@ -27,9 +28,9 @@ def agree(found, expected, *, digit):
     np.testing.assert_array_less(np.abs(np.asarray(found) - np.asarray(expected)), digit)
 
 
-def punch_force(history, t):
+def punch_force(history, t, solid=SOLID):
     """Force in N of a rigid punch on a half-space, 8 a times the integral of G(t - s) over the indentation."""
-    return 8 * RADIUS * response(SOLID, history, t)
+    return 8 * RADIUS * response(solid, history, t)
 
 
 # The standard solid
@@ -38,31 +39,40 @@ def punch_force(history, t):
 STEP_FORCES = {0.0: 0.0180000, 5.0: 0.01344873, 1e6: 0.0108000}
 
 
+RETARDED = GeneralizedMaxwell(3000.0, [2000.0], [25 / 3])
+"""Mutant of the standard solid: its retardation time in place of its relaxation time."""
+
+
 def test_the_step_and_the_ramp_of_the_standard_solid():
-    agree(punch_force(step(DEPTH), list(STEP_FORCES)), list(STEP_FORCES.values()), digit=5.1e-9)
-    agree(punch_force(ramp(DEPTH / 2, 2.0), 2.0), 0.01673424, digit=5.1e-9)
+    """Mutants: the retardation time for the relaxation time, and a ramp that is held at its end at once."""
 
+    def check_step(solid):
+        agree(punch_force(step(DEPTH), list(STEP_FORCES), solid), list(STEP_FORCES.values()), digit=5.1e-9)
 
-@pytest.mark.parametrize("wrong", [0.01344873 + 2e-8, 0.01344873 - 2e-8])
-def test_a_wrong_step_force_is_refused(wrong):
-    with pytest.raises(AssertionError):
-        agree(punch_force(step(DEPTH), 5.0), wrong, digit=5.1e-9)
+    def check_ramp(history, solid):
+        agree(punch_force(history, 2.0, solid), 0.01673424, digit=5.1e-9)
 
-
-def test_a_wrong_ramp_force_is_refused():
-    with pytest.raises(AssertionError):
-        agree(punch_force(ramp(DEPTH / 2, 2.0), 2.0), 0.01673424 + 2e-8, digit=5.1e-9)
+    check_step(SOLID)
+    check_ramp(ramp(DEPTH / 2, 2.0), SOLID)
+    assert_kills(check_step, retarded=(RETARDED,))
+    assert_kills(check_ramp, retarded=(ramp(DEPTH / 2, 2.0), RETARDED), step=(step(DEPTH), SOLID))
 
 
 def test_the_ramp_of_the_standard_solid_in_closed_form():
-    """G_inf d + G_1 v tau (1 - exp(-t/tau)) while it rises, then the relaxation of that."""
+    """G_inf d + G_1 v tau (1 - exp(-t/tau)) while it rises, then the relaxation of that.
+
+    Mutants: the retardation time for the relaxation time, and a branch that does not relax once the ramp has ended.
+    """
     t = np.logspace(-9, 2, 60)
     risen = np.minimum(t, 2.0)
-    branch = 2000 * (DEPTH / 2) * 5 * -np.expm1(-risen / 5) * np.exp(-(t - risen) / 5)
-    expected = 3000 * (DEPTH / 2) * risen + branch
-    np.testing.assert_allclose(response(SOLID, ramp(DEPTH / 2, 2.0), t), expected, rtol=1e-13)
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(response(SOLID, ramp(DEPTH / 2, 2.0 * (1 + 3e-12)), t), expected, rtol=1e-13)
+    spring, branch = 3000 * (DEPTH / 2) * risen, 2000 * (DEPTH / 2) * 5 * -np.expm1(-risen / 5)
+
+    def check(solid, expected):
+        np.testing.assert_allclose(response(solid, ramp(DEPTH / 2, 2.0), t), expected, rtol=1e-13)
+
+    fading = np.exp(-(t - risen) / 5)
+    check(SOLID, spring + branch * fading)
+    assert_kills(check, retarded=(RETARDED, spring + branch * fading), held=(SOLID, spring + branch))
 
 
 def test_the_creep_of_the_standard_solid():
@@ -81,18 +91,26 @@ def test_the_creep_of_the_standard_solid():
 
 @pytest.mark.parametrize("times", TIMES)
 def test_the_table_keeps_its_curves_through_the_relaxation_modulus(times):
-    """Twelve decades; round-off of sums and products over nine terms."""
+    """Twelve decades; round-off of sums and products over nine terms.
+
+    Mutants: retardation times in the relaxation modulus, and relaxation times in the creep compliance.
+    """
     kelvin = atrial_shear_compliance(times)
     maxwell = maxwell_of(kelvin)
     back = kelvin_of(maxwell)
     x = np.logspace(-7, 5, 241)
-    np.testing.assert_allclose(back.creep(x), kelvin.creep(x), rtol=1e-12)
-    np.testing.assert_allclose(maxwell_of(back).relaxation(x), maxwell.relaxation(x), rtol=1e-12)
-    np.testing.assert_allclose(back.complex_compliance(x), kelvin.complex_compliance(x), rtol=1e-12)
-    np.testing.assert_allclose(maxwell.complex_modulus(x) * kelvin.complex_compliance(x), 1, rtol=1e-12)
-    np.testing.assert_allclose(response(kelvin, step(1.0), x), kelvin.creep(x), rtol=1e-12)
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(back.creep(x), kelvin.creep(x * (1 + 1e-11)), rtol=1e-12)
+
+    def check(back, maxwell):
+        np.testing.assert_allclose(back.creep(x), kelvin.creep(x), rtol=1e-12)
+        np.testing.assert_allclose(maxwell_of(back).relaxation(x), maxwell.relaxation(x), rtol=1e-12)
+        np.testing.assert_allclose(back.complex_compliance(x), kelvin.complex_compliance(x), rtol=1e-12)
+        np.testing.assert_allclose(maxwell.complex_modulus(x) * kelvin.complex_compliance(x), 1, rtol=1e-12)
+        np.testing.assert_allclose(response(kelvin, step(1.0), x), kelvin.creep(x), rtol=1e-12)
+
+    check(back, maxwell)
+    relaxing = GeneralizedMaxwell(maxwell.equilibrium_modulus, maxwell.moduli, kelvin.times)
+    slower = GeneralizedKelvin(back.glassy_compliance, back.compliances, maxwell.times)
+    assert_kills(check, retardation_times=(back, relaxing), relaxation_times=(slower, maxwell))
 
 
 RATES = [4.296, 2.771, 0.003118, 0.002831, 0.002128, 0.001606, 0.000979, 0.000769]
@@ -123,19 +141,28 @@ def test_retardation_times_do_not_give_the_printed_rates():
 
 
 def test_the_bracket_of_the_printed_displacement():
-    """Thesis, eq. 4.6.4; most digits are cut, 418.36 and 532.91 are rounded."""
+    """Thesis, eq. 4.6.4; most digits are cut, 418.36 and 532.91 are rounded.
+
+    Mutants: units in reverse order, the table as the whole shear compliance, and the free spring left out of the sum.
+    """
     kelvin = table_4_1("viscosities").scaled(1e6)
-    agree(kelvin.compliances, AMPLITUDES, digit=0.01)
-    agree(kelvin.equilibrium_compliance, 1708.08, digit=0.01)
-    for k in range(8):
-        wrong = np.array(AMPLITUDES)
-        wrong[k] += 0.03
-        with pytest.raises(AssertionError):
-            agree(kelvin.compliances, wrong, digit=0.01)
+
+    def check(compliances, total):
+        agree(compliances, AMPLITUDES, digit=0.01)
+        agree(total, 1708.08, digit=0.01)
+
+    check(kelvin.compliances, kelvin.equilibrium_compliance)
+    whole = atrial_shear_compliance("viscosities", "half_shear").scaled(1e6)
+    assert_kills(
+        check,
+        reversed=(kelvin.compliances[::-1], kelvin.equilibrium_compliance),
+        shear=(whole.compliances, whole.equilibrium_compliance),
+        free_spring=(kelvin.compliances, kelvin.compliances.sum()),
+    )
 
 
 def test_the_bracket_is_half_the_shear_compliance():
-    """4 r kappa u / p = 1 / (2 G) at nu = 0.5 (eq. 4.2.21) and the table as 1 / (2 G)."""
+    """4 r kappa u / p = 1 / (2 G) at nu = 0.5 (eq. 4.2.21) and the table as 1 / (2 G); mutant: the table as 1 / E."""
     t = np.logspace(-3, 4, 30)
     bracket = 1708.08 - np.exp(-np.outer(t, rates("viscosities"))) @ AMPLITUDES
     half = atrial_shear_compliance("viscosities", "half_shear").creep(t) / 2 * 1e6
@@ -161,17 +188,28 @@ def dynamic_coefficients(amplitude: float) -> dict[str, float]:
 
 
 def test_the_dynamic_coefficients_are_those_of_the_response():
+    """Mutants: the wrong sign of the part out of phase, the load from 0 s on, and no transients of the slow units."""
     kelvin = table_4_1("viscosities").scaled(1e6)
     x, t = 1 / kelvin.times, np.linspace(2, 6, 81)
     c = dynamic_coefficients(0.25)
     slow = 0.25 * kelvin.compliances[2:] * OMEGA * x[2:] / (OMEGA**2 + x[2:] ** 2)
-    expected = c["cos"] * np.cos(OMEGA * t) + c["sin"] * np.sin(OMEGA * t) + np.exp(-np.outer(t - 2, x[2:])) @ slow
-    expected += c["first"] * np.exp(-x[0] * t) + c["second"] * np.exp(-x[1] * t)
-    found = response(kelvin, harmonic(0.25, 1.0, start=2.0), t)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)  # of parts of size 3
+    in_phase, out_of_phase = c["sin"] * np.sin(OMEGA * t), c["cos"] * np.cos(OMEGA * t)
+    fast = c["first"] * np.exp(-x[0] * t) + c["second"] * np.exp(-x[1] * t)
+    transients = fast + np.exp(-np.outer(t - 2, x[2:])) @ slow
+
+    def check(start, expected):
+        found = response(kelvin, harmonic(0.25, 1.0, start=start), t)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)  # of parts of size 3
+
+    expected = in_phase + out_of_phase + transients
+    check(2.0, expected)
     assert slow.sum() == pytest.approx(c["slow"], rel=1e-14)
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(response(kelvin, harmonic(0.25, 1.0, start=2.0 + 1e-11), t), expected, rtol=0, atol=1e-12)
+    assert_kills(
+        check,
+        sign=(2.0, in_phase - out_of_phase + transients),
+        start=(0.0, expected),
+        slow_units=(2.0, in_phase + out_of_phase + fast),
+    )
 
 
 def test_the_printed_dynamic_response_has_the_amplitude_of_its_transform():

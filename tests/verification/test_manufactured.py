@@ -100,15 +100,11 @@ def assert_orders(orders: list[float]) -> None:
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in CASES])
 def test_orders_of_convergence(name):
-    orders = ladder(CASES[name])
-    assert_orders(orders)
-    with pytest.raises(AssertionError):
-        assert_orders([order - 3 * TOLERANCE for order in orders])
+    assert_orders(ladder(CASES[name]))
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["axisymmetric-incompressible", pytest.param("solid-incompressible", marks=pytest.mark.slow), "plane_strain-compressible"],
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name.startswith("solid") else name for name in CASES]
 )
 def test_loads_of_a_material_with_c01_wrong_by_a_percent_are_seen(name):
     wrong = CASES[name].material.model_copy(update={"c01": 0.505})
@@ -124,7 +120,7 @@ def test_a_missing_part_of_the_pressure_is_seen():
 
 
 def test_a_body_force_without_the_hoop_stress_is_seen():
-    """Twin: the divergence of plane strain on an axisymmetric body, its deformation and stress otherwise the same."""
+    """Mutant: the divergence of plane strain on an axisymmetric body, its deformation and stress otherwise the same."""
 
     class WithoutHoop(Manufactured):
         def body_force(self, X):

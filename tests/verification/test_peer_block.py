@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 PROGRAMS = Path(__file__).parents[2] / "benchmarks" / "peer_programs"
 CELLS = (6, 6, 3)
@@ -34,17 +35,22 @@ def measured() -> np.ndarray:
 
 
 def test_force_and_nine_pressures_are_those_of_felupe(measured):
-    np.testing.assert_allclose(measured, [FORCE, *PRESSURES], rtol=TOLERANCE)
+    """Mutants: the squares mirrored, a block without the hard ball, whose pressure is even, and the force of a quarter."""
 
+    def check(force, pressures):
+        np.testing.assert_allclose(measured, [force, *np.ravel(pressures)], rtol=TOLERANCE)
 
-@pytest.mark.parametrize("place", range(10))
-def test_a_wrong_value_is_noticed(measured, place):
-    wrong = np.array([FORCE, *PRESSURES])
-    wrong[place] *= 1 + 3 * TOLERANCE
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(measured, wrong, rtol=TOLERANCE)
+    squares = np.reshape(PRESSURES, (3, 3))
+    check(FORCE, squares)
+    even = np.full((3, 3), FORCE / 0.04**2)
+    assert_kills(check, mirrored=(FORCE, squares[:, ::-1]), even=(FORCE, even), quarter=(FORCE / 4, squares))
 
 
 def test_squares_add_up_to_the_force(measured):
-    area = 0.04**2 / 9
-    assert area * measured[1:].sum() == pytest.approx(measured[0], rel=1e-10), "round-off of the mass matrix"
+    """Mutants: the area of the whole top, and the middle square left out."""
+
+    def check(force, area, pressures):
+        assert area * pressures.sum() == pytest.approx(force, rel=1e-10), "round-off of the mass matrix"
+
+    check(measured[0], 0.04**2 / 9, measured[1:])
+    assert_kills(check, area=(measured[0], 0.04**2, measured[1:]), middle=(measured[0], 0.04**2 / 9, np.delete(measured[1:], 4)))

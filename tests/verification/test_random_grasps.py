@@ -58,5 +58,12 @@ def test_a_random_grasp_converges_or_is_refused(number):
     assert found["max_penetration"] <= 5e-4 * SIZE[2]
     assert found["min_volume_ratio"] > 0
     for side in ("upper", "lower"):
-        total = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
-        assert total == pytest.approx(found["reaction_force"], rel=1e-5)
+        check_balance(found, side)
+        with pytest.raises(AssertionError):
+            check_balance(found | {f"gap_force_{side}": 0.0}, side)
+
+
+def check_balance(found, side):
+    """Taxels, gaps between them and what lies outside bear the reaction; fails without the gaps."""
+    total = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
+    assert total == pytest.approx(found["reaction_force"], rel=1e-5)

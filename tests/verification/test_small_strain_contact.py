@@ -1,4 +1,8 @@
-"""Indentation at small displacement against exact linear contact: annulus, punch and sphere, half-space and layers."""
+"""Indentation at small displacement against exact linear contact: annulus, punch and sphere, half-space and layers.
+
+Mutants: a Poisson's ratio of 0.49 (the exact solutions have 1/2), the half-space below a layer, the rise over the undeformed
+surface instead of the face, and for the sphere its diameter and Young's modulus for E / (1 - nu^2).
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,9 @@ import csv
 from pathlib import Path
 
 import pytest
+from mutants import assert_kills
 
+from tactsim.analytic.force_factor import force_factor, rise_factor
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
@@ -73,6 +79,16 @@ def normalised(force, displacement=DISPLACEMENT):
     return force / (8 * SHEAR_MODULUS * RADIUS * displacement)
 
 
+def check_force(force, factor):
+    """P / (8 G a d) is the exact one."""
+    assert normalised(force) == pytest.approx(factor, rel=FORCE_TOLERANCE)
+
+
+def check_rise(rise, factor, tolerance=RISE_TOLERANCE):
+    """The axis rises by the exact part of the displacement."""
+    assert rise == pytest.approx(factor * DISPLACEMENT, rel=tolerance)
+
+
 def annulus(ratio):
     return Annulus(inner_radius=ratio * RADIUS, outer_radius=RADIUS, fillet=0)
 
@@ -95,10 +111,10 @@ REPRESENTATIVE = (0.1, 0.5, 0.9)
 )
 def test_annulus_on_half_space(beta, kappa, axis):
     force, rise = press(annulus(beta), HALF_SPACE)
-    assert normalised(force) == pytest.approx(kappa, rel=FORCE_TOLERANCE)
-    assert rise == pytest.approx((1 - axis) * DISPLACEMENT, rel=RISE_TOLERANCE)
-    assert normalised(force) != pytest.approx(kappa * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
-    assert rise != pytest.approx((1 - axis) * DISPLACEMENT * (1 + 3 * RISE_TOLERANCE), rel=RISE_TOLERANCE)
+    check_force(force, kappa)
+    check_rise(rise, 1 - axis)
+    assert_kills(check_force, poisson_ratio=(force, kappa / (2 * (1 - 0.49))))
+    assert_kills(check_rise, undeformed_surface=(rise, axis))
 
 
 @pytest.mark.parametrize(
@@ -107,39 +123,43 @@ def test_annulus_on_half_space(beta, kappa, axis):
 )
 def test_annulus_on_layer(ratio, base, beta, factor, axis):
     force, rise = press(annulus(beta), RADIUS / ratio, base=base)
-    assert normalised(force) == pytest.approx(factor, rel=FORCE_TOLERANCE)
-    assert normalised(force) != pytest.approx(factor * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    check_force(force, factor)
+    assert_kills(check_force, half_space=(force, float(force_factor(beta))))
     if axis is not None:
         printed = 0.5e-3 / (1 - axis)
-        assert rise == pytest.approx((1 - axis) * DISPLACEMENT, rel=RISE_TOLERANCE + printed)
+        check_rise(rise, 1 - axis, RISE_TOLERANCE + printed)
+        assert_kills(check_rise, half_space=(rise, float(rise_factor(beta)), RISE_TOLERANCE + printed))
 
 
 @pytest.mark.parametrize(("ratio", "base", "factor"), PUNCH_LAYERS)
 def test_punch_on_layer(ratio, base, factor):
     force, _ = press(Punch(radius=RADIUS), RADIUS / ratio, base=base)
-    assert normalised(force) == pytest.approx(factor, rel=FORCE_TOLERANCE)
-    assert normalised(force) != pytest.approx(factor * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+    check_force(force, factor)
+    assert_kills(check_force, half_space=(force, 1.0))
 
 
 @pytest.mark.parametrize(("poisson_ratio", "factor"), [(0.49, 3.4840), (0.30, 2.4835)])
 def test_punch_on_compressible_layer(poisson_ratio, factor):
     force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
-    expected = factor / (2 * (1 - poisson_ratio))
-    assert normalised(force) == pytest.approx(expected, rel=FORCE_TOLERANCE)
-    assert normalised(force) != pytest.approx(3.6187, rel=FORCE_TOLERANCE)
+    check_force(force, factor / (2 * (1 - poisson_ratio)))
+    assert_kills(check_force, incompressible=(force, 3.6187), without_the_ratio=(force, factor))
 
 
 def test_punch_on_half_space():
     force, _ = press(Punch(radius=RADIUS), HALF_SPACE)
-    assert normalised(force) == pytest.approx(1.0, rel=FORCE_TOLERANCE)
+    check_force(force, 1.0)
+    assert_kills(check_force, poisson_ratio=(force, 1 / (2 * (1 - 0.49))))
 
 
 def test_sphere_follows_hertz():
     displacement = 1e-3 * RADIUS
     force, _ = press(Sphere(radius=RADIUS), HALF_SPACE, displacement=displacement, finest=4e-3 * RADIUS)
-    hertz = 16 / 3 * SHEAR_MODULUS * RADIUS**0.5 * displacement**1.5
-    assert force == pytest.approx(hertz, rel=FORCE_TOLERANCE)
-    assert force != pytest.approx(hertz * (1 + 3 * FORCE_TOLERANCE), rel=FORCE_TOLERANCE)
+
+    def check(modulus, radius):
+        assert force == pytest.approx(4 / 3 * modulus * radius**0.5 * displacement**1.5, rel=FORCE_TOLERANCE)
+
+    check(4 * SHEAR_MODULUS, RADIUS)
+    assert_kills(check, youngs_modulus=(3 * SHEAR_MODULUS, RADIUS), diameter=(4 * SHEAR_MODULUS, 2 * RADIUS))
 
 
 @pytest.mark.parametrize("beta", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])

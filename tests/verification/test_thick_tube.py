@@ -1,13 +1,14 @@
 """Thick Mooney-Rivlin tube under internal pressure in plane strain: exact solution (verification.md, 2.1).
 
 r^2 = R^2 + c, l = r / R: p = G [ln(la / lb) + (lb^-2 - la^-2) / 2]. VM56 (Oden 1972, pp. 325-331): radii 7 and 18.625,
-C10 = 80, C01 = 20, p = 150 (in, psi).
+C10 = 80, C01 = 20, p = 150 (in, psi). Mutants: a compressible tube, and the stress of Lame's linear tube.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.optimize import brentq
 from shells import inflated, radial_displacement, radial_stress
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
@@ -44,7 +45,12 @@ def exact_radial_stress(R: Array) -> Array:
     return -VM56.shear_modulus * (np.log(stretch / lb) + (lb**-2 - stretch**-2) / 2)
 
 
-def solve_tube(measure: str, material: MooneyRivlin2 = VM56, pressure: float = PRESSURE) -> tuple[Body, Equilibrium]:
+def linear_radial_stress(R: Array) -> Array:
+    """sigma_rr of Lame's tube at radius R, as if it did not widen."""
+    return -PRESSURE * INNER**2 / (OUTER**2 - INNER**2) * (OUTER**2 / R**2 - 1)
+
+
+def solve_tube(measure: str, material: MooneyRivlin2 = VM56) -> tuple[Body, Equilibrium]:
     """A strip of the section, a quarter of the ring, or a quarter slice; rings widen outwards, planes stay plane."""
     flat = box([1.0] * len(COUNTS[measure]), COUNTS[measure])
     s, t = flat.nodes[:, 0], flat.nodes[:, 1]
@@ -53,14 +59,14 @@ def solve_tube(measure: str, material: MooneyRivlin2 = VM56, pressure: float = P
     everywhere = lambda nodes: np.ones(len(nodes), bool)  # noqa: E731
     if measure == "axisymmetric":
         return inflated(
-            flat.moved(np.column_stack([R, t])), measure, material, pressure, bore=bore, fixed=held(flat, 1, everywhere)
+            flat.moved(np.column_stack([R, t])), measure, material, PRESSURE, bore=bore, fixed=held(flat, 1, everywhere)
         )
     angle = np.pi / 2 * t
     fixed = [held(flat, 1, on_plane(1, 0.0)), held(flat, 0, on_plane(1, 1.0))]
     if measure == "solid":
         fixed.append(held(flat, 2, everywhere))
     mesh = flat.moved(np.column_stack([R * np.cos(angle), R * np.sin(angle), flat.nodes[:, 2:]]))
-    return inflated(mesh, measure, material, pressure, bore=bore, fixed=np.concatenate(fixed))
+    return inflated(mesh, measure, material, PRESSURE, bore=bore, fixed=np.concatenate(fixed))
 
 
 def axes(measure: str) -> int:
@@ -77,9 +83,6 @@ def test_the_closed_form_gives_the_printed_numbers():
     assert abs(INNER * (inner_stretch(PRESSURE) - 1) - 7.181871) <= 6e-7  # printed to six digits
     for R, stress in ((8.16, -121.634), (10.0, -85.965), (12.0, -56.621), (15.0, -25.138)):
         assert abs(exact_radial_stress(np.array(R)) - stress) <= 6e-4  # printed to three digits
-    for la, ratio in ((1.05, 0.070132), (1.2, 0.233370), (2.0, 0.574054)):
-        lb = np.sqrt(1 + (la**2 - 1) / 4)
-        assert abs(np.log(la / lb) + (lb**-2 - la**-2) / 2 - ratio) <= 6e-7  # printed to six digits
 
 
 @pytest.mark.parametrize("measure", COUNTS)
@@ -88,22 +91,17 @@ def test_vm56(measure):
     assert_bore(measure, body, solved)
     assert_close(radial_displacement(body, solved, OUTER, axes=axes(measure)), 3.713668, DISPLACEMENT_TOLERANCE)
     R, stress = radial_stress(body, cauchy_stress(body, solved), solved.unknowns, axes=axes(measure))
-    assert_close(stress, exact_radial_stress(R), STRESS_TOLERANCE, scale=PRESSURE)
-    with pytest.raises(AssertionError):
-        assert_bore(measure, body, solved, 7.181871 * (1 + 3 * DISPLACEMENT_TOLERANCE))
-    with pytest.raises(AssertionError):
-        assert_close(stress, exact_radial_stress(R) + 3 * STRESS_TOLERANCE * PRESSURE, STRESS_TOLERANCE, scale=PRESSURE)
+
+    def check(expected):
+        assert_close(stress, expected, STRESS_TOLERANCE, scale=PRESSURE)
+
+    check(exact_radial_stress(R))
+    assert_kills(check, linear=(linear_radial_stress(R),))
 
 
 def test_only_the_sum_of_the_coefficients_enters():
     body, solved = solve_tube("axisymmetric", MooneyRivlin2(c10=20.0, c01=80.0))
     assert_bore("axisymmetric", body, solved)
-
-
-@pytest.mark.parametrize("measure", COUNTS)
-def test_a_pressure_wrong_by_three_tolerances_is_seen(measure):
-    with pytest.raises(AssertionError):
-        assert_bore(measure, *solve_tube(measure, pressure=PRESSURE * (1 + 3 * DISPLACEMENT_TOLERANCE)))
 
 
 @pytest.mark.parametrize("measure", COUNTS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.optimize import brentq
 
 from tactsim.experiments.threshold.contact_curve import Approach
@@ -51,27 +52,44 @@ def lagged_error(level, cutoff, *, filtered=True):
 @pytest.mark.parametrize("level", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("capture", ["filtered", "unfiltered"])
 def test_filter_lag_on_ramps(level, capture):
+    """Mutants: a cut-off of 5 Hz, which a level far above the lag does not show, and the other capture."""
     found = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
-    expected = lagged_error(level, 10.0, filtered=capture == "filtered")
-    # one sample of the ideal chain, 62.5 us at 2 N/s, and 1e-3 of the lag of 32 mN for divider and bilinear transform
-    tolerance = PLATE_RATE / 16_000 + 3.2e-5
-    assert found == pytest.approx(expected, abs=tolerance)
-    twin = lagged_error(level, 5.0, filtered=capture == "filtered")
-    if level < 0.1 or capture == "unfiltered":
-        assert abs(found - twin) > 3 * tolerance, "a cut-off of 5 Hz must be told from 10 Hz"
+
+    def check(cutoff, filtered):
+        # one sample of the ideal chain, 62.5 us at 2 N/s, and 1e-3 of the lag of 32 mN for divider and bilinear transform
+        assert found == pytest.approx(lagged_error(level, cutoff, filtered=filtered), abs=PLATE_RATE / 16_000 + 3.2e-5)
+
+    filtered = capture == "filtered"
+    check(10.0, filtered)
+    assert_kills(check, capture=(10.0, not filtered))
+    if level < 0.1 or not filtered:
+        assert_kills(check, cutoff=(5.0, filtered))
 
 
 def test_without_filter_only_the_level_remains():
+    """Mutants: the level itself, and the rates swapped."""
     found = ramps().ideal_error(None, 0.01)
-    expected = PLATE_RATE * 0.01 / SMALL_RATE
-    assert found == pytest.approx(expected, abs=PLATE_RATE / 16_000)
-    assert found != pytest.approx(1.05 * expected, abs=3 * PLATE_RATE / 16_000)
+
+    def check(factor):
+        assert found == pytest.approx(factor * 0.01, abs=PLATE_RATE / 16_000)
+
+    check(PLATE_RATE / SMALL_RATE)
+    assert_kills(check, level=(1.0,), swapped=(SMALL_RATE / PLATE_RATE,))
 
 
 def test_lags_cancel_for_a_level_far_above_the_lag():
-    """Both readings lag by the same time: what remains is the level's own error, whatever the cut-off."""
-    assert lagged_error(0.1, 10.0) == pytest.approx(PLATE_RATE * 0.1 / SMALL_RATE, rel=1e-5)
-    assert lagged_error(1e-4, 10.0) < 0, "a low level triggers while the large sensor still lags"
+    """Both readings lag by the same time: what remains is the level's own error, whatever the cut-off.
+
+    Mutants: an unfiltered capture, and a low level, which triggers while the large sensor still lags.
+    """
+
+    def check(level, capture="filtered"):
+        found = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
+        assert found == pytest.approx(PLATE_RATE * level / SMALL_RATE, abs=PLATE_RATE / 16_000 + 3.2e-5)
+
+    check(0.1)
+    assert_kills(check, unfiltered=(0.1, "unfiltered"), low_level=(1e-4,))
+    assert ramps().ideal_error(LowPass(cutoff=10.0), 1e-4) < 0
 
 
 def test_sampling_adds_half_an_interval():
@@ -80,8 +98,12 @@ def test_sampling_adds_half_an_interval():
     (trials,) = sampling.trials(SILENT, [None], [trigger], trials=100, seed=(1,))
     interval = PLATE_RATE / 1000.0
     found = trials.mean_error() - PLATE_RATE * 0.01 / SMALL_RATE
-    assert found == pytest.approx(interval / 2, abs=interval / 10), "ten phases, each a tenth of an interval"
-    assert found != pytest.approx(interval, abs=3 * interval / 10)
+
+    def check(delay):
+        assert found == pytest.approx(delay * interval, abs=interval / 10), "ten phases, each a tenth of an interval"
+
+    check(0.5)
+    assert_kills(check, instant=(0.0,), whole=(1.0,))
 
 
 def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
@@ -91,15 +113,29 @@ def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
     time = np.array([0.0, approach.touch, approach.duration])
     plate, small = approach.at(time)
     annulus = tissue._annulus
-    expected = annulus.length * 1e4 * 0.1e-3 / annulus.rise_factor  # 8 a kappa G L / rho
-    assert approach.threshold_force == pytest.approx(expected, rel=1e-9)
-    assert plate[1] == pytest.approx(expected, rel=1e-9)
+
+    def check_threshold(expected):
+        assert approach.threshold_force == pytest.approx(expected, rel=1e-9)
+        assert plate[1] == pytest.approx(expected, rel=1e-9)
+
+    per_rise = annulus.length * 1e4 * 0.1e-3
+    check_threshold(per_rise / annulus.rise_factor)  # 8 a kappa G L / rho
+    assert_kills(check_threshold, without_the_rise=(per_rise,))
     assert small[:2] == pytest.approx(0.0, abs=1e-15)
     excess = annulus.rise_factor * source.beyond
-    assert small[2] == pytest.approx(8 * 1e4 * 1.5e-3 * excess, rel=1e-6), "a solid punch has 8 G b"
-    assert small[2] != pytest.approx(1.00001 * 8 * 1e4 * 1.5e-3 * excess, rel=1e-6)
+
+    def check_small(stiffness):
+        assert small[2] == pytest.approx(stiffness * excess, rel=1e-6), "a solid punch has 8 G b"
+
+    check_small(8 * 1e4 * 1.5e-3)
+    assert_kills(check_small, compressible=(4 * 1e4 * 1.5e-3,), diameter=(8 * 1e4 * 3e-3,))
     trial = ThresholdTrial(source=source, speeds=(1e-3, 4e-3), noises=(1e-4, 5e-4), cutoffs=(10.0, 30.0), trials=20)
     quantities = trial.run().quantities
     parts = [quantities[f"{name}_error"].value for name in ("level", "film", "filter", "sampling", "noise")]
     total = np.array(quantities["force_error"].value, dtype=float)
-    np.testing.assert_allclose(np.sum(parts, axis=0), total, rtol=1e-9, err_msg="differences of the same numbers")
+
+    def check_sum(parts):
+        np.testing.assert_allclose(np.sum(parts, axis=0), total, rtol=1e-9, err_msg="differences of the same numbers")
+
+    check_sum(parts)
+    assert_kills(check_sum, without_the_level=(parts[1:],), without_the_filter=(parts[:2] + parts[3:],))

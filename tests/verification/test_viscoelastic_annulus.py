@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.force_factor import force_factor
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.histories import ramp
+from tactsim.analytic.interconversion import maxwell_of
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 
 SOLID = GeneralizedKelvin(2e-4, [1e-4, 3e-4], [0.1, 0.6])
@@ -34,28 +36,41 @@ def printed_displacement(force, ratio, t):
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
 def test_the_printed_displacement(ratio):
-    """Rates cut in their second or third digit and amplitudes cut at 0.01 leave 0.3 % of the displacement up to 2 s."""
+    """Rates cut in their second or third digit and amplitudes cut at 0.01 leave 0.3 % of the displacement up to 2 s.
+
+    Mutants: the last column of the table as retardation times, and the table as 1 / E.
+    """
     t = np.linspace(0.05, 2, 40)
-    annulus = ViscoelasticAnnulus(RADIUS, ratio, atrial_shear_compliance("viscosities", "half_shear"), "thesis_4_2_21")
-    found = annulus.creep_displacement(1.5, t)
-    np.testing.assert_allclose(found, printed_displacement(1.5, ratio, t), rtol=0.003)
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(found * 1.009, printed_displacement(1.5, ratio, t), rtol=0.003)
+
+    def check(times, compliance):
+        annulus = ViscoelasticAnnulus(RADIUS, ratio, atrial_shear_compliance(times, compliance), "thesis_4_2_21")
+        np.testing.assert_allclose(annulus.creep_displacement(1.5, t), printed_displacement(1.5, ratio, t), rtol=0.003)
+
+    check("viscosities", "half_shear")
+    assert_kills(check, times=("retardation_times", "half_shear"), compliance=("viscosities", "tensile"))
 
 
-def hereditary(annulus, steps, radius):
+def hereditary(annulus, steps, creep, factor):
     """Displacement in m at END by the midpoint rule for the hereditary integral over the force under a ramp of 1 mm/s."""
     t = np.linspace(0, END, steps + 1)
     forces = annulus.force(ramp(1e-3, END), t)
     middles = END - (t[1:] + t[:-1]) / 2
-    return (SOLID.creep(middles) * np.diff(forces)).sum() / (8 * radius * force_factor(RATIO))
+    return (creep(middles) * np.diff(forces)).sum() / (8 * RADIUS * factor)
 
 
 def test_the_hereditary_integral_over_the_force_is_the_displacement():
-    """The midpoint rule converges with order 2 to the displacement that was given."""
+    """The midpoint rule converges with order 2 to the displacement that was given.
+
+    Mutants: the inverse of the relaxation modulus in place of the creep compliance, and the force factor of a solid punch.
+    """
     annulus = ViscoelasticAnnulus(RADIUS, RATIO, SOLID)
     steps = np.array([40, 80, 160, 320])
-    errors = np.array([abs(hereditary(annulus, n, RADIUS) - 1e-3 * END) for n in steps])
-    assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2, abs=0.1)
-    assert errors[-1] < 1e-5 * 1e-3
-    assert abs(hereditary(annulus, 320, RADIUS * (1 + 3e-5)) - 1e-3 * END) > 1e-5 * 1e-3
+
+    def check(creep, factor):
+        errors = np.array([abs(hereditary(annulus, n, creep, factor) - 1e-3 * END) for n in steps])
+        assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2, abs=0.1)
+        assert errors[-1] < 1e-5 * 1e-3
+
+    check(SOLID.creep, force_factor(RATIO))
+    inverse = lambda t: 1 / maxwell_of(SOLID).relaxation(t)  # noqa: E731
+    assert_kills(check, inverse=(inverse, force_factor(RATIO)), solid=(SOLID.creep, 1.0))

@@ -69,9 +69,8 @@ def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
         for axis, (measure, place, heading) in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
             for number, one in enumerate(estimators):
                 multiples = np.array([told["multiple"] for told in one["noise"]])
-                _draw_line(
-                    axis, multiples, [_number(told, measure, place) for told in one["noise"]], number, one["name"], measure
-                )
+                values = [_number(told, measure, place) for told in one["noise"]]
+                _draw_line(axis, multiples, values, number=number, name=one["name"], measure=measure)
             axis.set_xlabel("noise over the stated noise")
             axis.set_title(heading)
             _finish(axis, measure)
@@ -110,11 +109,11 @@ def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, 
         bins = one["bins"][label]
         middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
         values = [_number(part, *measure) for part in bins]
-        _draw_line(axis, factor * middles, values, number, one["name"], measure[0])
+        _draw_line(axis, factor * middles, values, number=number, name=one["name"], measure=measure[0])
     _finish(axis, measure[0])
 
 
-def _draw_line(axis: Axes, at: Array, values: Sequence[dict | None], number: int, name: str, measure: str) -> None:
+def _draw_line(axis: Axes, at: Array, values: Sequence[dict | None], *, number: int, name: str, measure: str) -> None:
     """One estimator's values with their intervals; those that are not known are left out."""
     factor = 1.0 if measure in RATES else MILLIMETRES
     known = [k for k, value in enumerate(values) if value is not None]

@@ -151,7 +151,7 @@ class DmaReport:
             statement=told.statement(),
             constants=dict(zip(told.names, told.values.tolist(), strict=True)),
             standard_errors_of_logarithms=dict(zip(told.names, told.relative_errors.tolist(), strict=True)),
-            told=dict(zip(told.names, told.told.tolist(), strict=True)),
+            told=dict(zip(told.names, told.determined.tolist(), strict=True)),
             singular_values=told.singular_values.tolist(),
             confidence=band.confidence,
             band="simultaneous" if band.simultaneous else "pointwise",

@@ -23,8 +23,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.sensors.composite import AnyComposite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import Area, Force, FrozenModel, Time
 

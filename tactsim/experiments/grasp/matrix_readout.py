@@ -39,7 +39,13 @@ class MatrixReadoutRun(Experiment):
         return cls(grasp="results/grasp_lump_icf")
 
     def begin(self) -> Course:
-        """Read the stored forces; one step for every sample."""
+        """Read the stored forces; one step for every sample.
+
+        Raises
+        ------
+        StorageError
+            If the stored result is damaged or not that of a grasp.
+        """
         stored = read_result(self.grasp, fields=False).result
         times, forces = _history(stored, self.grasp)
         scene = _scene(stored, self.grasp)

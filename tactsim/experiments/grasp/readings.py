@@ -50,7 +50,13 @@ def jaw_readings(model: GraspModel, state: ContactEquilibrium, layout: TaxelLayo
 
 
 def check_sums(reading: JawReading, rotation: Array, side: str, least: float) -> None:
-    """Refuse a reading whose parts do not add up to the force on the jaw; ``least`` in N is a force that counts as none."""
+    """Refuse a reading whose parts do not add up to the force on the jaw; ``least`` in N is a force that counts as none.
+
+    Raises
+    ------
+    ConvergenceError
+        If they do not add up to the force on the jaw.
+    """
     found, parts = rotation.T @ reading.force, reading.taxels
     size = float(np.abs(parts.taxels).sum() + np.abs(parts.gaps).sum() + np.abs(parts.outside).sum() + np.abs(found).sum())
     missed = float(np.abs(parts.total - found).max())

@@ -37,7 +37,7 @@ MOST_LUMENS = 32
 AXES = "xyz"
 
 
-class GraspRecord(ContactRecord):
+class GraspRecord(ContactRecord[GraspModel]):
     """Collects the accepted steps of a grasp, with what the taxels of both jaws read."""
 
     UNITS: ClassVar[dict[str, str]] = {

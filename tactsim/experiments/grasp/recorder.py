@@ -71,7 +71,13 @@ class GraspRecorder(Recorder):
         return told
 
     def labels(self, experiment: Grasp) -> Values:
-        """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none."""
+        """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there are more inclusions than the store has places for.
+        """
         end = experiment.duration
         size, tissue = np.array(experiment.block.size), experiment.block.tissue.shear_modulus
         closing = experiment.loading.least_and_most()[1] if experiment.loading.control == "displacement" else np.nan

@@ -112,6 +112,16 @@ class SpaceIndentation(DisplacedSetup, Experiment):
         return self.pressed_body.rotation[:, 2]
 
     @property
+    def away(self) -> float:
+        """The offset in m."""
+        return self.offset
+
+    @property
+    def sectors(self) -> int:
+        """As many as the whole mesh has around the axis."""
+        return 4 * self.mesh.sectors
+
+    @property
     def inner_sensor(self) -> Tilted:
         """The sensor in the hole of the annulus, which leans with it."""
         return Tilted(body=super().inner_sensor, tilt_x=self.tilt_x, tilt_y=self.tilt_y)

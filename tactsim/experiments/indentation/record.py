@@ -55,7 +55,7 @@ class StartedPath(FollowedPath, Protocol):
         """The undeformed tissue at first touch."""
 
 
-class IndentationRecord(ContactRecord):
+class IndentationRecord(ContactRecord[PressedModel]):
     """Collects the accepted steps of an indentation."""
 
     UNITS: ClassVar[dict[str, str]] = {
@@ -162,7 +162,7 @@ class IndentationRecord(ContactRecord):
             ),
         }
         if self.setup.body.kind == "annulus":
-            sectors = 4 * self.setup.mesh.sectors  # type: ignore[attr-defined]
+            sectors = self.setup.sectors
             around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
             text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
             found["pressure_around"] = Quantity(around.tolist(), "Pa", text)
@@ -218,7 +218,7 @@ class IndentationRecord(ContactRecord):
         """The body and where it touched first."""
         if isinstance(self.model, SolidModel):
             symmetry = self.model.symmetry.name.lower()
-            return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self.setup.offset)  # type: ignore[attr-defined]
+            return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self.setup.away)
         if self._clock is not None:
             return TimedIndentationScene(**self._pressed(), control=self._clock.loading.control, compare=self._clock.compare)
         return IndentationScene(**self._pressed())

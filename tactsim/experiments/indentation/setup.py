@@ -123,6 +123,16 @@ class IndentationSetup(FrozenModel):
         return np.array([0.0, 1.0])
 
     @property
+    def away(self) -> float:
+        """Distance in m of the body's reference point from the axis of the specimen."""
+        return 0.0
+
+    @property
+    def sectors(self) -> int:
+        """Equal sectors around the body's axis by which its pressure is reported."""
+        return 1
+
+    @property
     def inner_sensor(self) -> RigidBody:
         """The sensor in the hole of the annulus as it stands."""
         return Punch(radius=self.body.inner_radius, height=self.body.height)

@@ -21,7 +21,8 @@ from scipy.sparse.linalg import splu
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.fem.linear import SymmetricPardiso, direct_solver
+from tactsim.fem.linear import direct_solver
+from tactsim.fem.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.mechanics.block_model import CLOSING, GraspModel
@@ -66,7 +67,15 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
 
 
 def sensitivity(setup: GraspSetup) -> Sensitivity:
-    """Densities of the change of every taxel's force, on a structured mesh."""
+    """Densities of the change of every taxel's force, on a structured mesh.
+
+    Raises
+    ------
+    InputError
+        If the grasp has an inclusion.
+    ConvergenceError
+        If no step of its history converges.
+    """
     if setup.inclusions:
         raise InputError("the response is that of plain tissue; give a grasp without inclusions")
     plain = setup.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)})

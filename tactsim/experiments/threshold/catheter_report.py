@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 
+from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
@@ -16,9 +17,6 @@ from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.threshold.catheter_tip import CatheterTip
 
 SENSOR_UNITS = {
     "sensor": "1",
@@ -77,7 +75,7 @@ class Reading:
 class CatheterReport:
     """Collects the sensors in their order around the tip."""
 
-    def __init__(self, experiment: CatheterTip):
+    def __init__(self, experiment: CatheterCase):
         self._experiment = experiment
         ring = experiment.ring
         self._area = ring.area

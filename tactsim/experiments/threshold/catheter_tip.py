@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
 
+from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.catheter_report import SENSOR_UNITS, CatheterReport, Reading
 from tactsim.experiments.threshold.sampling import ApproachSampling
 from tactsim.experiments.threshold.valve_tissue import BandTissue, SensorContact, ValveSurface
@@ -16,64 +16,19 @@ from tactsim.interfaces.run import Course
 from tactsim.results.result import StepRecord
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
-from tactsim.sensors.sensor_ring import SensorRing
 from tactsim.sensors.signal_chain import SignalChain
 from tactsim.sensors.threshold_sensor import ThresholdSensor
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
-from tactsim.units import Angle, Length, Speed, Time
-
-STEEPEST = np.pi / 6 * (1 + 1e-12)
-"""Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
-MOST_SAMPLES = 500_000
-"""Longest recording of one touch, in samples."""
 
 
-class CatheterTip(Experiment):
+class CatheterTip(CatheterCase, Experiment):
     """A tip with sensors pressed on a surface of several tissues; the sensor with the highest threshold pressure is found.
 
     Source: thesis, 7.3 and Fig. 7.1.
     """
 
     kind: Literal["catheter_tip"] = "catheter_tip"
-    surface: ValveSurface
-    """The tissues."""
-    ring: SensorRing = SensorRing()
-    """The sensors."""
-    place: tuple[Length, Length]
-    """Where the middle of the tip stands, x and y from the middle of the valve."""
-    tilt: Annotated[Angle, Field(ge=0, le=STEEPEST)] = 0.0
-    """Angle between tip and surface."""
-    tilt_direction: Angle = 0.0
-    """Where the tilted tip is lowest, from the x axis."""
-    press: Annotated[Length, Field(gt=0)] = 1e-3
-    """Displacement of the tip after its first sensor has touched."""
-    speed: Annotated[Speed, Field(gt=0)] = 1e-3
-    """Speed of the tip."""
-    sensor: ThresholdSensor = ThresholdSensor()
-    """Electronics of each sensor."""
-    trials: Annotated[int, Field(ge=1, le=100_000)] = 200
-    """Repeated touches at the same place."""
-    lead: Annotated[Time, Field(gt=0)] = 0.5
-    """Recording before the first touch."""
-    seed: Annotated[int, Field(ge=0)] = 1
-    """Seed of the noise."""
-
     history_units: ClassVar[dict[str, str]] = SENSOR_UNITS
-
-    @model_validator(mode="after")
-    def _deep_enough(self) -> Self:
-        for tissue in self.surface.tissues:
-            if self.press >= tissue.thickness:
-                raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
-            if self.ring.recess >= tissue.thickness:
-                raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
-        needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
-        if needed > MOST_SAMPLES:
-            raise ValueError(
-                f"lead and press / speed take {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
-                "press faster, shorten the lead or sample more slowly"
-            )
-        return self
 
     @classmethod
     def example(cls) -> Self:

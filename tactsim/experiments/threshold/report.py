@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
+from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
@@ -17,9 +17,6 @@ from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
 
 RESOLUTION = 0.1
 """Force in N that the sensor resolves; thesis, 3.1.2."""
@@ -58,7 +55,7 @@ CELL_WORDS = {
 class TrialReport:
     """Collects the combinations, in the order speed, noise, cut-off, and turns them into a result."""
 
-    def __init__(self, experiment: ThresholdTrial):
+    def __init__(self, experiment: TrialCase):
         self._experiment = experiment
         self.lengths = (len(experiment.speeds), len(experiment.noises), len(experiment.cutoffs))
         self.shown = tuple(length // 2 for length in self.lengths)

@@ -96,7 +96,7 @@ class ClosedFormSource(Source):
         return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return [
             "closed form: linear, incompressible tissue, frictionless contact, small displacements",
             "past the touch the small sensor is a solid punch of the hole's radius that the tissue meets as fast as it rises",
@@ -117,7 +117,7 @@ class RunSource(Source):
         return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 
@@ -141,7 +141,7 @@ class IndentationSource(Source):
         return ContactCurve.of_result(result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 
@@ -167,7 +167,13 @@ class CurveSource(Source):
         return self
 
     def tissue(self, simulated: Result | None = None) -> ContactCurve:
-        """The curve in the file."""
+        """The curve in the file.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a column is missing.
+        """
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]
         if missing:
@@ -175,7 +181,7 @@ class CurveSource(Source):
         return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Assumptions of the contact that the result lists."""
         return _curve_assumptions()
 
 

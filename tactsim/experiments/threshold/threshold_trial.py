@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, Self
-
-from pydantic import Field, model_validator
+from typing import Any, ClassVar, Literal, Self
 
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.experiments.threshold.report import SIGNAL_UNITS, TrialReport
-from tactsim.experiments.threshold.sampling import FINER, SILENT, ApproachSampling
-from tactsim.experiments.threshold.source import AnySource, ClosedFormSource
+from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling
+from tactsim.experiments.threshold.source import ClosedFormSource
+from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, run_within_another
 from tactsim.materials.library import named_material
 from tactsim.results.result import StepRecord
-from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
-from tactsim.sensors.threshold_sensor import ThresholdSensor
 from tactsim.sensors.threshold_trigger import ThresholdTrigger
-from tactsim.units import Frequency, Speed, Time, Voltage, check_increasing, format_quantity
+from tactsim.units import format_quantity
 
 MOST_SAMPLES = 500_000
 """Longest recording of one approach, in samples."""
 
 
-class ThresholdTrial(Experiment):
+class ThresholdTrial(TrialCase, Experiment):
     """Indentations at several speeds, sampled with several noises through several low passes, each many times.
 
     The error is that of the reported threshold force against the force on the plate at the instant at which the tissue touches
@@ -39,51 +36,13 @@ class ThresholdTrial(Experiment):
     """
 
     kind: Literal["threshold_trial"] = "threshold_trial"
-    source: AnySource
-    """Where the forces come from."""
-    sensor: ThresholdSensor = ThresholdSensor()
-    """The sensor and its electronics; ``cutoffs`` and ``noises`` replace the cut-off and the white noise in it."""
-    speeds: Annotated[tuple[Annotated[Speed, Field(gt=0)], ...], Field(min_length=1)]
-    """Speeds of indentation, increasing."""
-    noises: Annotated[tuple[Annotated[Voltage, Field(ge=0)], ...], Field(min_length=1)]
-    """Root mean squares of the white noise of a sample, increasing; the line pick-up is that of the chain."""
-    cutoffs: Annotated[tuple[Annotated[Frequency, Field(gt=0)], ...], Field(min_length=1)]
-    """Cut-off frequencies of the low pass, increasing."""
-    trials: Annotated[int, Field(ge=1, le=10_000)] = 50
-    """Indentations of each combination."""
-    lead: Annotated[Time, Field(gt=0)] = 0.5
-    """Recording before the tissue is touched, in which a trigger is already false."""
-    seed: Annotated[int, Field(ge=0)] = 1
-    """Seed of the noise."""
-
     history_units: ClassVar[dict[str, str]] = {**Indentation.history_units, **SIGNAL_UNITS}
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        check_increasing(speeds=self.speeds, noises=self.noises, cutoffs=self.cutoffs)
-        if self.sensor.chain.low_pass is None:
-            raise ValueError("the chain has no low pass whose cut-off could vary; set sensor.chain.low_pass")
-        for low_pass in self.low_passes:
-            low_pass.check(self.sensor.chain.sampling_rate)
-            low_pass.check(FINER * self.sensor.chain.sampling_rate)  # of the ideal chain that the errors are told against
-        return self
 
     @classmethod
     def example(cls) -> Self:
         """A thin layer of ICF, one combination."""
         source = ClosedFormSource(material=named_material("icf_stable").material, thickness=3e-3)
         return cls(source=source, speeds=(1e-3,), noises=(1e-3,), cutoffs=(10.0,), trials=10)
-
-    @property
-    def low_passes(self) -> list[LowPass]:
-        """The low pass at each cut-off."""
-        order = self.sensor.chain.low_pass.order if self.sensor.chain.low_pass else 1
-        return [LowPass(cutoff=cutoff, order=order) for cutoff in self.cutoffs]
-
-    @property
-    def noise_levels(self) -> list[Noise]:
-        """The noise at each level."""
-        return [self.sensor.chain.noise.model_copy(update={"white": white}) for white in self.noises]
 
     def begin(self) -> Course:
         """Sample every combination; the history is one indentation of the middle one (Fig. 3.6b)."""

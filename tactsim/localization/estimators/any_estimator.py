@@ -1,4 +1,4 @@
-"""The estimator of a case file: any registered kind, told apart by ``kind``."""
+"""The estimator of a case file: any registered kind."""
 
 from __future__ import annotations
 

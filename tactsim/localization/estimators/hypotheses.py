@@ -1,4 +1,4 @@
-"""Nothing, one lump, two lumps, an artery or two: told apart by Bayes' rule on the fast forward model."""
+"""Nothing, one lump, two lumps, an artery or two: the likeliest by Bayes' rule on the fast forward model."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from tactsim.units import Length
 Array = np.ndarray
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
 CLASSES: tuple[str, ...] = ("none", "lump", "two_lumps", "artery", "two_arteries")
-"""What can be told apart; the order of every table."""
+"""The classes, in the order of every table."""
 PAIRS = ("two_lumps", "two_arteries")
 WORDS = {"lump": "one lump", "two_lumps": "two lumps", "artery": "an artery", "two_arteries": "two arteries"}
 COARSE = 4
-"""Every how many tabulated centres a ball is tried in all pairs."""
+"""Spacing, in tabulated centres, of the balls that are tried in all pairs."""
 COARSE_SPACING, FINE_SPACING = 4e-3, 2e-3
 """Distance in m of the parallel tubes that are tried in all pairs, and in the best ones."""
 RADIUS_STEP = 1e-3
@@ -40,7 +40,7 @@ class HypothesesEstimator(Estimator):
 
     Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
     the likeliest one. To first order a tube acts by its whole section, with one contrast for wall and lumen together: an empty
-    soft one is softer than the tissue. The wall's thickness and a pressure cannot be told.
+    soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -48,7 +48,7 @@ class HypothesesEstimator(Estimator):
     needs_response: ClassVar[bool] = True
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
-    """What may be there."""
+    """Classes that are considered."""
     radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
     """Least and largest radius of a lump."""
     tube_radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 5e-3)
@@ -56,15 +56,15 @@ class HypothesesEstimator(Estimator):
     gap: Annotated[Length, Field(ge=0)] = 0.5e-3
     """Least distance of a body from the faces of the block that it does not leave through."""
     contrast_spread: Annotated[float, Field(gt=0)] = 5.0
-    """Standard deviation of the contrast beforehand."""
+    """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
-    """Probability beforehand that anything is there."""
+    """Prior probability of any inclusion."""
     second: Annotated[float, Field(gt=0, le=1)] = 0.2
-    """Probability beforehand of a class of two over that of one: of a second one too weak to be felt nothing else tells."""
+    """Prior probability of a class of two over that of one: readings say nothing of a second one too weak to be felt."""
     seed: Annotated[int, Field(ge=0)] = 1
-    """Of the draws by which pairs are averaged."""
+    """Seed of the draws by which pairs are averaged."""
 
     @classmethod
     def example(cls) -> Self:
@@ -72,29 +72,39 @@ class HypothesesEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """None, one or two inclusions, and the probability of each class."""
+        """None, one or two inclusions, and the probability of each class.
+
+        Raises
+        ------
+        InputError
+            If the readings lack a reference without a lump or the response of the tissue.
+        """
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
         values, noise = readings.difference.ravel(), 2 * readings.noise**2
         variance = noise + self.model_error**2 * float(np.mean(values**2))
         if variance == 0:
-            return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0, self._told({"none": 0.0}))
+            return Estimate(
+                False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
+            )
         change = Change(values, variance, self.contrast_spread)
         found: dict[str, tuple[Found, Candidates]] = {name: self._explained(name, change, readings) for name in self.classes}
         evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in found.items()}
         if noise > 0:
             evidence["none"] = self._prior("none") + nothing(values, noise)
-        told = self._told(evidence)
-        likeliest = max(told, key=lambda name: told[name])
-        probability = float(np.clip(1 - told["none"], 0.0, 1.0))
+        probabilities = self._probabilities(evidence)
+        likeliest = max(probabilities, key=lambda name: probabilities[name])
+        probability = float(np.clip(1 - probabilities["none"], 0.0, 1.0))
         if likeliest == "none":
-            return Estimate(False, (), f"nothing there with a probability of {told['none']:.3g}", probability, told)
+            return Estimate(
+                False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
+            )
         inclusions = _inclusions(*found[likeliest])
-        reason = f"{WORDS[likeliest]} with a probability of {told[likeliest]:.3g}"
-        return Estimate(True, inclusions, reason, probability, told)
+        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
+        return Estimate(True, inclusions, reason, probability, probabilities)
 
     def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Found, Candidates]:
-        """What a class explains, and its bodies."""
+        """How well a class explains the change, and its candidates."""
         assert readings.response is not None  # checked by estimate
         candidates, coarse = self._bodies(name, readings.response, readings.block_size)
         if coarse is None:
@@ -117,14 +127,14 @@ class HypothesesEstimator(Estimator):
         return tube_candidates(response, size, tubes, gap=self.gap, closed=False, spacing=FINE_SPACING), kept
 
     def _prior(self, name: str) -> float:
-        """Logarithm of the probability of a class beforehand."""
+        """Log prior probability of a class."""
         if name == "none":
             return float(np.log(1 - self.prior))
         shares = {other: self.second if other in PAIRS else 1.0 for other in self.classes}
         return float(np.log(self.prior * shares[name] / sum(shares.values())))  # type: ignore[index]
 
-    def _told(self, evidence: dict[str, float]) -> dict[str, float]:
-        """Probability of each class from their log evidence; classes that are not asked for have none."""
+    def _probabilities(self, evidence: dict[str, float]) -> dict[str, float]:
+        """Posterior probability of each class from the log evidence; zero for classes that are not considered."""
         total = logsumexp(list(evidence.values()))
         return {name: float(np.exp(evidence[name] - total)) if name in evidence else 0.0 for name in CLASSES}
 

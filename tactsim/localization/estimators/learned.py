@@ -44,7 +44,13 @@ class LearnedEstimator(Estimator):
         return cls(weights=str(path))
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the region of its centre."""
+        """At most one ball, with the region of its centre.
+
+        Raises
+        ------
+        InputError
+            If the readings lack a reference without a lump, or are of another matrix or block than the training data.
+        """
         if readings.difference is None or readings.reference is None:
             raise InputError("the learned estimator needs a reference without a lump")
         learned = read_weights(self.weights)

@@ -72,7 +72,13 @@ class ModelBasedEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the covariance of place, radius and contrast, and the region of its centre."""
+        """At most one ball, with the covariance of place, radius and contrast, and the region of its centre.
+
+        Raises
+        ------
+        InputError
+            If the readings lack a reference without a lump or the response of the tissue.
+        """
         if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
         change, plain = readings.difference.ravel(), np.asarray(readings.reference, dtype=float).ravel()

@@ -49,7 +49,7 @@ class Surface(Inclusion):
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The body inside the surface."""
-        return (_placed(self, _file(self.path)),)
+        return (_placed(self, *_file(self.path)),)
 
 
 def _file(path: str) -> tuple[OutsideFile, int]:
@@ -59,8 +59,8 @@ def _file(path: str) -> tuple[OutsideFile, int]:
 
 
 @lru_cache(maxsize=8)
-def _placed(surface: Surface, state: tuple[OutsideFile, int]) -> TriangulatedSolid:
-    vertices, triangles = _read_surface(*state)
+def _placed(surface: Surface, file: OutsideFile, written: int) -> TriangulatedSolid:
+    vertices, triangles = _read_surface(file, written)
     turn = Rotation.from_euler("xyz", surface.rotation).as_matrix()
     placed = vertices * UNITS[surface.unit] @ turn.T + np.array(surface.translation)
     return TriangulatedSolid(placed, triangles, surface.path)

@@ -17,7 +17,7 @@ CHUNK = 20_000
 
 
 class TriangulatedSolid(Solid):
-    """The inside of a closed surface of triangles, told by pseudonormals at the nearest point.
+    """The inside of a closed surface of triangles; pseudonormals at the nearest point decide the sign of the distance.
 
     Raises
     ------
@@ -101,7 +101,13 @@ class TriangulatedSolid(Solid):
 
 
 def check_closed(triangles: Array, count: int, name: str) -> None:
-    """Refuse triangles (m, 3) on ``count`` vertices that do not bound one body."""
+    """Refuse triangles (m, 3) on ``count`` vertices that do not bound one body.
+
+    Raises
+    ------
+    InputError
+        Naming the surface and whether it is open, inconsistently oriented or in several pieces.
+    """
     if len(triangles) < 4:
         raise InputError(f"{name}: {len(triangles)} triangles cannot bound a body")
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])

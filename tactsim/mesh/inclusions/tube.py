@@ -63,7 +63,13 @@ class Tube(Inclusion):
         return SweptSolid(line, self.outer_radius, size), SweptSolid(line, self.inner_radius, size)
 
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
-        """Refuse a tube that is too thin, too bent, or leaves the block other than by an end."""
+        """Refuse a tube that is too thin, too bent, or leaves the block other than by an end.
+
+        Raises
+        ------
+        InvalidQuantity
+            Naming the tube and what is wrong with it.
+        """
         self._check_shape(name)
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         check_bends(line, self.outer_radius, gap, name)
@@ -108,7 +114,13 @@ class Tube(Inclusion):
 
 
 def check_bends(line: CentreLine, radius: float, gap: float, name: str) -> None:
-    """Refuse a line (radius in m of the tube around it) that bends too tightly or comes back to itself."""
+    """Refuse a line (radius in m of the tube around it) that bends too tightly or comes back to itself.
+
+    Raises
+    ------
+    InvalidQuantity
+        With the radius of the bend or the distance, and what is allowed.
+    """
     tightest = 1 / max(float(np.linalg.norm(line.curvature(line.stations), axis=1).max()), 1e-12)
     if tightest < 1.2 * radius:
         bend, least = format_quantity(tightest, "m"), format_quantity(1.2 * radius, "m")
@@ -126,7 +138,13 @@ def check_bends(line: CentreLine, radius: float, gap: float, name: str) -> None:
 
 @lru_cache(maxsize=64)
 def extended(points: tuple[Point, ...], radius: float, size: tuple[float, ...]) -> CentreLine:
-    """The centre line, continued until the whole section of each end on or outside a face lies outside, all in m."""
+    """The centre line, continued until the whole section of each end on or outside a face lies outside, all in m.
+
+    Raises
+    ------
+    InvalidQuantity
+        If points coincide.
+    """
     given = np.array(points, float)
     if (np.linalg.norm(np.diff(given, axis=0), axis=1) < 1e-3 * radius).any():
         raise InvalidQuantity("points of a centre line coincide; allowed: distinct points")

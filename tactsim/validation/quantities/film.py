@@ -12,8 +12,7 @@ from tactsim.identification.calibration_line import fit_calibration_line
 from tactsim.identification.film_line import identify_film
 from tactsim.interfaces import quantity
 from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite import AnyComposite
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_equations import Reading, creep_strain, varying_coefficient_jump
 from tactsim.sensors.film_equations import film_resistance as resistance_of

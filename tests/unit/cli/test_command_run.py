@@ -81,7 +81,7 @@ def test_a_named_folder_needs_force_and_is_checked_before_computing(
 ) -> None:
     assert main(["run", "case.yaml", "--out", "mine"]) == 0
     with monkeypatch.context() as patch:
-        patch.setattr(Pretence, "run", lambda *_: pytest.fail("computed before the folder was checked"))
+        patch.setattr(Pretence, "begin", lambda self: pytest.fail("computed before the folder was checked"))
         assert main(["run", "case.yaml", "--out", "mine"]) == 5
     assert "use --force" in capsys.readouterr().err
     assert main(["run", "case.yaml", "--out", "mine", "--force", "--set", "experiment.fail_at=2"]) == 3

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
 
-from tactsim.cli.figures import fit_figure, material_figure, pressure_unit
+from tactsim.cli.figures.material_curves import fit_figure, material_figure, png, pressure_unit
 from tactsim.identification.uniaxial import FORMS, fit_uniaxial, uniaxial_nominal_stress
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Material
@@ -22,12 +22,6 @@ from tactsim.registry import kinds
 
 SHIPPED = {name: named_material(name).material for name in ("b1a_printed", "icf_stable")}
 EXAMPLES = {kind: cls.example() for kind, cls in kinds(Material).items()}
-
-
-def png(figure: Figure) -> bytes:
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=150)
-    return content.getvalue()
 
 
 def assert_nothing_is_cut(figure: Figure) -> None:

@@ -33,7 +33,8 @@ def test_exact_data_give_the_line():
     assert fit.slope == pytest.approx(THESIS_LINE.slope, rel=1e-12)
     assert fit.intercept == pytest.approx(THESIS_LINE.intercept, rel=1e-9)
     assert fit.rms < 1e-12
-    assert fit.slope != pytest.approx(1.00001 * THESIS_LINE.slope, rel=3e-6)
+    other = fit_calibration_line(FORCE, voltages(), **DIVIDER | {"load": 1.01e3})
+    assert other.slope != pytest.approx(THESIS_LINE.slope, rel=1e-12), "the load resistor counts"
     assert np.ndim(fit.slope) == 0
 
 
@@ -77,7 +78,7 @@ def test_it_is_least_squares_in_voltage():
     assert fit.noise == pytest.approx(5e-3, rel=0.5)
     half = fit.band(np.array([0.0, 10.0]))
     assert half[0] == pytest.approx(fit.intercept_interval[1] - fit.intercept)
-    assert half[1] < half[0] or half[1] > 0
+    assert 0 < half[1] < half[0], "the line is surer among its points than at their end"
 
 
 def test_linearity_is_the_largest_and_smallest_force_error_over_full_scale():

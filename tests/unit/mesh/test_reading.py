@@ -37,8 +37,6 @@ def test_linear_tetrahedra_are_promoted_and_scaled(ending, tmp_path):
     mesh = read_mesh(written(tmp_path / f"a.{ending}", name=name), {7: 0, 3: 1}, unit="mm")
     assert_close(volume(mesh), 2e-9, 1e-12)
     assert_close(volume(mesh, 1), 1e-9, 1e-12)
-    with pytest.raises(AssertionError):
-        assert_close(volume(mesh, 1), 1e-9 * (1 + 3e-12), 1e-12)
     assert len(mesh.nodes) == len(LINEAR.nodes)
 
 

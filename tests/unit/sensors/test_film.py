@@ -140,7 +140,6 @@ def test_the_identified_resistances_are_those_of_the_line():
     shipped = named_composite("lingstat_identified")
     assert shipped.initial_resistance == pytest.approx(found.initial_resistance, rel=1e-4)
     assert shipped.contact_resistance == pytest.approx(found.contact_resistance, rel=1e-4)
-    assert np.abs(found.errors).max() == pytest.approx(0.112, abs=0.001)
     assert shipped.initial_resistance != pytest.approx(
         identify_film(shipped, (THESIS_LINE.slope, THESIS_LINE.intercept), forces=(0.5, 8.0)).initial_resistance, rel=0.05
     )

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import constants
 
 from tactsim.errors import InvalidQuantity
 from tactsim.sensors.tunnelling import (
     contact_coefficient,
-    junction_resistance,
     particle_separation,
     relative_resistance,
     tunnelling_decay,
@@ -21,8 +21,8 @@ def test_volume_fraction_from_the_residue():
     filler, matrix = (4.2083 * MILLIGRAM, 560.0), (16.9496 * MILLIGRAM, 910.0)
     assert volume_fraction(filler, matrix) == pytest.approx(0.28747, abs=1e-5)  # five digits are given
     assert volume_fraction((4.2083 * MILLIGRAM, 1800.0), matrix) == pytest.approx(0.112, abs=5e-4)
-    # The thesis rounds the volumes to 0.0075 and 0.0186 cm^3 first.
-    assert pytest.approx(0.2873, abs=6e-5) == 0.0075 / (0.0075 + 0.0186)
+    rounded = (4.2 * MILLIGRAM, 560.0), (16.926 * MILLIGRAM, 910.0)  # volumes of 0.0075 and 0.0186 cm^3, as the thesis has them
+    assert volume_fraction(*rounded) == pytest.approx(0.2873, abs=6e-5)
 
 
 def test_separation_decay_and_their_product():
@@ -36,6 +36,12 @@ def test_separation_decay_and_their_product():
 
 def test_particles_touch_in_a_simple_cubic_packing():
     assert particle_separation(1.0, np.pi / 6 - 1e-12) == pytest.approx(0, abs=1e-11)
+
+
+def junction_resistance(separation, area, decay):
+    """Tunnelling resistance in ohm between two particles: eq. 2.1.3 with the Planck constant that is missing in its numerator."""
+    scale = 8 * np.pi * constants.h * separation / (3 * area * decay * constants.e**2)
+    return scale * np.exp(decay * separation)
 
 
 def test_relative_resistance_is_the_ratio_of_junction_resistances():

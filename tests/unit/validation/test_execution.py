@@ -71,9 +71,9 @@ def test_a_change_of_the_code_of_the_simulations_asks_for_new_ones(
 
 
 def test_a_refusal_on_the_way_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refused(self: Indentation, progress: object) -> None:
+    def refused(self: Indentation) -> None:
         raise InputError("no mesh")
 
-    monkeypatch.setattr(Indentation, "run", refused)
+    monkeypatch.setattr(Indentation, "begin", refused)
     outcome = simulated(("refused", str(CASES / STUDY.case), ()))
     assert (outcome.status, outcome.reason) == ("failed", "no mesh")

@@ -28,7 +28,12 @@ class ConfusionFigures(ResultFigures):
             return {}
         title = f"{result.title or 'Confusion table'}: {result.reason}"
         counts, classes = result.quantities["confusion"].value, result.scene_as(ConfusionScene).classes
-        return {"confusion.png": lambda: png(confusion_figure(counts, classes, title))}
+        return {"confusion.png": lambda: confusion_png(counts, classes, title)}
+
+
+def confusion_png(table: Sequence[Sequence[int]], classes: Sequence[str], title: str) -> bytes:
+    """``confusion_figure`` as PNG."""
+    return png(confusion_figure(table, classes, title))
 
 
 def confusion_figure(table: Sequence[Sequence[int]], classes: Sequence[str], title: str) -> Figure:

@@ -67,6 +67,11 @@ class View:
         return over * factor, unit
 
 
+def colour_table(levels: int) -> list[int]:
+    """Red, green and blue, each from 0 to 255, of evenly spaced levels of the colour map, one after another."""
+    return np.round(255 * colormaps[COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
+
+
 def views_figure(result: Result, shown: Shown = "force") -> Figure:
     """The top view above the front view, the left view beside it; every picture has its colour scale.
 

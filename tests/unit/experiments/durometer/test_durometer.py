@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from pydantic import ValidationError
 
 from tactsim.analytic.durometer import DurometerScale
-from tactsim.case import load_case
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
@@ -40,7 +38,7 @@ def test_tissue_and_spring_balance_at_the_reading(hard):
     assert hard.status == "converged"
     spring = 0.203 + 0.00908 * found["reading"]
     assert found["spring_force"] == pytest.approx(spring, rel=1e-4)  # depth located to 1e-5 of the travel
-    assert found["spring_force"] != pytest.approx(spring * (1 + 3e-4), rel=1e-4)
+    assert found["spring_force"] != pytest.approx(spring - 0.203, rel=1e-4), "the spring is preloaded"
     assert found["depth"] == pytest.approx(2.5e-3 * (1 - found["reading"] / 100), rel=1e-12)
     assert found["bottoms_out"] == 0
     assert hard.steps[-1].values["displacement"] == pytest.approx(2.5e-3)
@@ -78,7 +76,6 @@ def test_force_scales_with_the_modulus(hard):
     for mine, its in zip(double.steps, hard.steps, strict=True):
         assert mine.values["displacement"] == pytest.approx(its.values["displacement"], rel=1e-6)
         assert mine.values["reaction_force"] == pytest.approx(2 * its.values["reaction_force"], rel=1e-6)
-    assert mine.values["reaction_force"] != pytest.approx(2 * its.values["reaction_force"] * (1 + 3e-6), rel=1e-6)
 
 
 def test_a_scaled_curve_reads_what_a_direct_run_reads(hard):
@@ -86,7 +83,8 @@ def test_a_scaled_curve_reads_what_a_direct_run_reads(hard):
     direct = values(measured(NeoHookean(c10=200e3 / 6)))["reading"]
     scaled = ForceDepthCurve.of(hard, 135e3).reading(200e3, DurometerScale())
     assert scaled == pytest.approx(direct, abs=0.05)
-    assert scaled != pytest.approx(direct + 0.15, abs=0.05)
+    unscaled = ForceDepthCurve.of(hard, 200e3).reading(200e3, DurometerScale())
+    assert unscaled != pytest.approx(direct, abs=0.05)
 
 
 def test_an_interrupted_run_keeps_its_steps():
@@ -123,14 +121,6 @@ def test_a_narrow_specimen_is_warned_of():
     assert any(
         "edge of the specimen is 8 mm away" in told for told in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
     )
-
-
-@pytest.mark.slow
-def test_the_shipped_case(request):
-    result = load_case(request.config.rootpath / "cases" / "durometer_oo.yaml").experiment.run()
-    assert result.status == "converged"
-    assert values(result)["reading"] == pytest.approx(63.05, abs=0.1)  # mesh error 0.01 units, table_3_3_simulated
-    assert np.diff([step.values["reaction_force"] for step in result.steps]).min() > 0
 
 
 @pytest.mark.slow

@@ -48,7 +48,7 @@ def test_modulus_and_reading_by_hand():
     np.testing.assert_allclose(found["modulus_of_threshold"][0], expected, rtol=1e-14)  # round-off
     assert found["modulus_of_reading"][0][3] == pytest.approx(135e3, abs=500)
     assert found["modulus_ratio"][0][3] == pytest.approx(135e3 / 11.15e3, rel=0.004)
-    assert found["modulus_ratio"][0][3] != pytest.approx(135e3 / 11.15e3 * 1.012, rel=0.004)
+    assert found["modulus_ratio"][0][3] != pytest.approx(135e3 / 22.3e3, rel=0.004), "the modulus, not the threshold"
 
 
 def test_a_prediction_that_is_right_leaves_no_difference():
@@ -127,7 +127,6 @@ def test_the_threshold_scales_with_the_modulus():
         result = SENSOR.of(Shape(name="a", material=NeoHookean(c10=factor * 10e3 / 6))).run()
         pressures.append(result.quantities["threshold_pressure"].value)
     assert pressures[1] == pytest.approx(2 * pressures[0], rel=1e-6)
-    assert pressures[1] != pytest.approx(2 * pressures[0] * (1 + 3e-6), rel=1e-6)
 
 
 @pytest.mark.slow

@@ -81,7 +81,7 @@ def test_taxels_read_the_cauchy_pressure_of_a_frictionless_block():
     for side in JAWS:
         pressure = np.array(found[f"taxel_pressure_{side}"])
         assert pressure == pytest.approx(np.full((3, 3), cauchy), rel=3e-4), "twice the penetration over the closing is 2e-4"
-        assert pressure != pytest.approx(np.full((3, 3), cauchy * (1 + 1e-3)), rel=3e-4)
+        assert pressure != pytest.approx(np.full((3, 3), cauchy / stretch), rel=3e-4), "the nominal pressure"
         assert np.abs(found[f"taxel_shear_{side}"]).max() < 1e-6 * cauchy * 81e-6
         parts = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
         assert parts == pytest.approx(found["reaction_force"], rel=1e-7)
@@ -115,7 +115,6 @@ def test_a_force_is_reached_by_the_closing_that_needs_it():
     force = closed["reaction_force"]
     reached = values(run(loading=pressed({"kind": "ramp", "to": force, "duration": 1.0}, control="force")))
     assert reached["reaction_force"] == pytest.approx(force, rel=1e-6)
-    assert reached["reaction_force"] != pytest.approx(force * (1 + 3e-6), rel=1e-6)
     assert reached["displacement"] == pytest.approx(1e-3, rel=0.03), (
         "twice the penetration tolerance, and another path of friction"
     )

@@ -37,6 +37,9 @@ def tissue(*, c10=5e3, fractions=(0.9,), times=(6.0,), name="tissue"):
     return ProbeTissue(name=name, material=NeoHookean(c10=c10, relaxation=Relaxation(fractions=fractions, times=times)))
 
 
+ELASTIC = ProbeTissue(name="elastic", material=NeoHookean(c10=5e3))
+
+
 def probe(**changes):
     return SwitchProbe(**({"tissues": (tissue(),), "sides": "followed"} | changes))
 
@@ -75,7 +78,6 @@ def test_every_touch_is_read(three):
         assert intervals[1:] == pytest.approx(
             1e-3 / told.rate, rel=0.05
         )  # the pressure on each switch is higher, so its threshold is met sooner
-        assert intervals[1:] != pytest.approx(1.15e-3 / told.rate, rel=0.05)
         read, true = three.quantities[f"switching_forces_{number}"].value, three.quantities[f"forces_{number}"].value
         assert ((read < true * 1.05) & (read > true * 0.85)).all(), "half a strip early, late by the threshold"
 
@@ -99,14 +101,14 @@ def test_the_noise_is_that_of_the_readings():
     touch = touched(setup, setup.tissues[0], 1e-3, np.random.default_rng(4))
     resting = touch.force[touch.time < 0]
     assert resting.std() == pytest.approx(force_noise(setup), rel=0.2)  # four standard deviations of 200 samples
-    assert resting.std() != pytest.approx(2 * force_noise(setup), rel=0.2)
+    pick_up = probe(chain=SignalChain(noise=Noise(line=1e-3), low_pass=None))
+    assert resting.std() != pytest.approx(force_noise(pick_up), rel=0.2), "noise is not pick-up of that amplitude"
 
 
 def test_computed_sides_are_touched_by_the_first_switch_only():
     result = probe(sides="computed").run()
     assert result.quantities["closed_switches_1"].value == 1
     assert "mean_rate_1" not in result.quantities
-    assert result.quantities["contact_height_1"].value == pytest.approx(1.468e-3, rel=1e-3)
     assert any("no mean rate" in warning for warning in result.warnings)
     assert any("sinks in" in warning for warning in result.warnings)
 
@@ -181,7 +183,8 @@ def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
     assert found.status is Status.CONVERGED, found.reason
     expected = fast.quantities["forces_1"].value
     np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
-    assert not np.allclose(found.quantities["forces_1"].value, 1.06 * expected, rtol=0.02)
+    elastic = probe(tissues=(ELASTIC,), **given).run()
+    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
 
 
 @pytest.mark.slow
@@ -191,20 +194,20 @@ def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fraction
     fast, found = (probe(model=model, **given).run() for model in ("fast", "fem"))
     expected = fast.quantities["forces_1"].value
     np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
-    assert not np.allclose(found.quantities["forces_1"].value, 1.06 * expected, rtol=0.02)
+    elastic = probe(**given | {"tissues": (ELASTIC,)}).run()
+    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
     heights = [run.quantities["contact_height_1"].value for run in (fast, found)]
     assert heights[1] == pytest.approx(heights[0], rel=0.03)
     pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, found)]
     assert pressed[0] == pytest.approx(pressed[1], rel=0.35), (
         "a strip under the last edge of the contact; superposition is rough there"
     )
-    assert pressed[0] != pytest.approx(2 * pressed[1], rel=0.35)
 
 
 @pytest.mark.slow
 def test_the_curve_is_that_of_the_finite_elements():
-    stiff = ProbeTissue(name="elastic", material=NeoHookean(c10=5e3))
-    fast, found = (probe(model=model, tissues=(stiff,), sides="computed").run() for model in ("fast", "fem"))
+    fast, found = (probe(model=model, tissues=(ELASTIC,), sides="computed").run() for model in ("fast", "fem"))
     np.testing.assert_allclose(found.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
     assert found.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
-    assert not np.allclose(found.quantities["forces_1"].value, 1.006 * fast.quantities["forces_1"].value, rtol=2e-3)
+    relaxing = probe(sides="computed").run()
+    assert not np.allclose(found.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable
 
 import numpy as np
@@ -70,6 +71,13 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
     lower.set_xlabel("stretch")
     figure.draw_without_rendering()  # settles the ticks, whose width the layout of the saved figure needs
     return figure
+
+
+def png(figure: Figure) -> bytes:
+    """The figure as PNG, 150 dots per inch."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=150)
+    return content.getvalue()
 
 
 def pressure_unit(pressures: Array) -> tuple[str, float]:

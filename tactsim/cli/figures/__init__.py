@@ -1,0 +1,1 @@
+"""What the command line draws: curves of materials, and the figures of a result."""

@@ -1,0 +1,60 @@
+"""What a case of a catheter tip with threshold sensors asks for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tactsim.experiments.threshold.valve_tissue import ValveSurface
+from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.threshold_sensor import ThresholdSensor
+from tactsim.units import Angle, FrozenModel, Length, Speed, Time
+
+STEEPEST = np.pi / 6 * (1 + 1e-12)
+"""Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
+MOST_SAMPLES = 500_000
+"""Longest recording of one touch, in samples."""
+
+
+class CatheterCase(FrozenModel):
+    """The tissues, the tip with its ring of sensors, and how it is pressed on the surface."""
+
+    surface: ValveSurface
+    """The tissues."""
+    ring: SensorRing = SensorRing()
+    """The sensors."""
+    place: tuple[Length, Length]
+    """Where the middle of the tip stands, x and y from the middle of the valve."""
+    tilt: Annotated[Angle, Field(ge=0, le=STEEPEST)] = 0.0
+    """Angle between tip and surface."""
+    tilt_direction: Angle = 0.0
+    """Where the tilted tip is lowest, from the x axis."""
+    press: Annotated[Length, Field(gt=0)] = 1e-3
+    """Displacement of the tip after its first sensor has touched."""
+    speed: Annotated[Speed, Field(gt=0)] = 1e-3
+    """Speed of the tip."""
+    sensor: ThresholdSensor = ThresholdSensor()
+    """Electronics of each sensor."""
+    trials: Annotated[int, Field(ge=1, le=100_000)] = 200
+    """Repeated touches at the same place."""
+    lead: Annotated[Time, Field(gt=0)] = 0.5
+    """Recording before the first touch."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Seed of the noise."""
+
+    @model_validator(mode="after")
+    def _deep_enough(self) -> Self:
+        for tissue in self.surface.tissues:
+            if self.press >= tissue.thickness:
+                raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
+            if self.ring.recess >= tissue.thickness:
+                raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
+        needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
+        if needed > MOST_SAMPLES:
+            raise ValueError(
+                f"lead and press / speed take {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
+                "press faster, shorten the lead or sample more slowly"
+            )
+        return self

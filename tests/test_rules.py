@@ -1,0 +1,304 @@
+"""The rules of CONTRIBUTING that a machine can hold: size, signatures, docstrings, names, imports."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import grimp
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LONGEST_MODULE, LONGEST_FUNCTION = 300, 40
+MOST_POSITIONAL, MOST_METHODS = 5, 10
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+ENGINE = tuple(f"tactsim/{room}/" for room in ("analytic", "contact", "fem", "identification", "materials", "mesh", "sensors"))
+HOUSEHOLD = {"told", "_told"}
+"""Names that say nothing in the rooms of the engine, where the field has a word."""
+EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
+LARGE_CLASSES = {
+    "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
+    "tactsim/mechanics/section_model.py:IndentationModel": "what an indentation asks of its section model",
+    "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case; its checks are public to pydantic only",
+}
+"""Classes that may have more public methods, and why."""
+
+
+UNTOLD = tuple(f"tactsim/{room}/" for room in ("cli", "dataset", "live", "validation"))
+"""Rooms whose functions need not say yet what they raise."""
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A function or class of the package: where it stands, and whether a user may name it."""
+
+    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+    place: str
+    public: bool
+    nested: bool
+    method: bool
+
+
+def modules() -> list[Path]:
+    return sorted((ROOT / "tactsim").rglob("*.py"))
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def below(node: ast.AST, prefix: str, *, public: bool = True, nested: bool = False) -> Iterator[Definition]:
+    """Every function and class below a node, from the outer ones to the inner ones."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (*FUNCTIONS, ast.ClassDef)):
+            seen = public and not child.name.startswith("_")
+            place = f"{prefix}{child.name}"
+            yield Definition(child, place, seen and not nested, nested, isinstance(node, ast.ClassDef))
+            yield from below(child, f"{place}.", public=seen, nested=nested or isinstance(child, FUNCTIONS))
+        else:
+            yield from below(child, prefix, public=public, nested=nested)
+
+
+@cache
+def definitions() -> tuple[Definition, ...]:
+    return tuple(found for path in modules() for found in below(tree(path), f"{path.relative_to(ROOT).as_posix()}:"))
+
+
+def functions(*, public: bool = False) -> list[Definition]:
+    return [found for found in definitions() if isinstance(found.node, FUNCTIONS) and (found.public or not public)]
+
+
+def own_nodes(function: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of a function without those of functions and classes within it."""
+    for child in ast.iter_child_nodes(function):
+        if not isinstance(child, (*FUNCTIONS, ast.ClassDef, ast.Lambda)):
+            yield child
+            yield from own_nodes(child)
+
+
+def length(function: Function) -> int:
+    """Lines of a function after its docstring."""
+    body = function.body[1:] if ast.get_docstring(function) is not None else function.body
+    return body[-1].end_lineno - body[0].lineno + 1 if body else 0
+
+
+def positional(found: Definition) -> list[ast.arg]:
+    arguments = [*found.node.args.posonlyargs, *found.node.args.args]
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in found.node.decorator_list)
+    return arguments[1:] if found.method and not static else arguments
+
+
+def annotations(function: Function) -> list[tuple[str, str]]:
+    arguments = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+    return [(argument.arg, ast.unparse(argument.annotation) if argument.annotation else "") for argument in arguments]
+
+
+def compiled(function: Function) -> bool:
+    """Whether numba compiles the function: it takes arrays only, has no types, and no objects could hold its arguments."""
+    return any("njit" in ast.unparse(decorator) for decorator in function.decorator_list)
+
+
+def says_raises(found: Definition) -> bool:
+    return "Raises" in (ast.get_docstring(found.node) or "")
+
+
+def raises(function: Function) -> bool:
+    """Whether the function itself raises anything but a signal to its own caller within the module."""
+    return any(isinstance(node, ast.Raise) for node in own_nodes(function))
+
+
+def names_of(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Name):
+        yield node.id
+
+
+# Each rule gives the places that break it.
+
+
+def long_modules() -> list[str]:
+    counts = {path.relative_to(ROOT).as_posix(): len(path.read_text(encoding="utf-8").splitlines()) for path in modules()}
+    return [f"{path}: {count} lines" for path, count in counts.items() if count > LONGEST_MODULE]
+
+
+def long_functions() -> list[str]:
+    return [f"{f.place}: {length(f.node)} lines" for f in functions() if length(f.node) > LONGEST_FUNCTION]
+
+
+def wide_functions() -> list[str]:
+    wide = [f for f in functions() if len(positional(f)) > MOST_POSITIONAL and not compiled(f.node)]
+    return [f"{f.place}: {len(positional(f))} positional arguments" for f in wide]
+
+
+def packed_arguments() -> list[str]:
+    """Tuples of anything, by which a function takes more arguments than it may."""
+    packed = re.compile(r"tuple\[(Any|object)\b|tuple$")
+    return [f"{f.place}: {name}" for f in functions() for name, kind in annotations(f.node) if packed.match(kind)]
+
+
+def untyped_arguments() -> list[str]:
+    return [
+        f"{f.place}: {name}"
+        for f in functions(public=True)
+        for name, kind in annotations(f.node)
+        if not kind and name not in ("self", "cls") and not compiled(f.node)
+    ]
+
+
+def large_classes() -> list[str]:
+    found = []
+    for definition in definitions():
+        if isinstance(definition.node, ast.ClassDef):
+            methods = [n for n in definition.node.body if isinstance(n, FUNCTIONS) and not n.name.startswith("_")]
+            if len(methods) > MOST_METHODS and definition.place not in LARGE_CLASSES:
+                found.append(f"{definition.place}: {len(methods)} public methods")
+    return found
+
+
+def undocumented() -> list[str]:
+    silent = [path.relative_to(ROOT).as_posix() for path in modules() if ast.get_docstring(tree(path)) is None]
+    return silent + [f.place for f in definitions() if f.public and ast.get_docstring(f.node) is None]
+
+
+def silent_about_errors() -> list[str]:
+    """Public functions that raise and have no section that says what."""
+    silent = [f.place for f in functions(public=True) if raises(f.node) and not says_raises(f)]
+    return [place for place in silent if not place.startswith(UNTOLD)]
+
+
+def empty_names() -> list[str]:
+    return [
+        path.relative_to(ROOT).as_posix() for path in modules() if EMPTY_NAMES & set(path.relative_to(ROOT).with_suffix("").parts)
+    ]
+
+
+def household_names() -> list[str]:
+    """Functions, arguments and variables of the engine by a household word."""
+    found = set()
+    for path in modules():
+        place = path.relative_to(ROOT).as_posix()
+        for node in ast.walk(tree(path)) if place.startswith(ENGINE) else ():
+            names = [getattr(node, field, None) for field in ("name", "id", "attr", "arg")]
+            found |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
+    return sorted(found)
+
+
+def printing() -> list[str]:
+    calls = ((path, node) for path in modules() for node in ast.walk(tree(path)) if isinstance(node, ast.Call))
+    return [f"{path.relative_to(ROOT)}:{node.lineno}" for path, node in calls if "print" in names_of(node.func)]
+
+
+def machine_paths() -> list[str]:
+    """Folders of one machine in the package, the cases or the tests."""
+    place = re.compile(r"/(?:home|Users|work|root)/\w+/|[A-Z]:\\\\Users")
+    texts = [*modules(), *ROOT.glob("cases/**/*.yaml"), *ROOT.glob("scripts/*"), *ROOT.glob("*.md")]
+    return [path.relative_to(ROOT).as_posix() for path in texts if place.search(path.read_text(encoding="utf-8"))]
+
+
+RULES: list[Callable[[], list[str]]] = [
+    long_modules,
+    long_functions,
+    wide_functions,
+    packed_arguments,
+    untyped_arguments,
+    large_classes,
+    undocumented,
+    silent_about_errors,
+    empty_names,
+    household_names,
+    printing,
+    machine_paths,
+]
+
+
+def test_every_exception_is_needed():
+    places = {f.place: f.node for f in definitions() if isinstance(f.node, ast.ClassDef)}
+    for place in LARGE_CLASSES:
+        methods = [n for n in places[place].body if isinstance(n, FUNCTIONS) and not n.name.startswith("_")]
+        assert len(methods) > MOST_METHODS, f"{place} needs no exception any more"
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+def test_the_rule_holds_everywhere(rule):
+    assert rule() == []
+
+
+BROKEN = {
+    long_functions: "def f():\n" + "    a = 1\n" * 41,
+    wide_functions: "def f(a, b, c, d, e, g): ...",
+    packed_arguments: "def f(forces: tuple[Any, ...]): ...",
+    untyped_arguments: "def f(a): ...",
+    large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
+    undocumented: '"""A module."""\ndef f(): ...',
+    silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
+    printing: "print(1)",
+    machine_paths: "PLACE = '" + "/home/" + "someone/case.yaml'",
+}
+
+
+@pytest.mark.parametrize("rule", BROKEN, ids=lambda rule: rule.__name__)
+def test_a_module_that_breaks_a_rule_is_found(rule, tmp_path, monkeypatch):
+    (tmp_path / "tactsim").mkdir()
+    (tmp_path / "tactsim" / "wrong.py").write_text(BROKEN[rule])
+    monkeypatch.setattr("sys.modules", dict(__import__("sys").modules))
+    monkeypatch.setitem(rule.__globals__, "ROOT", tmp_path)
+    definitions.cache_clear()
+    try:
+        assert len(rule()) == 1
+    finally:
+        definitions.cache_clear()
+
+
+@cache
+def graph() -> grimp.ImportGraph:
+    return grimp.build_graph("tactsim", cache_dir=None)
+
+
+def cycles(imports: dict[str, set[str]]) -> list[list[str]]:
+    """Groups of modules each of which imports the others, directly or not: the strongly connected components (Tarjan 1972)."""
+    order: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(module: str) -> None:
+        order[module] = lowest[module] = len(order)
+        stack.append(module)
+        for other in sorted(imports[module]):
+            if other not in order:
+                visit(other)
+                lowest[module] = min(lowest[module], lowest[other])
+            elif other in stack:
+                lowest[module] = min(lowest[module], order[other])
+        if lowest[module] == order[module]:
+            group = stack[stack.index(module) :]
+            del stack[stack.index(module) :]
+            if len(group) > 1:
+                found.append(sorted(group))
+
+    for module in sorted(imports):
+        if module not in order:
+            visit(module)
+    return found
+
+
+def test_no_two_modules_import_each_other_not_even_for_types():
+    imports = {module: set(graph().find_modules_directly_imported_by(module)) for module in graph().modules}
+    assert cycles(imports) == []
+    first, second = "tactsim.fem.body", "tactsim.interfaces"
+    assert second in imports[first]
+    assert cycles(imports | {second: imports[second] | {first}}) != []
+
+
+def test_contributing_prints_the_layers_and_fences_that_pyproject_holds():
+    spec = importlib.util.spec_from_file_location("print_rules", ROOT / "scripts" / "print_rules.py")
+    printing_script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(printing_script)
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert text == printing_script.with_printed_rules(text), "run: python scripts/print_rules.py"
