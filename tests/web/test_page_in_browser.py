@@ -6,7 +6,6 @@ import json
 import shutil
 import socket
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fork_server import forked_command
 from live_pages import TITLE, description, frame_line, grasp_folder, line, localized_folder, made_up_store, taxel_forces
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
@@ -48,7 +48,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
 @contextmanager
 def shown(browser: webdriver.Chrome, *arguments: str) -> Iterator[None]:
     """The page of a command, which must say nothing to the console but warnings of the graphics driver."""
-    command = [sys.executable, "-m", "tactsim.cli", "show", *arguments, "--web", "--no-browser"]
+    command = [*forked_command(), "show", *arguments, "--web", "--no-browser"]
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout is not None
