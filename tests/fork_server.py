@@ -44,7 +44,7 @@ def _served() -> str:
 
 
 def forked_command(*options: str) -> list[str]:
-    """The beginning of a command that does what ``python OPTIONS -m tactsim.cli`` does; of the options only ``-W error`` is known."""
+    """The beginning of a command that does what ``python OPTIONS -m tactsim.cli`` does; the options are none or ``-W error``."""
     assert options in ((), ("-W", "error"))
     return [sys.executable, "-IS", str(CLIENT), _served(), *(["strict"] if options else ["lax"])]
 

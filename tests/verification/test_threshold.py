@@ -59,7 +59,6 @@ def test_penetration_and_balance_hold_at_every_step(icf):
     for step in record.steps:
         assert step.values["max_penetration"] < 1e-4 * RADIUS
         assert step.values["base_force"] == pytest.approx(step.values["reaction_force"], rel=1e-8)
-        assert step.values["base_force"] != pytest.approx(step.values["reaction_force"] * (1 + 3e-8), rel=1e-8)
 
 
 def test_friction_stays_inside_its_cone(icf):
@@ -78,12 +77,20 @@ def test_force_and_rise_grow_with_the_indentation(icf):
         assert (np.diff([step.values[name] for step in record.steps]) > 0).all(), name
 
 
-@pytest.mark.parametrize("case", [pytest.param("annulus_icf"), pytest.param("annulus_b1a", marks=pytest.mark.slow)])
-def test_halved_steps_change_little(case):
-    whole = threshold_pressure(case)
+def check_halved_steps(case, whole):
     halved = threshold_pressure(case, "experiment.steps.largest=0.075 mm", "experiment.steps.first=1.5 um")
     assert halved == pytest.approx(whole, rel=STEP_TOLERANCE)
-    assert halved != pytest.approx(whole * (1 + 3 * STEP_TOLERANCE), rel=STEP_TOLERANCE)
+    assert halved != whole, "the steps were other ones"
+
+
+def test_halved_steps_change_little(icf):
+    record, _ = icf
+    check_halved_steps("annulus_icf", record.threshold["reaction_force"] / record.experiment.body.area)
+
+
+@pytest.mark.slow
+def test_halved_steps_change_little_on_stiffer_tissue():
+    check_halved_steps("annulus_b1a", threshold_pressure("annulus_b1a"))
 
 
 @pytest.mark.slow
@@ -92,7 +99,7 @@ def test_halved_mesh_changes_little(case):
     whole = threshold_pressure(case)
     halved = threshold_pressure(case, "experiment.mesh.refinement=2")
     assert halved == pytest.approx(whole, rel=MESH_TOLERANCE)
-    assert halved != pytest.approx(whole * (1 + 3 * MESH_TOLERANCE), rel=MESH_TOLERANCE)
+    assert halved != whole, "the mesh was another one"
 
 
 @pytest.mark.slow
@@ -129,4 +136,3 @@ def test_printed_constants_end_with_the_right_status(case):
     else:
         assert result.status == "failed"
         assert "gave up at" in result.reason
-    assert result.timing["total"] < 120
