@@ -30,7 +30,7 @@ THIN = {
     "steps": {"first": 0.05e-3},
     "penetration_tolerance": 2e-7,
 }
-SIZES = {"finest": 0.4e-3, "growth": 1.5, "adaptive": False}
+SIZES = {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}
 TILT = 0.02
 """In rad: the outer edge stands 0.06 mm lower than the middle."""
 DEMANDED = 0.02
@@ -75,8 +75,7 @@ def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
     apart = np.abs(differences(quarter, section)[-1])
     assert apart.max() < DEMANDED, apart  # on elements as long as the fillet is wide, touched at other points than the section's
     force = section.quantities["reaction_force"].value
-    for wrong in (force * (1 + 3 * DEMANDED), force / 4):
-        assert abs(wrong / quarter.quantities["reaction_force"].value - 1) > DEMANDED
+    assert abs(force / 4 / quarter.quantities["reaction_force"].value - 1) > DEMANDED, "the force of a quarter is told from it"
 
 
 def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
@@ -101,7 +100,8 @@ def test_half_a_body_is_two_quarters(quarter):
 
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base():
-    experiment = posed(tilt_y=TILT, displacement=0.04e-3)
+    coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh
+    experiment = posed(tilt_y=TILT, displacement=0.04e-3, mesh=coarse)
     model = experiment.space_model()
     record = SpaceIndentationRecord(experiment, model, time.perf_counter())
     *_, (state, _) = space_indentation_path(experiment, model, record)
@@ -139,4 +139,3 @@ def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
     for name in ("threshold_force", "threshold_displacement"):
         exact = section.quantities[name].value
         assert abs(space.quantities[name].value / exact - 1) < DEMANDED, name
-        assert not abs(exact * (1 + 3 * DEMANDED) / exact - 1) < DEMANDED

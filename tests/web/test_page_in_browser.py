@@ -200,9 +200,6 @@ def test_a_live_feed_is_drawn_and_its_title_stays_text(browser: webdriver.Chrome
         until(lambda: shows(browser, taxel_forces(1, count)[0], 1e-3 if count == 3 else 5.1e-2))
         until(lambda: "malformed in the stream, the last one: line" in words(browser, "alerts"))
         assert "'<b>'; needed: a finite number" in words(browser, "alerts")
-        begin, before = time.monotonic(), drawn(browser)
-        time.sleep(2)
-        rate = (drawn(browser) - before) / (time.monotonic() - begin)
-        (tmp_path / "rate.txt").write_text(f"{count} x {count}: {rate:.1f} frames per second\n")
+        before = drawn(browser)
+        until(lambda: drawn(browser) > before + 5)
         browser.save_screenshot(str(tmp_path / f"live{count}.png"))
-        assert rate > 1, "frames come; how many on an idle machine is a benchmark's matter"
