@@ -63,6 +63,7 @@ class _Server:
         self.waking = waking
         signal.set_wakeup_fd(waking.fileno(), warn_on_full_buffer=False)
         signal.signal(signal.SIGCHLD, lambda number, frame: None)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is for pytest, which ends this process
 
     def serve(self) -> None:
         """Until the standard input is closed."""
@@ -83,7 +84,7 @@ class _Server:
                         self._bury(selector)
                     elif key.fileobj == 0:
                         return self._kill(list(self.clients))
-                    else:  # the client was killed
+                    elif key.fileobj in self.clients.values():  # the client was killed
                         self._kill([child for child, client in self.clients.items() if client is key.fileobj])
                         selector.unregister(key.fileobj)
 
@@ -122,7 +123,9 @@ class _Server:
         from tactsim.cli.entry import main
 
         signal.set_wakeup_fd(-1)
-        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        for number in (signal.SIGCHLD, signal.SIGHUP, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         for place in (connection, self.listening, self.woken, self.waking, *self.clients.values()):
             place.close()
         given = iter(descriptors)
