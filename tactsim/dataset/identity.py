@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,7 @@ def attributes_of(sweep: Sweep, layout: Layout) -> dict[str, Any]:
         "seed": sweep.settings.seed,
         "kind": sweep.kind,
         "codes": [code_identity()],
-        "versions": _versions(),
+        "versions": dict(_versions()),
         "limits": sweep.settings.limits,
         "options": {
             p.variable: [_shown(option) for option in p.distribution.options or ()] for p in sweep.places if _by_index(p)
@@ -76,7 +77,9 @@ def _shown(option: Any) -> str:
     return option if isinstance(option, str) else json.dumps(option, sort_keys=True)
 
 
+@cache
 def _versions() -> dict[str, str]:
+    """The versions of what data rest on; to ask for them reads a file for each package."""
     found = {"python": platform.python_version()}
     for package in (*PACKAGES, "zarr", "xarray"):
         try:
