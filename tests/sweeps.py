@@ -113,7 +113,8 @@ def main() -> None:
     import os
     import sys
 
-    from tactsim.dataset import building, journal, running, store_writing
+    from tactsim.dataset import journal, running, store_writing
+    from tactsim.storage import building
 
     running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
     journal.sync = building.sync = store_writing.sync = lambda path: None  # a kill leaves what the system holds

@@ -175,8 +175,8 @@ def _drawn(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> dict[st
 
 def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping[str, bytes]) -> None:
     """Writes report.json, in which every number is finite, report.md and the figures."""
-    from tactsim.dataset.own_files import OwnFiles
-    from tactsim.results.storage import naming
+    from tactsim.storage.files import naming
+    from tactsim.storage.own_files import OwnFiles
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -188,7 +188,7 @@ def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping
 
 def _refuse_place(folder: Path) -> None:
     """Refuses a folder for a report that holds something else, before anything is computed."""
-    from tactsim.dataset.own_files import OwnFiles
+    from tactsim.storage.own_files import OwnFiles
 
     if os.path.lexists(folder) and not folder.is_dir():
         raise StorageError(f"{one_line(folder)} exists and is not a folder; choose another with --out")
@@ -241,7 +241,7 @@ def _noise(arguments: argparse.Namespace) -> float | None:
 def _train(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.training import trained
     from tactsim.experiments.localization.response_store import stored_response
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     if arguments.out is None or arguments.out.suffix != ".npz":
         raise InputError("train: --out is missing; name a file ending in .npz")

@@ -167,7 +167,7 @@ def _check_image(place: Path | None) -> None:
 def _save(figure: Figure, place: Path) -> None:
     import io
 
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     content = io.BytesIO()
     figure.savefig(content, format="png", dpi=150)

@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     import json
 
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     text = json.dumps(_schema(arguments.sweep), indent=2)
     if arguments.out is None:

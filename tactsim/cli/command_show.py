@@ -89,7 +89,7 @@ def _show_result(arguments: argparse.Namespace) -> int:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
         from tactsim.cli.rendering import rendered_figures
-        from tactsim.results.storage import replace_file
+        from tactsim.storage.files import replace_file
 
         figures, warnings = rendered_figures(stored.result)
         for warning in warnings:
@@ -107,7 +107,7 @@ def _show_data_set(arguments: argparse.Namespace) -> int:
     console.out(description(arguments.result))
     if arguments.save is not None:
         from tactsim.dataset.figures.card import card_figures
-        from tactsim.results.storage import replace_file
+        from tactsim.storage.files import replace_file
 
         drawings = card_figures(arguments.result)
         if not drawings:

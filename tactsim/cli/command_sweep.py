@@ -114,7 +114,7 @@ def _card(going: SweepRun) -> None:
     """Writes the card, unless another file stands in its place."""
     from tactsim.dataset.card import adopt_earlier_files, write_card
     from tactsim.dataset.figures.card import FIGURE_FILES
-    from tactsim.dataset.own_files import ForeignFile
+    from tactsim.storage.own_files import ForeignFile
 
     try:
         adopt_earlier_files(going.store.path, FIGURE_FILES)
@@ -127,8 +127,8 @@ def _draw(store: Path) -> None:
     """Draws the figures of the card; one that cannot be drawn never costs the data."""
     try:
         from tactsim.dataset.figures.card import card_figures
-        from tactsim.dataset.own_files import OwnFiles
         from tactsim.dataset.store_files import FIGURES
+        from tactsim.storage.own_files import OwnFiles
 
         for name, draw in card_figures(store).items():
             OwnFiles(store).replace(f"{FIGURES}/{name}", draw())

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from tactsim.dataset.description import empty_splits, failures, ranges, redrawn, split_counts, status_counts, variable_rows
 from tactsim.dataset.layout import Layout
-from tactsim.dataset.own_files import MANIFEST, OwnFiles
 from tactsim.dataset.store import Store
 from tactsim.dataset.store_files import CARD, FIGURES
 from tactsim.dataset.sweep import Sweep
 from tactsim.outside.text import one_line
+from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 TAGS = "tags: [tactile, simulation, tactsim]"
 """A line of the head by which a card is known that was written before there were lists of own files."""
@@ -39,7 +39,7 @@ def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
 def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
     """Counts card and figures as own that a tactsim wrote which kept no list of them."""
     card, own = path / CARD, OwnFiles(path)
-    if (path / MANIFEST).exists() or not card.is_file() or card.is_symlink():
+    if (path / OWN_LIST).exists() or not card.is_file() or card.is_symlink():
         return
     with open(card, "rb") as file:
         head = file.read(1000).decode("utf-8", "replace")

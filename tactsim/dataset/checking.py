@@ -15,7 +15,6 @@ from tactsim.dataset.finding import Finding
 from tactsim.dataset.holes import JOURNAL, lost_status
 from tactsim.dataset.identity import attributes_of
 from tactsim.dataset.layout import Layout
-from tactsim.dataset.own_files import MANIFEST, OwnFiles
 from tactsim.dataset.store import ARRAYS, Store, consolidated_metadata
 from tactsim.dataset.store_files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.stored_sweep import stored_layout
@@ -24,6 +23,7 @@ from tactsim.dataset.variable import FAILED, PENDING, STATUS
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
+from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 Array = np.ndarray
 COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
@@ -162,7 +162,7 @@ def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: 
     """What cannot be verified."""
     if not store.keeps_all_chunks:
         yield "the store is of an earlier tactsim, which left out chunks of nothing but fill values; checksums stand for them"
-    if not (store.path / MANIFEST).exists() and (store.path / CARD).exists():
+    if not (store.path / OWN_LIST).exists() and (store.path / CARD).exists():
         yield f"{CARD} and figures cannot be verified: an earlier tactsim kept no checksums of them"
     if same_code:
         return

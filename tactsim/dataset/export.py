@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactsim.dataset.array_description import refuse_link
-from tactsim.dataset.building import built_beside, owned, remove_leftover
 from tactsim.dataset.loading import load, split_names
 from tactsim.dataset.store import Store
 from tactsim.dataset.store_files import CARD
@@ -22,7 +21,9 @@ from tactsim.errors import InputError, StorageError
 from tactsim.outside.files import opened
 from tactsim.outside.processes import run_child
 from tactsim.outside.text import one_line
-from tactsim.results.storage import naming, write_bytes
+from tactsim.storage.building import built_beside, remove_leftover
+from tactsim.storage.files import naming, write_bytes
+from tactsim.storage.locking import only_one
 
 if TYPE_CHECKING:
     import xarray
@@ -51,7 +52,9 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
     """
     target = Path(place)
     _refuse_inside(target, Path(store))
-    with owned(target, f"{one_line(target)} is being written by another export; wait for it or choose another place with --to"):
+    with only_one(
+        target, f"{one_line(target)} is being written by another export; wait for it or choose another place with --to"
+    ):
         with naming(target):
             remove_leftover(target)
         if os.path.lexists(target):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
-from tactsim.results.storage import naming, sync
+from tactsim.storage.files import naming, sync
 
 HEAD = struct.Struct("<8sQ32s")
 MARK = b"tactsim\n"

@@ -15,7 +15,6 @@ import numpy as np
 from tactsim.code_identity import code_identity
 from tactsim.dataset.array_description import META
 from tactsim.dataset.block import Block, decoded, refuse_unfitting
-from tactsim.dataset.building import owned, refuse_taken, remove_leftover
 from tactsim.dataset.checking_arrays import wrong_arrays
 from tactsim.dataset.computing import computed
 from tactsim.dataset.executor import Executor, Outcome
@@ -32,7 +31,9 @@ from tactsim.dataset.variable import DONE, FAILED
 from tactsim.dataset.verifying import damaged_samples, mark_pending
 from tactsim.errors import StorageError, TactsimError
 from tactsim.outside.text import one_line
-from tactsim.results.storage import naming
+from tactsim.storage.building import refuse_taken, remove_leftover
+from tactsim.storage.files import naming
+from tactsim.storage.locking import only_one
 
 TASK_SECONDS = 0.5
 """What a task should take: short samples are handed out many at a time."""
@@ -171,7 +172,7 @@ def opened_run(sweep: Sweep, path: str | Path, *, resume: bool = False, accept_c
     """
     place = Path(path)
     layout = layout_of(sweep)
-    with owned(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another with --out"):
+    with only_one(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another with --out"):
         with naming(place):
             remove_leftover(place)
         if os.path.lexists(place / META):

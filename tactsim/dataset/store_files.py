@@ -10,16 +10,14 @@ from pathlib import Path
 
 from tactsim.dataset.array_description import META, ArrayDescription
 from tactsim.dataset.holes import JOURNAL
-from tactsim.dataset.own_files import MANIFEST, OwnFiles
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
-from tactsim.results.storage import naming
+from tactsim.storage.files import naming
+from tactsim.storage.own_files import IGNORED, OWN_LIST, OwnFiles
 
 CARD, FIGURES = "README.md", "figures"
 DEEPEST = 16
 """Levels of folders; an array has one for each of its dimensions and two more."""
-IGNORED = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
-"""What systems put into every folder that is looked at."""
 EARLIER = re.compile(rf"{FIGURES}/[a-z]+\.png")
 """Figures in a store that is older than the list of own files."""
 TORN_CHUNK = re.compile(r"(zarr|\d+)\.[0-9a-f]{32}\.partial")
@@ -85,9 +83,9 @@ def remove_torn(folder: Path, arrays: Iterable[str]) -> None:
 
 def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: Iterable[str]) -> list[str]:
     """Files that tactsim does not write there, sorted; ``own`` are the names of all its arrays."""
-    known = {META, MANIFEST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
+    known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
     chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
-    names, listed = set(own), os.path.lexists(folder / MANIFEST)
+    names, listed = set(own), os.path.lexists(folder / OWN_LIST)
     return sorted(
         name
         for name in walked(folder)

@@ -11,11 +11,11 @@ import numpy as np
 
 from tactsim.dataset.array_description import CHUNK_SAMPLES, LARGEST_CHUNK, META
 from tactsim.dataset.block import Block
-from tactsim.dataset.building import built_beside
 from tactsim.dataset.store import ARRAYS, STORE_SCHEMA, Store, reading
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
-from tactsim.results.storage import naming, sync
+from tactsim.storage.building import built_beside
+from tactsim.storage.files import naming, sync
 
 CHUNK_BYTES = 2 * 2**20
 """Largest chunk of a variable, about."""

@@ -15,7 +15,7 @@ from tactsim.dataset.variable import FAILED, PENDING
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
-from tactsim.results.storage import naming
+from tactsim.storage.files import naming
 
 Array = np.ndarray
 CHANGED = "the content is not what was written"

@@ -15,7 +15,7 @@ from tactsim.results.document import document_text, plain_json
 from tactsim.results.fields import write_fields
 from tactsim.results.folder import RESULT_FILE, OutputFolder, claimed
 from tactsim.results.result import Result
-from tactsim.results.storage import naming, write_bytes
+from tactsim.storage.files import naming, write_bytes
 
 
 def write_result(

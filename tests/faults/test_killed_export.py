@@ -16,8 +16,8 @@ from sweeps import small_store
 
 from tactsim.cli import main
 from tactsim.dataset import export
-from tactsim.dataset.building import MARK
 from tactsim.errors import StorageError
+from tactsim.storage.building import MARK
 
 
 @pytest.fixture(scope="module")

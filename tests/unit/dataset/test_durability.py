@@ -12,7 +12,7 @@ from tactsim.dataset import journal, store_writing
 from tactsim.dataset.holes import JOURNAL
 from tactsim.dataset.running import opened_run
 from tactsim.dataset.sweep import load_sweep
-from tactsim.results.storage import sync
+from tactsim.storage.files import sync
 
 Synced = list[tuple[str, bytes]]
 """Path within the store and content of every file that was synced, in order; of a folder its names."""

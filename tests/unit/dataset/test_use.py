@@ -22,7 +22,6 @@ from sweeps import small_store, sweep_file
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.block import checksum
-from tactsim.dataset.building import MARK
 from tactsim.dataset.checking import check
 from tactsim.dataset.layout import layout_of
 from tactsim.dataset.progress import Tally
@@ -30,6 +29,7 @@ from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import sweep_of_text
 from tactsim.dataset.variable import FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.storage.building import MARK
 
 
 @pytest.fixture(scope="module")

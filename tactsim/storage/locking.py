@@ -8,17 +8,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tactsim.errors import StorageError
-from tactsim.results.storage import naming
-
-
-def beside(path: Path, ending: str) -> Path:
-    """A hidden name beside the place."""
-    return path.with_name(f".{path.name}.{ending}")
+from tactsim.storage.files import beside, naming
 
 
 @contextmanager
 def only_one(path: Path, refusal: str) -> Iterator[None]:
-    """Keeps other processes out of the place until the block ends.
+    """Keeps other processes out of a place until the block ends; makes the folder around it.
 
     Raises
     ------
@@ -26,6 +21,7 @@ def only_one(path: Path, refusal: str) -> Iterator[None]:
         With the text ``refusal`` if another process is in it, or if the folder around it cannot be written.
     """
     with naming(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
         lock = beside(path, "lock")
         descriptor = _locked(lock, refusal)
     try:
@@ -39,7 +35,7 @@ def only_one(path: Path, refusal: str) -> Iterator[None]:
 
 
 def _locked(lock: Path, refusal: str) -> int:
-    """The descriptor of the lock."""
+    """The descriptor of the lock file, which this process now holds."""
     while True:
         descriptor = _opened_alone(lock, refusal)
         with suppress(FileNotFoundError):

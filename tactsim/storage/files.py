@@ -1,4 +1,4 @@
-"""Reading and writing whole files with errors that name the path."""
+"""Writing whole files, with errors that name the path."""
 
 from __future__ import annotations
 
@@ -8,13 +8,18 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tactsim.errors import StorageError
-from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
 
 
 @contextmanager
 def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
-    """Turns the system's refusal into an error that names the path."""
+    """Turns the system's refusal into an error that names the path.
+
+    Raises
+    ------
+    StorageError
+        If the block meets one.
+    """
     try:
         yield
     except StorageError:
@@ -22,6 +27,11 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
     except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or one_line(error)
         raise StorageError(f"cannot {verb} {one_line(path)}: {reason}") from error
+
+
+def beside(path: Path, ending: str) -> Path:
+    """A hidden name beside a place."""
+    return path.with_name(f".{path.name}.{ending}")
 
 
 def write_bytes(path: Path, content: bytes) -> None:
@@ -43,20 +53,15 @@ def sync(path: Path) -> None:
         os.close(handle)
 
 
-def read_text(path: Path, kind: str = "result") -> str:
-    """The UTF-8 text of a file of a kind.
+def replace_file(path: Path, content: bytes) -> None:
+    """Writes a file so that its place holds the earlier or the new content, never a part of it.
 
     Raises
     ------
     StorageError
-        If it is missing, no regular file, too large or not UTF-8.
+        If it cannot be written.
     """
-    return opened(path, kind).text()
-
-
-def replace_file(path: Path, content: bytes) -> None:
-    """Writes a file so that its place holds the earlier or the new content, never a part of it."""
-    waiting = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    waiting = beside(path, f"{os.getpid()}.partial")
     with naming(path):
         try:
             write_bytes(waiting, content)
