@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.dataset.variable import CHECKSUM_BYTES
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
-from tactsim.outside.arrays import read_arrays
+from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 
 Array = np.ndarray
 Block = dict[str, Array]
@@ -35,7 +35,7 @@ def decoded(content: bytes) -> Block:
     StorageError
         If the bytes are not one.
     """
-    return read_arrays(content, "a block of samples")
+    return read_arrays(content, "a block of samples", largest=LARGEST_FOREIGN)
 
 
 def refuse_unfitting(block: Block, variables: Iterable[Variable], samples: int) -> None:

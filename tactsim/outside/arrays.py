@@ -16,11 +16,12 @@ import numpy as np
 from numpy.lib import format as npy
 
 from tactsim.errors import StorageError
+from tactsim.outside.processes import machine_memory
 from tactsim.outside.text import one_line
 
 Array = np.ndarray
-LARGEST = 2**30
-"""Bytes that all arrays of a file may take together, where the reader names no other bound."""
+LARGEST_FOREIGN = 2**30
+"""Bytes that all arrays of a file may take together which is not tactsim's own, or where the machine does not tell its memory."""
 KINDS = frozenset("biufcUS")
 """numpy's letters for kinds of arrays that are read: truth values, numbers and text."""
 MOST_ARRAYS = 100_000
@@ -33,20 +34,22 @@ DAMAGE = (*_ARCHIVE, *_HEADER_TEXT, *_CONTENT)
 """What the archive, its compression, the header of an array, which is Python text, and its numbers raise."""
 
 
-def read_arrays(content: bytes, name: str, *, largest: int = LARGEST) -> dict[str, Array]:
+def read_arrays(content: bytes, name: str, *, largest: int | None = None) -> dict[str, Array]:
     """The arrays of an npz file by name.
 
     Parameters
     ----------
     content : the bytes of the file
     name : how messages call it
-    largest : bytes that the arrays may take in memory; their headers are checked before anything is allocated
+    largest : bytes that the arrays may take in memory, by default what the machine has; their headers are checked before anything
+        is allocated
 
     Raises
     ------
     StorageError
         If the file is damaged, or its arrays hold objects or are too large.
     """
+    largest = (machine_memory() or LARGEST_FOREIGN) if largest is None else largest
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
