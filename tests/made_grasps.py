@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.contact.jaw import Jaw
-from tactsim.dataset.ranking_reference import PlainGrasp
-from tactsim.dataset.ranking_source import SPHERE, JudgedSamples, Truth
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
-from tactsim.dataset.variable import DONE
+from tactsim.dataset.ranking.reference import PlainGrasp
+from tactsim.dataset.ranking.samples import SPHERE, JudgedSamples, Truth
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.arrays import DONE
+from tactsim.dataset.store.opening import Store
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse

@@ -14,7 +14,7 @@ from tactsim.errors import InputError, StorageError, TactsimError, ValidationErr
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
-    from tactsim.dataset.ranking_source import JudgedSamples
+    from tactsim.dataset.ranking.samples import JudgedSamples
     from tactsim.experiments.localization.source import Source
 
 NAME = "data"
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.checking import check
+    from tactsim.dataset.checking.check import check
 
     checked = check(arguments.store)
     for note in checked.notes[:MOST_NOTES]:
@@ -90,14 +90,14 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _info(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.description import description
+    from tactsim.dataset.use.card import description
 
     console.out(description(arguments.store))
     return 0
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.export import exported
+    from tactsim.dataset.use.export import exported
 
     if arguments.to is None:
         raise InputError("export: --to is missing; name a file ending in .h5, or a folder for Parquet and npz")
@@ -108,8 +108,8 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.figures.estimator_ranking import ranking_figures
-    from tactsim.dataset.ranking import ranking
-    from tactsim.dataset.ranking_report import as_text, record
+    from tactsim.dataset.ranking.measures import ranking
+    from tactsim.dataset.ranking.report import as_text, record
     from tactsim.experiments.localization.response_store import stored_response
     from tactsim.localization.estimators.learned import LearnedEstimator
     from tactsim.localization.estimators.model_based import ModelBasedEstimator
@@ -138,8 +138,7 @@ def _rank(arguments: argparse.Namespace) -> int:
 
 
 def _confusion(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.confusion import store_confusion
-    from tactsim.dataset.confusion_report import as_text, record, verdict
+    from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, verdict
     from tactsim.experiments.localization.figures.confusion import confusion_figure
     from tactsim.localization.estimators.hypotheses import HypothesesEstimator
     from tactsim.localization.interface import ROUNDING_NOISE
@@ -212,7 +211,7 @@ def _refuse_file(path: Path) -> None:
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
     """The samples that are judged or trained on, as the options say."""
-    from tactsim.dataset.ranking_source import judged_samples, stored_experiment
+    from tactsim.dataset.ranking.samples import judged_samples, stored_experiment
 
     references, noise = _references(arguments), _noise(arguments)
     source: Source = arguments.readings or ("read_force" if stored_experiment(arguments.store).readout else "taxel_force")
@@ -239,7 +238,7 @@ def _noise(arguments: argparse.Namespace) -> float | None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.training import trained
+    from tactsim.dataset.ranking.training import trained
     from tactsim.experiments.localization.response_store import stored_response
     from tactsim.storage.files import replace_file
 

@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _schema(sweep: bool) -> dict[str, Any]:
     if sweep:
-        from tactsim.dataset.json_schema import sweep_json_schema
+        from tactsim.dataset.sampling.json_schema import sweep_json_schema
 
         return sweep_json_schema()
     from tactsim.case import case_json_schema

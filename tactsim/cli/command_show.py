@@ -102,7 +102,7 @@ def _show_result(arguments: argparse.Namespace) -> int:
 
 
 def _show_data_set(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.description import description
+    from tactsim.dataset.use.card import description
 
     console.out(description(arguments.result))
     if arguments.save is not None:

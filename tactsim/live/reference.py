@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tactsim.dataset.ranking_reference import PlainGrasp
+from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.errors import InputError
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp

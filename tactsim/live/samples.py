@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.drawing import drawn_specimen
-from tactsim.dataset.loading import opened, split_names
-from tactsim.dataset.store import Store
-from tactsim.dataset.stored_sweep import stored_sweep
-from tactsim.dataset.sweep import Sweep
-from tactsim.dataset.variable import DONE, PENDING, STATUS
+from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.sampling.stored import stored_sweep
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import DONE, PENDING, STATUS
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.live.recorded import SOURCES, checked_validity

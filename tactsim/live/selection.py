@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.dataset.variable import STATUS
+from tactsim.dataset.store.arrays import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName
 from tactsim.live.choices import Choice
 from tactsim.live.commands import ChooseEstimator, ChooseSample, ChooseSource, Choosing, FilterSamples

@@ -54,6 +54,7 @@ from tactsim.results.document import parse_document
 from tactsim.results.fields import read_fields, write_fields
 from tactsim.results.result import FieldFrame
 
+pytestmark = pytest.mark.filterwarnings("ignore::tactsim.outside.mesh_files.MeshFileWarning")
 MOST_MEMORY = 2**30
 """In bytes, of all inputs."""
 

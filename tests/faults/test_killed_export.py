@@ -15,7 +15,7 @@ from failing_disk import At, Killed, disk
 from sweeps import small_store
 
 from tactsim.cli import main
-from tactsim.dataset import export
+from tactsim.dataset.use import export
 from tactsim.errors import StorageError
 from tactsim.storage.building import MARK
 

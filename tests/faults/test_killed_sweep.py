@@ -16,10 +16,12 @@ from pretence import PNG
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset import computing, load, running
-from tactsim.dataset.checking import check
+from tactsim.dataset import load
+from tactsim.dataset.checking.check import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running import computing
+from tactsim.dataset.running import run as running
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import TactsimError
 
 SAMPLES, MORE = 4, 6

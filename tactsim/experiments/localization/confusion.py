@@ -33,7 +33,7 @@ class Confusion(Experiment):
     """Estimates of many stored grasps of one tissue, counted by their true and their estimated class.
 
     Each grasp is read ``draws`` times with seeded Gaussian noise on it and on the reference. For a data set use
-    ``tactsim.dataset.confusion``. A grasp whose inclusion has the material of the tissue counts by its shape: leave it out.
+    ``tactsim data confusion``. A grasp whose inclusion has the material of the tissue counts by its shape: leave it out.
     """
 
     kind: Literal["confusion"] = "confusion"

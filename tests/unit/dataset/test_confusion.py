@@ -11,10 +11,9 @@ import pytest
 from made_grasps import CLOSINGS, made_forces, made_store, plain_result, response, truths
 
 from tactsim.cli.entry import main
-from tactsim.dataset import confusion
-from tactsim.dataset.confusion import store_confusion
-from tactsim.dataset.confusion_report import as_text, record, verdict
-from tactsim.dataset.store import Store
+from tactsim.dataset.ranking import confusion
+from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, verdict
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError
 from tactsim.localization.confusion import ConfusionTable
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator

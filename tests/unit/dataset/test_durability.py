@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from sweeps import Inline, run_sweep, sweep_file
 
-from tactsim.dataset import journal, store_writing
-from tactsim.dataset.holes import JOURNAL
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store import blocks as journal
+from tactsim.dataset.store import writing as store_writing
+from tactsim.dataset.store.verifying import JOURNAL
 from tactsim.storage.files import sync
 
 Synced = list[tuple[str, bytes]]

@@ -21,16 +21,17 @@ import xarray
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
 
 from tactsim import code_identity
-from tactsim.dataset import running
-from tactsim.dataset.checking import check
-from tactsim.dataset.description import redrawn, split_counts
-from tactsim.dataset.drawing import drawn_specimen, noise_seed, used_seed
-from tactsim.dataset.journal import Journal
-from tactsim.dataset.local_workers import LocalWorkers
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store
-from tactsim.dataset.store_writing import chunk_samples, tell
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.checking.check import check
+from tactsim.dataset.running import resuming
+from tactsim.dataset.running import run as running
+from tactsim.dataset.running.executors import LocalWorkers
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.drawing import drawn_specimen, noise_seed, used_seed
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.blocks import Journal
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.writing import chunk_samples, tell
+from tactsim.dataset.use.card import redrawn, split_counts
 from tactsim.errors import CaseError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
 
@@ -158,7 +159,7 @@ def test_changed_code_is_refused_or_marked(tmp_path: Path, monkeypatch: pytest.M
     sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
         going.compute(Inline(sweep, stop_after=1), lambda tally: None)
-    monkeypatch.setattr(running, "code_identity", lambda: "9.9.9+other")
+    monkeypatch.setattr(resuming, "code_identity", lambda: "9.9.9+other")
     with pytest.raises(StorageError, match="--accept-changed-code"), opened_run(sweep, place, resume=True):
         pass
     run_sweep(sweep, place, resume=True)

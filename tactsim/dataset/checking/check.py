@@ -1,0 +1,170 @@
+"""Whether a data set is what its sweep wrote: complete, undamaged, finite, no doubles, splits apart, and nothing else in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.code_identity import code_identity
+from tactsim.dataset.checking.samples import Finding, leaks, value_findings
+from tactsim.dataset.sampling.layout import Layout
+from tactsim.dataset.sampling.stored import attributes_of, stored_layout
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import FAILED, PENDING, STATUS, WORDS, differences
+from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
+from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
+from tactsim.dataset.store.verifying import JOURNAL, lost_status
+from tactsim.errors import StorageError
+from tactsim.interfaces.variable import Variable
+from tactsim.outside.text import one_line
+from tactsim.storage.own_files import OWN_LIST, OwnFiles
+
+Array = np.ndarray
+COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
+RESUME = "go on with --resume, which computes them again"
+FORM = ("dtype", "shape")
+"""What must be right before samples can be read."""
+MADE_LATER = ("codes", "versions", "schema", ARRAYS)
+"""Attributes that do not follow from the sweep."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Counts by status, what was found, and what could not be verified."""
+
+    counts: dict[str, int]
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...] = ()
+
+
+def check(path: str | Path) -> Checked:
+    """Reads every sample once.
+
+    Raises
+    ------
+    StorageError
+        If the folder is not a data set, its description is damaged, or a link leads into it.
+    """
+    store = Store.open(path, damaged=True)
+    store.array("status")
+    sweep, layout = stored_layout(store)
+    same_code = store.attributes["codes"][-1] == code_identity()
+    findings = [*_arrays(store, layout.variables, sweep.samples), *_wording(store, layout.variables, sweep, same_code)]
+    findings += [*_attributes(store, sweep, layout), *_consolidated(store), *_files(store, layout.variables)]
+    notes = tuple(_notes(store, same_code, layout.variables, sweep))
+    if any(finding.kind in ("missing", "form") for finding in findings):
+        return Checked({}, tuple(findings), notes)
+    try:
+        status = store.read("status")
+    except StorageError as error:
+        return Checked({}, (*findings, Finding("damaged", (), f"{error}")), notes)
+    counts = {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
+    findings += [*_missing(store, status), *leaks(store, status), *value_findings(store, layout, status)]
+    return Checked(counts, tuple(findings), notes)
+
+
+def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
+    """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
+    own = {variable.name for variable in variables}
+    for name in sorted(store.faults.keys() & own):
+        yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
+    for variable in variables:
+        if variable.name in store.faults:
+            continue
+        if variable.name not in store.described:
+            yield Finding("missing", (), f"the variable {variable.name}; {RESUME}, or bring back a copy")
+            continue
+        array = store.described[variable.name]
+        if array.shape[0] != samples:
+            words = f"{variable.name} has {array.shape[0]} of {samples} samples; go on with --resume --samples {samples}"
+            yield Finding("missing", (), words)
+        for key, words in differences(array, variable):
+            if key not in WORDS:
+                kind = "form" if key in FORM else "description"
+                yield Finding(kind, (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
+
+
+def _wording(store: Store, variables: Iterable[Variable], sweep: Sweep, same_code: bool) -> Iterator[Finding]:
+    """Meanings that are not what this code says, where the store is of this code; names of splits in any case."""
+    for variable in variables:
+        if variable.name not in store.described:
+            continue
+        for key, words in differences(store.described[variable.name], variable):
+            if key == "flag_meanings" or (key in WORDS and same_code):
+                yield Finding("description", (), f"{variable.name}: {words}; {COPY.format(name=variable.name)}")
+
+
+def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]:
+    """Attributes of the store that do not follow from its sweep."""
+    expected, found = attributes_of(sweep, layout), store.attributes
+    same_code = found["codes"][-1] == code_identity()
+    for name in sorted((expected.keys() | found.keys()) - set(MADE_LATER)):
+        if name == "description" and not same_code:
+            continue
+        if found.get(name) != expected.get(name):
+            told = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
+            yield Finding("attribute", (), f"{told}; bring back a copy of zarr.json")
+    names = [variable.name for variable in layout.variables]
+    if store.keeps_all_chunks and sorted(found[ARRAYS]) != sorted(names):
+        yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
+
+
+def _consolidated(store: Store) -> Iterator[Finding]:
+    """The descriptions in the store's own zarr.json, which xarray reads, beside those of the arrays."""
+    gathered = consolidated_metadata(store.path)
+    differing = [name for name, array in store.described.items() if gathered.get(name) != array.told]
+    if differing:
+        named = ", ".join(differing[:10])
+        told = (
+            f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"
+        )
+        yield Finding("gathered", (), told)
+
+
+def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
+    """What tactsim did not write, what a killed run left, and what of its own is gone or changed."""
+    names = [variable.name for variable in variables]
+    torn = sum(is_torn(name, names) for name in walked(store.path))
+    if torn:
+        yield Finding("unfinished", (), f"{torn} files that a killed run left half written; --resume removes them")
+    foreign = foreign_files(store.path, store.described, names)
+    if foreign:
+        more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
+        shown = ", ".join(one_line(name, 80) for name in foreign[:10])
+        yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
+    own = OwnFiles(store.path)
+    for name in sorted(own.sums()):
+        if own.written(name) is None:
+            state = "is not what tactsim wrote" if (store.path / name).exists() else "is gone"
+            yield Finding("file", (), f"{one_line(name, 80)} {state}; move away what stands there, --resume writes it anew")
+
+
+def _missing(store: Store, status: Array) -> Iterator[Finding]:
+    pending, lost = np.flatnonzero(status == PENDING), lost_status(store)
+    if lost.size:
+        yield Finding("missing", tuple(lost.tolist()), f"the status of {lost.size} samples that were computed is gone; {RESUME}")
+    elif pending.size:
+        yield Finding("missing", tuple(pending.tolist()), f"{pending.size} samples are not computed; go on with --resume")
+    if (store.path / JOURNAL).exists():
+        yield Finding("unfinished", (), "samples wait in the journal; a sweep is running, or was killed: --resume")
+    unknown = np.flatnonzero(status > FAILED)
+    if unknown.size:
+        yield Finding("damaged", tuple(unknown.tolist()), f"the status is unknown; {RESUME}")
+
+
+def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: Sweep) -> Iterator[str]:
+    """What cannot be verified."""
+    if not store.keeps_all_chunks:
+        yield "the store is of an earlier tactsim, which left out chunks of nothing but fill values; checksums stand for them"
+    if not (store.path / OWN_LIST).exists() and (store.path / CARD).exists():
+        yield f"{CARD} and figures cannot be verified: an earlier tactsim kept no checksums of them"
+    if same_code:
+        return
+    for variable in variables:
+        if variable.name in store.described:
+            for key, words in differences(store.described[variable.name], variable):
+                if key == "long_name":
+                    yield f"the store is of other code, and perhaps therefore {variable.name}: {words}"
