@@ -41,11 +41,11 @@ def store_confusion(
     Raises
     ------
     StorageError
-        If the store or the reference cannot be read.
+        If the store or the reference cannot be read, or a sample is not what was written.
     InputError
         If no sample is done, it has no inclusions, or another matrix or closing than the reference.
     """
-    data = load(store, split=split)
+    data = load(store, split=split, verified=True)
     if not data.sizes["sample"]:
         raise InputError(f"{Path(store).name} has no sample that is done; run the sweep first")
     missing = [name for name in ("taxel_force", "inclusion_kind", "inclusion_count", "closing") if name not in data]

@@ -127,12 +127,12 @@ def judged_samples(
     Raises
     ------
     StorageError
-        If the folder is not a data set.
+        If the folder is not a data set, or a sample is not what was written.
     InputError
         If it has no grasp that is done, other inclusions than one ball, no such readings, another block or matrix than the
         reference, or closes further.
     """
-    data, experiment = load(store, split=split), stored_experiment(store)
+    data, experiment = load(store, split=split, verified=True), stored_experiment(store)
     _check_store(data, source, Path(store).name, split)
     plain = PlainGrasp.of_results(reference)
     check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")

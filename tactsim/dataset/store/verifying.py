@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tactsim.dataset.store.arrays import FAILED, PENDING
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING
 from tactsim.dataset.store.blocks import NOT_SUMMED, checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import StorageError
@@ -154,6 +154,28 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
         more = f" and {len(holed) - SHOWN} more" if len(holed) > SHOWN else ""
         raise StorageError(
             f"{one_line(store.path)} has holes: {', '.join(list(holed)[:SHOWN])}{more} of {told(numbers)} are gone; bring back a "
+            "copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
+        )
+
+
+def refuse_changed(store: Store, samples: Array) -> None:
+    """Refuses samples whose content is not what was written, by their checksums; reads all of their variables.
+
+    Raises
+    ------
+    StorageError
+        Naming the samples, or the chunk that cannot be read.
+    """
+    wanted = np.full(store.samples, PENDING, np.uint8)
+    wanted[samples] = DONE
+    changed = []
+    for read in computed_chunks(store, list(stored_variables(store)), wanted):
+        if read.unreadable:
+            raise StorageError(next(iter(read.unreadable.values())))
+        changed += read.changed.tolist()
+    if changed:
+        raise StorageError(
+            f"{one_line(store.path)} is damaged: the content of {told(np.array(changed))} is not what was written; bring back a "
             "copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
         )
 

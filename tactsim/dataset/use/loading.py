@@ -21,7 +21,12 @@ Array = np.ndarray
 
 
 def load(
-    store: str | Path, *, split: str | Iterable[str] | None = None, failed: bool = False, variables: Iterable[str] | None = None
+    store: str | Path,
+    *,
+    split: str | Iterable[str] | None = None,
+    failed: bool = False,
+    variables: Iterable[str] | None = None,
+    verified: bool = False,
 ) -> xarray.Dataset:
     """The samples of a data set, opened lazily.
 
@@ -35,6 +40,8 @@ def load(
         Whether samples that failed, whose readings are NaN, are in it too; those that are pending never are.
     variables
         Names of the variables; by default all.
+    verified
+        Whether all that is stored of these samples is read and held against their checksums first.
 
     Raises
     ------
@@ -42,10 +49,11 @@ def load(
         If there is no such split or variable.
     StorageError
         If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
-        gone. What a chunk holds is looked at when it is read; a damaged one is refused then.
+        gone. What a chunk holds is looked at when it is read; a damaged one is refused then. If ``verified``, also if a sample is
+        not what was written.
     """
     from tactsim.dataset.store.opening import Store
-    from tactsim.dataset.store.verifying import refuse_holes
+    from tactsim.dataset.store.verifying import refuse_changed, refuse_holes
 
     place = Store.open(store)
     whole = dataset_of(place)
@@ -55,7 +63,9 @@ def load(
         if name not in names:
             raise UnknownName("variable", name, names)
     chosen = chosen_samples(whole, split, failed=failed)
-    refuse_holes(place, dict.fromkeys((*keep, "split")), chosen)
+    refuse_holes(place, dict.fromkeys((*(names if verified else keep), "split")), chosen)
+    if verified:
+        refuse_changed(place, chosen)
     return whole[keep].assign_coords(sample=np.arange(whole.sizes["sample"])).isel(sample=chosen)
 
 
