@@ -41,7 +41,7 @@ from tactsim.errors import TactsimError
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_data import read_dma
 from tactsim.identification.uniaxial_data import read_uniaxial_curve
-from tactsim.live.feed import Feed
+from tactsim.live.sources.feed import Feed
 from tactsim.localization.networks import read_weights
 from tactsim.mesh import mesh_store
 from tactsim.mesh.foreign import read_foreign

@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 
 from tactsim.errors import InputError, StorageError
 from tactsim.live.defects import LOGGER
-from tactsim.live.feed import Feed
+from tactsim.live.sources.feed import Feed
 from tactsim.outside.files import OutsideFile, Unreadable, opened
 from tactsim.outside.text import one_line
 

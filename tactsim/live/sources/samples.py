@@ -17,8 +17,8 @@ from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.live.recorded import SOURCES, checked_validity
-from tactsim.live.scene import Recording, Scene
+from tactsim.live.sources.recorded import SOURCES, checked_validity
+from tactsim.live.sources.scene import Recording, Scene
 from tactsim.localization.readings import JAWS
 
 Array = np.ndarray

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from tactsim.errors import StorageError
-from tactsim.live.recorded import DAMAGE
+from tactsim.live.sources.recorded import DAMAGE
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.learned import LearnedEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator

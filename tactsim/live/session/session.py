@@ -8,16 +8,14 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from tactsim.errors import InputError, TactsimError
-from tactsim.live.commands import Choosing, Command, Drawn, Pause, Play, Show, read_command
-from tactsim.live.content import Content
 from tactsim.live.defects import report
-from tactsim.live.estimating import frame_readings
-from tactsim.live.messages import Scales, frame_message, plain_json, scene_message, shapes_message
-from tactsim.live.playback import Playback
-from tactsim.live.scene import Frame, Recording, Scene
-from tactsim.live.selection import Selection
-from tactsim.live.thinking import Thinking
-from tactsim.live.threads import Threads
+from tactsim.live.session.commands import Choosing, Command, Drawn, Pause, Play, Show, read_command
+from tactsim.live.session.content import Content
+from tactsim.live.session.estimating import frame_readings
+from tactsim.live.session.messages import Scales, frame_message, plain_json, scene_message, shapes_message
+from tactsim.live.session.selection import Playback, Selection
+from tactsim.live.session.thinking import Thinking, Threads
+from tactsim.live.sources.scene import Frame, Recording, Scene
 
 IN_FLIGHT = 2
 """Frames that are sent before the page says that it has drawn one: the rest is skipped, so that nothing piles up."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.errors import InputError
-from tactsim.live.choices import CHOICES, Choice, learned_choice, stored_choice
-from tactsim.live.feed import Feed
-from tactsim.live.recorded import result_recordings
-from tactsim.live.reference import Reference
-from tactsim.live.samples import Samples
-from tactsim.live.scene import Recording
+from tactsim.live.session.choices import CHOICES, Choice, learned_choice, stored_choice
+from tactsim.live.sources.feed import Feed
+from tactsim.live.sources.recorded import result_recordings
+from tactsim.live.sources.reference import Reference
+from tactsim.live.sources.samples import Samples
+from tactsim.live.sources.scene import Recording
 
 LIVE = "live"
 """Name of the feed among the sources of forces."""

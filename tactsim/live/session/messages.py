@@ -13,9 +13,9 @@ from matplotlib import colormaps
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.localization.figures.views import COLOURS, ESTIMATE
-from tactsim.live.estimating import shown_signal
-from tactsim.live.scene import Frame, Scene
-from tactsim.live.shapes import drawn_inclusions
+from tactsim.live.session.estimating import shown_signal
+from tactsim.live.session.shapes import drawn_inclusions
+from tactsim.live.sources.scene import Frame, Scene
 from tactsim.localization.interface import Readings
 from tactsim.localization.readings import JAWS
 from tactsim.localization.views import SHAPE, views

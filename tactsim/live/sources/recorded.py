@@ -12,7 +12,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.localization.source import saturated_taxels, true_inclusions
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.live.scene import LARGEST_FORCE, LATEST, Recording, Scene, plain_scene
+from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, Recording, Scene, plain_scene
 from tactsim.localization.readings import JAWS
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result

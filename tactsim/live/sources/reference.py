@@ -13,8 +13,8 @@ from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.errors import InputError
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
-from tactsim.live.recorded import SOURCES, result_recordings
-from tactsim.live.scene import Frame, Recording, Scene
+from tactsim.live.sources.recorded import SOURCES, result_recordings
+from tactsim.live.sources.scene import Frame, Recording, Scene
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 

@@ -1,20 +1,21 @@
-"""What the user of one page has chosen: whose forces, which sample, which estimator."""
+"""What the user of one page has chosen: whose forces, which sample, which estimator, and where in the recording the page is."""
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
 
 from tactsim.dataset.store.arrays import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName
-from tactsim.live.choices import Choice
-from tactsim.live.commands import ChooseEstimator, ChooseSample, ChooseSource, Choosing, FilterSamples
-from tactsim.live.content import LIVE, Content
-from tactsim.live.estimating import frame_readings, shown_signal
-from tactsim.live.recorded import SOURCES
-from tactsim.live.samples import ANY, Samples
-from tactsim.live.scene import Recording
+from tactsim.live.session.choices import Choice
+from tactsim.live.session.commands import ChooseEstimator, ChooseSample, ChooseSource, Choosing, FilterSamples
+from tactsim.live.session.content import LIVE, Content
+from tactsim.live.session.estimating import frame_readings, shown_signal
+from tactsim.live.sources.recorded import SOURCES
+from tactsim.live.sources.samples import ANY, Samples
+from tactsim.live.sources.scene import Frame, Recording
 
 Array = np.ndarray
 MOST_RANGED = 64
@@ -22,6 +23,8 @@ MOST_RANGED = 64
 
 LONGEST_SHOWN = 40
 """Characters of an unknown name that a message shows."""
+SHORTEST, LONGEST = 4.0, 20.0
+"""Limits in s of the time that a recording takes to play; between them it plays at its own speed."""
 
 
 class Selection:
@@ -151,3 +154,49 @@ class Selection:
                 continue
             found.append((shown_signal(readings)[0], frame.forces))
         return found
+
+
+class Playback:
+    """The time shown; ``playing`` moves it on by the clock, from the begin if it has come to the end."""
+
+    def __init__(self) -> None:
+        self.playing = False
+        self._at: float | None = None
+        self._speed = 1.0
+        self._started = 0.0
+
+    def begin_anew(self, recording: Recording | None) -> None:
+        """Stands at the end of a recording, where the jaws have closed."""
+        self.playing = False
+        self._at = None if recording is None else float(recording.times[-1])
+
+    def go_to(self, recording: Recording, step: int) -> None:
+        """Stands at a step."""
+        self._at = recording.frame(step).time
+
+    def play(self, recording: Recording) -> None:
+        """Moves on from here; a recording of one step stays."""
+        first, last = float(recording.times[0]), float(recording.times[-1])
+        if last <= first:
+            return
+        if self._at is None or self._at >= last:
+            self._at = first
+        length = last - first
+        self._speed = length / min(max(length, SHORTEST), LONGEST)
+        self._started, self.playing = time.monotonic(), True
+
+    def pause(self) -> None:
+        """Stays here."""
+        self.playing = False
+
+    def frame(self, recording: Recording) -> Frame:
+        """The frame of now."""
+        if self._at is None:
+            self._at = float(recording.times[-1])
+        if self.playing:
+            now = time.monotonic()
+            self._at += self._speed * (now - self._started)
+            self._started = now
+            if self._at >= recording.times[-1]:
+                self._at, self.playing = float(recording.times[-1]), False
+        return recording.at(self._at)

@@ -7,8 +7,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from tactsim.errors import InputError
-from tactsim.live.frame_lines import LONGEST_LINE, LineSplitter, read_line
-from tactsim.live.scene import Frame, Scene
+from tactsim.live.sources.frame_lines import LONGEST_LINE, LineSplitter, read_line
+from tactsim.live.sources.scene import Frame, Scene
 from tactsim.outside.text import one_line
 
 

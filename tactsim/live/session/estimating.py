@@ -9,9 +9,9 @@ import numpy as np
 
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, true_places, with_reference
-from tactsim.live.choices import Choice
-from tactsim.live.reference import Reference
-from tactsim.live.scene import Frame, Scene
+from tactsim.live.session.choices import Choice
+from tactsim.live.sources.reference import Reference
+from tactsim.live.sources.scene import Frame, Scene
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
 
 Array = np.ndarray

@@ -1,20 +1,25 @@
-"""Slow work beside the frames, in threads: estimates and shapes. One of each at a time, and only the latest that is wanted."""
+"""Slow work beside the frames, in threads that end with the process: estimates and shapes.
+
+One of each at a time, and only the latest that is wanted; closing the page waits for none of them.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
 from functools import partial
-from typing import Any
+from queue import SimpleQueue
+from typing import Any, TypeVar
 
 from tactsim.errors import TactsimError
-from tactsim.live.choices import Choice
 from tactsim.live.defects import report
-from tactsim.live.estimating import estimated
-from tactsim.live.messages import plain_json
-from tactsim.live.reference import Reference
-from tactsim.live.scene import Scene
-from tactsim.live.threads import Threads
+from tactsim.live.session.choices import Choice
+from tactsim.live.session.estimating import estimated
+from tactsim.live.session.messages import plain_json
+from tactsim.live.sources.reference import Reference
+from tactsim.live.sources.scene import Scene
 from tactsim.localization.interface import Readings
 from tactsim.outside.text import one_line
 
@@ -23,6 +28,9 @@ PATIENCE = 0.3
 """Time in s after which the page says that an estimate is being computed."""
 REST = 0.1
 """Time in s from one message to the next: estimates in words cannot be read faster."""
+Made = TypeVar("Made")
+MOST_THREADS = 4
+"""Estimates and shapes that are made at the same time, of all pages together."""
 
 
 class Latest:
@@ -102,3 +110,35 @@ def estimate_message(scene: Scene, readings: Readings | TactsimError, choice: Ch
     except Exception as error:  # noqa: BLE001  whatever an estimator does wrong, the page goes on and tells it
         fault = f"internal error of the estimator ({type(error).__name__}: {one_line(error, 200)}); please report it"
     return plain_json({"is": "estimate", "busy": False, "estimator": choice.name, "fault": fault} | found)
+
+
+class Threads:
+    """Daemon threads that share the work; asyncio's own would hold up the end of the process until they are done."""
+
+    def __init__(self, most: int = MOST_THREADS):
+        self._most, self._started = most, 0
+        self._work: SimpleQueue[tuple[Future[Any], Callable[[], Any]] | None] = SimpleQueue()
+
+    async def run(self, make: Callable[[], Made]) -> Made:
+        """What ``make`` returns or raises; it is not begun if nobody waits any more."""
+        answer: Future[Made] = Future()
+        self._work.put((answer, make))
+        if self._started < self._most:
+            threading.Thread(target=self._serve, daemon=True, name="live work").start()
+            self._started += 1
+        return await asyncio.wrap_future(answer)
+
+    def close(self) -> None:
+        """Ends every thread after what it is doing."""
+        for _ in range(self._started):
+            self._work.put(None)
+
+    def _serve(self) -> None:
+        while (work := self._work.get()) is not None:
+            answer, make = work
+            if not answer.set_running_or_notify_cancel():
+                continue
+            try:
+                answer.set_result(make())
+            except BaseException as error:  # noqa: BLE001  it is raised where the answer is awaited
+                answer.set_exception(error)
