@@ -14,9 +14,10 @@ from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.stored import attributes_of, stored_layout
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import FAILED, PENDING, STATUS, WORDS, differences
+from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
-from tactsim.dataset.store.verifying import JOURNAL, lost_status
+from tactsim.dataset.store.verifying import lost_status
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line

@@ -15,10 +15,10 @@ from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.stored import attributes_of, check_same
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import META, wrong_arrays
-from tactsim.dataset.store.blocks import Journal
+from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
 from tactsim.dataset.store.opening import Store, consolidated_metadata
-from tactsim.dataset.store.verifying import JOURNAL, damaged_samples, mark_pending
+from tactsim.dataset.store.verifying import damaged_samples, mark_pending
 from tactsim.dataset.store.writing import consolidate, create, resize, restore, tell
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line

@@ -23,6 +23,8 @@ Block = dict[str, Array]
 """Variable -> values (samples in the block, ...); ``sample`` holds the numbers of the samples."""
 NOT_SUMMED = ("checksum", "wall_time", "code")
 """What may differ between two runs of the same sample, or is the sum itself."""
+JOURNAL = ".journal"
+"""File in a store with blocks that are computed but not yet in its arrays."""
 HEAD = struct.Struct("<8sQ32s")
 MARK = b"tactsim\n"
 

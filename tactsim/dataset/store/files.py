@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from tactsim.dataset.store.arrays import META, ArrayDescription
-from tactsim.dataset.store.verifying import JOURNAL
+from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
 from tactsim.storage.files import naming

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING
-from tactsim.dataset.store.blocks import NOT_SUMMED, checksum
+from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
@@ -23,8 +23,6 @@ SHOWN = 10
 """Samples and variables named in one message."""
 MARKED = "code"
 """Variable that is 0 for every sample of the code that began the store; earlier stores kept no file for it."""
-JOURNAL = ".journal"
-"""File in a store with blocks that are computed but not yet in its arrays."""
 
 
 @dataclass

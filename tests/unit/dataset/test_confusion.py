@@ -17,7 +17,7 @@ from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, 
 from tactsim.dataset.ranking.samples import judged_samples
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError
-from tactsim.localization.confusion import ConfusionTable
+from tactsim.experiments.localization.confusion import ConfusionTable
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 
 CLOSING = float(CLOSINGS[-1])

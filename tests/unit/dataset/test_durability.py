@@ -12,7 +12,7 @@ from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store import blocks as journal
 from tactsim.dataset.store import writing as store_writing
-from tactsim.dataset.store.verifying import JOURNAL
+from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.storage.files import sync
 
 Synced = list[tuple[str, bytes]]

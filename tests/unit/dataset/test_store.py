@@ -28,7 +28,7 @@ from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.sampling.sweep import load_sweep
-from tactsim.dataset.store.blocks import Journal
+from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, tell
 from tactsim.dataset.use.card import redrawn, split_counts
@@ -81,7 +81,7 @@ def test_an_interrupted_sweep_goes_on(whole: Path, tmp_path: Path, tasks: int, m
     with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
         going.compute(Inline(sweep, stop_after=tasks), lambda tally: None)
     assert len(Store.open(place).pending()) > 0
-    assert not (place / running.JOURNAL).exists()
+    assert not (place / JOURNAL).exists()
     going = run_sweep(sweep, place, resume=True)
     assert going.tally.before + going.tally.done == 24
     assert_same(whole, place)
