@@ -68,7 +68,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     actions = {"check": _check, "info": _info, "export": _export, "rank": _rank, "train": _train, CONFUSION: _confusion}
     return actions[arguments.action](arguments)
 

@@ -43,7 +43,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     _check_image(arguments.save)
     if arguments.fit is not None:
         return _fit(arguments)

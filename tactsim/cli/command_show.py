@@ -58,7 +58,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     if arguments.web:
         from tactsim.cli.live_page import run_page
 

@@ -67,7 +67,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     from tactsim.dataset.running.resuming import opened_run
     from tactsim.dataset.sampling.sweep import load_sweep
 

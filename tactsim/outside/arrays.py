@@ -10,7 +10,7 @@ import sys
 import zipfile
 import zlib
 from tokenize import TokenError
-from typing import Any
+from typing import IO
 
 import numpy as np
 from numpy.lib import format as npy
@@ -85,7 +85,7 @@ def _is_text(array: Array) -> bool:
     return bool((codes <= sys.maxunicode).all())
 
 
-def _header(file: Any) -> tuple[tuple[int, ...], np.dtype]:
+def _header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
     version = npy.read_magic(file)
     read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
     shape, _, dtype = read(file)

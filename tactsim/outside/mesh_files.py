@@ -138,7 +138,13 @@ def _read(path: str) -> tuple[Any, list[str]]:
 
 
 def main(path: str, answer: str, largest: str) -> int:
-    """Read one file and write its arrays; what the child process does."""
+    """Read one file and write its arrays; what the child process does.
+
+    Raises
+    ------
+    MemoryError
+        If the arrays take more bytes than ``largest``; meshio's own errors end the process, too.
+    """
     mesh, said = _read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
     point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}

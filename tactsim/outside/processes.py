@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import tactsim
 from tactsim.outside.text import one_line
@@ -160,6 +160,6 @@ def _killed(child: subprocess.Popen[bytes]) -> None:
         child.wait()
 
 
-def _last_words(words: Any) -> str:
+def _last_words(words: IO[bytes]) -> str:
     words.seek(max(0, words.seek(0, os.SEEK_END) - LAST_WORDS))
     return words.read().decode("utf-8", "replace")

@@ -116,7 +116,13 @@ def document_text(result: Result, case_id: str) -> str:
 
 
 def plain_json(value: Any, place: tuple[str, ...], lost: list[str]) -> Any:
-    """``value`` as plain JSON values; the places of numbers that are not finite are added to ``lost``."""
+    """``value`` as plain JSON values; the places of numbers that are not finite are added to ``lost``.
+
+    Raises
+    ------
+    TypeError
+        If it holds what JSON cannot hold.
+    """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, dict):

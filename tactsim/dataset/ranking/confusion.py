@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from tactsim.localization.estimators.hypotheses import CLASSES
 from tactsim.localization.interface import ROUNDING_NOISE, Estimator
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = np.ndarray
 SCHEMA = "tactsim/confusion/1"
@@ -45,12 +48,7 @@ def store_confusion(
     InputError
         If no sample is done, it has no inclusions, or another matrix or closing than the reference.
     """
-    data = load(store, split=split, verified=True)
-    if not data.sizes["sample"]:
-        raise InputError(f"{Path(store).name} has no sample that is done; run the sweep first")
-    missing = [name for name in ("taxel_force", "inclusion_kind", "inclusion_count", "closing") if name not in data]
-    if missing:
-        raise InputError(f"{Path(store).name} has no {missing[0]}; needed: a data set of grasps with taxels")
+    data = _grasps(store, split)
     plain = readings_of(stored_grasp(reference), noise=noise)
     forces = np.asarray(data["taxel_force"].values, dtype=float)[:, -1]
     if forces.shape[1:] != plain.forces.shape:
@@ -58,12 +56,8 @@ def store_confusion(
     _check_closings(data["closing"].values, plain.closing)
     if estimator.needs_response and response is None:
         response = stored_response(reference)
-    names = str(data["inclusion_kind"].attrs["flag_meanings"]).split()
     table, others = ConfusionTable(), 0
-    for number, change in zip(data["sample"].values, forces, strict=True):
-        sample = data.sel(sample=number)
-        kinds = sample["inclusion_kind"].values[: int(sample["inclusion_count"].values)]
-        true = class_of([names[int(kind)] for kind in kinds])
+    for number, change, true in zip(data["sample"].values, forces, _true_classes(data), strict=True):
         if true is None:
             others += 1
             continue
@@ -71,6 +65,24 @@ def store_confusion(
         readings = replace(plain, forces=change + added[0], reference=plain.forces + added[1], response=response)
         table.add(true, estimated_class(estimator.estimate(readings)))
     return table, others
+
+
+def _grasps(store: str | Path, split: str | None) -> xarray.Dataset:
+    """The grasps of a store that are done, with all that is counted of them."""
+    data = load(store, split=split, verified=True)
+    if not data.sizes["sample"]:
+        raise InputError(f"{Path(store).name} has no sample that is done; run the sweep first")
+    missing = [name for name in ("taxel_force", "inclusion_kind", "inclusion_count", "closing") if name not in data]
+    if missing:
+        raise InputError(f"{Path(store).name} has no {missing[0]}; needed: a data set of grasps with taxels")
+    return data
+
+
+def _true_classes(data: xarray.Dataset) -> list[str | None]:
+    """Class of each sample by its inclusions, None if they are of no class."""
+    names = str(data["inclusion_kind"].attrs["flag_meanings"]).split()
+    kinds, counts = data["inclusion_kind"].values, data["inclusion_count"].values
+    return [class_of([names[int(kind)] for kind in row[: int(count)]]) for row, count in zip(kinds, counts, strict=True)]
 
 
 def _check_closings(closings: Array, reference: float | None) -> None:

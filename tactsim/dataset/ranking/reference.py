@@ -89,7 +89,13 @@ class PlainGrasp:
 
 
 def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str) -> None:
-    """Refuse a reference of another block or matrix than ``whose``."""
+    """Refuse a reference of another block or matrix than ``whose``.
+
+    Raises
+    ------
+    InputError
+        Naming what differs.
+    """
     if not np.allclose(size, reference.block_size, rtol=1e-9):
         told = [" x ".join(format_quantity(float(side), "m") for side in block) for block in (size, reference.block_size)]
         raise InputError(f"the block of {whose} measures {told[0]}, that of the reference {told[1]}; needed: the same")

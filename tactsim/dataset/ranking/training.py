@@ -80,7 +80,7 @@ def trained(samples: JudgedSamples, response: LumpResponse | None = None, *, see
     bare = LearnedWeights(
         samples.plain.readings.layout, samples.block_size, middle, scale, places, presence, np.zeros((4, 4)), np.zeros(2)
     )
-    return _with_uncertainty(bare, _noisy(_mirrored(examples.taken(held), samples), samples, generator, exact=True))
+    return _with_uncertainty(bare, *_noisy(_mirrored(examples.taken(held), samples), samples, generator, exact=True))
 
 
 def _examples(samples: JudgedSamples) -> Examples:
@@ -170,12 +170,11 @@ def _plain(network: Any) -> Network:
     return Network(tuple(map(np.asarray, network.coefs_)), tuple(map(np.asarray, network.intercepts_)))
 
 
-def _with_uncertainty(bare: LearnedWeights, held: tuple[Array, Array]) -> LearnedWeights:
+def _with_uncertainty(bare: LearnedWeights, features: Array, targets: Array) -> LearnedWeights:
     """The covariance of the errors of held out grasps, whose size follows a power of the change's size.
 
     It is widened or narrowed so that nine in ten of them lie in their 90 % ellipsoids.
     """
-    features, targets = held
     there = np.isfinite(targets[:, 0])
     if not there.any():
         raise InputError("no lump among the grasps held out; train on more")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -139,7 +139,7 @@ def distribution(written: dict[str, Any]) -> Distribution:
     return READERS[names[0]](entries, written)
 
 
-def _bounded(name: str) -> Any:
+def _bounded(name: str) -> Callable[[list[Any], dict[str, Any]], Distribution]:
     def read(entries: list[Any], written: dict[str, Any]) -> Distribution:
         numbers = _pair(name, entries)
         low, high = numbers.values

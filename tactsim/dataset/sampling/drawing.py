@@ -108,7 +108,7 @@ def used_seed(sweep: Sweep, drawn: Drawn) -> int:
     return noise_seed(sweep, drawn.sample) if found is None else int(found)
 
 
-def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict:
+def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict[Path, tuple[Any, float]]:
     settings = sweep.settings
     seed = (settings.seed, stream)
     if attempt:

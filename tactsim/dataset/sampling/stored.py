@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.code_identity import code_identity
+from tactsim.dataset.sampling.distributions import Listed
 from tactsim.dataset.sampling.layout import Layout, layout_of
-from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
+from tactsim.dataset.sampling.sweep import Place, Sweep, sweep_of_text
 from tactsim.dataset.store.arrays import META, parsed_json
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError
@@ -72,8 +73,8 @@ def _difference(one: Any, other: Any, place: str) -> str:
     return place if one != other else ""
 
 
-def _by_index(place: Any) -> bool:
-    return place.distribution.options is not None and place.distribution.numbers is None
+def _by_index(place: Place) -> bool:
+    return isinstance(place.distribution, Listed) and place.distribution.numbers is None
 
 
 def _shown(option: Any) -> str:

@@ -108,7 +108,7 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
         if value.get("schema") != SCHEMA:
             found = as_written(value["schema"]) if "schema" in value else "missing"
             raise YamlProblems(Problem(("schema",), 0, f"{found}; a sweep begins with 'schema: {SCHEMA}'"))
-        settings = _settings(document, value.pop(SECTION, None), SweepSettings, units=not checked)
+        settings = _settings(document, value.pop(SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
         places = places_of(value, ())
         plain = replace(document, value=value)
@@ -118,14 +118,14 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
         raise case_error(problems, where) from None
 
 
-def _settings(document: Document, section: Any, model: Any, units: bool) -> SweepSettings:
+def _settings(document: Document, section: Any, units: bool) -> SweepSettings:
     if not isinstance(section, dict):
         raise YamlProblems(Problem((SECTION,), 0, "missing; expected a mapping, such as 'sweep: {samples: 1000}'"))
     try:
         context = {"units": "required"} if units else None
         return SweepSettings.model_validate_json(json.dumps(section), strict=True, context=context)
     except ValidationError as error:
-        problems = problems_of(error, Document(section), model)
+        problems = problems_of(error, Document(section), SweepSettings)
         raise YamlProblems(*(Problem((SECTION, *p.path), 0, p.message) for p in problems)) from None
 
 

@@ -206,7 +206,7 @@ def _lengths(value: Any, least: int) -> bool:
     return isinstance(value, list) and all(type(length) is int and length >= least for length in value)
 
 
-def _bytes(shape: Any, kind: str) -> int:
+def _bytes(shape: Iterable[int], kind: str) -> int:
     return math.prod(shape) * (8 if kind in ("string", "str") else np.dtype(kind).itemsize)
 
 

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from types import EllipsisType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, descri
 from tactsim.errors import StorageError
 from tactsim.outside.files import Unreadable, opened_folder
 from tactsim.outside.text import one_line
+
+if TYPE_CHECKING:
+    import zarr
 
 Array = np.ndarray
 STORE_SCHEMA = "tactsim/dataset/1"
@@ -51,7 +55,7 @@ class Store:
     """A store, opened. A reader sees a sample by its ``status``, which is written after everything else of it."""
 
     path: Path
-    group: Any
+    group: zarr.Group
     described: dict[str, ArrayDescription] = field(default_factory=dict)
     """Arrays that are there and can be read."""
     faults: dict[str, str] = field(default_factory=dict)
@@ -88,7 +92,7 @@ class Store:
         """What the store says of itself."""
         return dict(self.group.attrs)
 
-    def array(self, name: str) -> Any:
+    def array(self, name: str) -> zarr.Array[Any]:
         """The array of a variable.
 
         Raises
@@ -101,9 +105,12 @@ class Store:
         if name not in self.described:
             raise StorageError(self.faults.get(name) or _without(self.path, name))
         with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
-            return self.group[name]
+            found = self.group[name]
+            if not isinstance(found, zarr.Array):
+                raise TypeError("it is no array")
+            return found
 
-    def read(self, name: str, rows: Any = ...) -> Array:
+    def read(self, name: str, rows: slice | Array | EllipsisType = ...) -> Array:
         """Values of a variable, of all samples or a slice or mask of them.
 
         Raises
@@ -139,7 +146,13 @@ class Store:
 
 @contextmanager
 def reading(place: Path) -> Iterator[None]:
-    """Turns whatever Zarr raises on damaged content into an error that names the place."""
+    """Turns whatever Zarr raises on damaged content into an error that names the place.
+
+    Raises
+    ------
+    StorageError
+        If the block meets damaged content.
+    """
     try:
         yield
     except StorageError:

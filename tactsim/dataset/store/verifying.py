@@ -92,7 +92,7 @@ def mark_pending(store: Store, samples: Array) -> None:
     with naming(store.path):
         for chunk in np.unique(samples // per_chunk).tolist():
             rows = slice(chunk * per_chunk, min((chunk + 1) * per_chunk, status.shape[0]))
-            values = status[rows]
+            values = np.asarray(status[rows])
             values[samples[samples // per_chunk == chunk] - rows.start] = PENDING
             status[rows] = values
 

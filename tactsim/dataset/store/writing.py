@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.storage.building import built_beside
 from tactsim.storage.files import naming, sync
+
+if TYPE_CHECKING:
+    import zarr
 
 CHUNK_BYTES = 2 * 2**20
 """Largest chunk of a variable, about."""
@@ -116,7 +119,7 @@ def chunk_samples(variables: Iterable[Variable], samples: int) -> int:
     return 1 << (fitting.bit_length() - 1)
 
 
-def _add(group: Any, variable: Variable, samples: int, per_chunk: int) -> None:
+def _add(group: zarr.Group, variable: Variable, samples: int, per_chunk: int) -> None:
     group.create_array(
         variable.name,
         shape=(samples, *variable.sizes),
@@ -137,7 +140,7 @@ def _put(store: Store, block: Block, variable: Variable) -> list[Path]:
         begin, end = chunk * per_chunk, min((chunk + 1) * per_chunk, array.shape[0])
         content = store.path / store.described[variable.name].chunk_key(chunk)
         new = [place for place in content.parents[: len(variable.dimensions) + 1] if not place.exists()]
-        values = array[begin:end]
+        values = np.asarray(array[begin:end])
         values[numbers[own] - begin] = block[variable.name][own]
         array[begin:end] = values
         changed += [

@@ -6,7 +6,7 @@ import importlib.util
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,16 +109,16 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
         )
 
 
-def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, beside: tuple[list[dict[str, Any]], str]) -> None:
-    """One data set per variable, the first dimension the sample; dimensions and units as attributes; ``beside`` what failed and
-    the card, which attributes would be too small for."""
+def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, *, failed: list[dict[str, Any]], card: str) -> None:
+    """One data set per variable, the first dimension the sample; dimensions and units as attributes. What failed and the card are
+    data sets too: attributes would be too small for them."""
     import h5py
 
     with h5py.File(target, "w") as file:
         file.attrs.update({name: _plain(value) for name, value in told.items()})
-        failed, file["card"] = beside
-        file["failed/sample"] = np.array([one["sample"] for one in failed], dtype=np.int64)
-        file["failed/reason"] = np.array([one["reason"].encode() for one in failed], dtype=h5py.string_dtype())
+        file["card"] = card
+        file["failed/sample"] = np.array([sample["sample"] for sample in failed], dtype=np.int64)
+        file["failed/reason"] = np.array([sample["reason"].encode() for sample in failed], dtype=h5py.string_dtype())
         file["sample"] = data["sample"].values
         for name, values in data.data_vars.items():
             content = np.asarray(values.values)
@@ -154,12 +154,12 @@ def _parts(data: xarray.Dataset) -> Iterator[xarray.Dataset]:
         yield data.isel(sample=slice(begin, begin + SHARD_SAMPLES))
 
 
-def _headed(name: Any, values: xarray.DataArray) -> str:
+def _headed(name: Hashable, values: xarray.DataArray) -> str:
     unit = values.attrs.get("units", "1")
     return str(name) if unit == "1" else f"{name} [{unit}]"
 
 
-def _column(name: Any, values: xarray.DataArray, data: xarray.Dataset) -> Any:
+def _column(name: Hashable, values: xarray.DataArray, data: xarray.Dataset) -> Array | list[str]:
     content = values.values
     if name == "split":
         known = split_names(data)
@@ -169,7 +169,7 @@ def _column(name: Any, values: xarray.DataArray, data: xarray.Dataset) -> Any:
     return content if content.dtype.kind in "fiub" else [str(value) for value in content]
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any) -> str | int | float:
     return value if isinstance(value, str | int | float) else json.dumps(value, default=_listed)
 
 
@@ -180,7 +180,7 @@ def _listed(value: Any) -> Any:
 def main(store: str, target: str, splits: str) -> int:
     """Writes HDF5; what the process of its own does."""
     names, told = json.loads(splits), Store.open(store).attributes
-    _hdf5(load(store, split=names), told, Path(target), beside=(_failed(store, names), _card(Path(store))))
+    _hdf5(load(store, split=names), told, Path(target), failed=_failed(store, names), card=_card(Path(store)))
     return 0
 
 

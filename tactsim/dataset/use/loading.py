@@ -32,16 +32,11 @@ def load(
 
     Parameters
     ----------
-    store
-        Folder that ``tactsim sweep`` wrote.
-    split
-        One part, such as ``"train"``, or several; by default all.
-    failed
-        Whether samples that failed, whose readings are NaN, are in it too; those that are pending never are.
-    variables
-        Names of the variables; by default all.
-    verified
-        Whether all that is stored of these samples is read and held against their checksums first.
+    store : folder that ``tactsim sweep`` wrote
+    split : one part, such as ``"train"``, or several; by default all
+    failed : whether samples that failed, whose readings are NaN, are in it too; those that are pending never are
+    variables : names of the variables; by default all
+    verified : whether all that is stored of these samples is read and held against their checksums first
 
     Raises
     ------
@@ -112,7 +107,17 @@ def split_names(dataset: xarray.Dataset) -> list[str]:
 
 
 def chosen_samples(dataset: xarray.Dataset, split: str | Iterable[str] | None = None, *, failed: bool = False) -> Array:
-    """Numbers of the samples of a part that are done, or also of those that failed."""
+    """Numbers of the samples of a part that are done, or also of those that failed.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such split.
+    InputError
+        If the list of splits is empty.
+    StorageError
+        If status or split cannot be read.
+    """
     status = dataset["status"].values
     chosen = (status == DONE) | (status == FAILED) if failed else status == DONE
     if split is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -78,7 +79,7 @@ def _drawn(one: EstimatedInclusion) -> dict[str, Any]:
     }
 
 
-def _outline(line: Any) -> list[float]:
+def _outline(line: Sequence[Sequence[float]]) -> list[float]:
     """A line (n, 2) in m as x, y, x, y, ... in mm."""
     found: list[float] = (1e3 * np.array(line)).round(DIGITS).ravel().tolist()
     return found

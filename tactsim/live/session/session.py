@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Protocol, TypeVar
 
 from tactsim.errors import InputError, TactsimError
 from tactsim.live.defects import report
@@ -17,6 +17,7 @@ from tactsim.live.session.selection import Playback, Selection
 from tactsim.live.session.thinking import Thinking, Threads
 from tactsim.live.sources.scene import Frame, Recording, Scene
 
+Made = TypeVar("Made")
 IN_FLIGHT = 2
 """Frames that are sent before the page says that it has drawn one: the rest is skipped, so that nothing piles up."""
 PERIOD = 1 / 40
@@ -188,7 +189,7 @@ class Session:
             await self._socket.send_str(text)
 
 
-def readings_or_fault(make: Callable[[], Any]) -> Any:
+def readings_or_fault(make: Callable[[], Made]) -> Made | TactsimError:
     """What is made, or why it cannot be."""
     try:
         return make()
