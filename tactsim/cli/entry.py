@@ -81,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _told_warnings() -> Iterator[None]:
-    """A block whose warnings of libraries are told when it ends, those that no result holds."""
+    """A block whose warnings of libraries are printed when it ends, those that no result holds."""
     with collected_warnings() as said:
         try:
             yield

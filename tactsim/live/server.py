@@ -133,7 +133,7 @@ async def _close_sockets(app: web.Application) -> None:
 
 @dataclass(frozen=True)
 class Serving:
-    """Where the page is served and who is told what."""
+    """Where the page is served, and where messages go."""
 
     ready: Callable[[str], None]
     """Called once with the address of the page."""

@@ -21,7 +21,7 @@ from tactsim.outside.text import one_line
 
 Array = np.ndarray
 LARGEST_FOREIGN = 2**30
-"""Bytes that all arrays of a file may take together which is not tactsim's own, or where the machine does not tell its memory."""
+"""Bytes that the arrays of a file of others may take together, or of any file where the memory of the machine is not known."""
 KINDS = frozenset("biufcUS")
 """numpy's letters for kinds of arrays that are read: truth values, numbers and text."""
 MOST_ARRAYS = 100_000
@@ -67,9 +67,9 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Array:
         shape, dtype = _header(file)
         if dtype.hasobject:
             raise ValueError(f"{entry.filename} holds objects, which could run code")
-        told = math.prod(shape) * dtype.itemsize
-        if told > entry.file_size:
-            raise ValueError(f"{entry.filename} says that it holds {told} bytes and has {entry.file_size}")
+        claimed = math.prod(shape) * dtype.itemsize
+        if claimed > entry.file_size:
+            raise ValueError(f"{entry.filename} says that it holds {claimed} bytes and has {entry.file_size}")
         if dtype.kind not in KINDS:
             raise ValueError(f"{entry.filename} holds neither numbers nor text")
     with archive.open(entry) as file:

@@ -45,7 +45,7 @@ class MeshFileWarning(UserWarning):
 
 @dataclass(frozen=True)
 class MeshArrays:
-    """What a file holds, in its own units: points (n, d), blocks of cells (type, (m, k) node numbers), and data by name.
+    """The content of a file, in its units: points (n, d), blocks of cells (type, (m, k) node numbers), and data by name.
 
     ``cell_data`` has one array for each block, ``groups`` the whole number of every named group.
     """

@@ -65,7 +65,7 @@ def run_child(
     memory: int | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> Ended:
-    """Runs a module of tactsim as a program of its own and waits for its end.
+    """Runs a module of tactsim as a separate program and waits for its end.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def ending(code: int | None) -> str:
 
 
 def machine_memory() -> int:
-    """Bytes of memory of this machine, 0 if it does not tell."""
+    """Bytes of memory of this machine, 0 if they are not known."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):

@@ -65,7 +65,7 @@ def fill(
 
 
 def write_files(files: Mapping[str, bytes], directory: str | Path) -> Path:
-    """Writes files, by their paths with ``/``, as a folder that is complete or absent; an earlier one of tactsim gives way.
+    """Writes files, by their paths with ``/``, as a folder that is complete or absent; an earlier folder of tactsim gives way.
 
     Raises
     ------

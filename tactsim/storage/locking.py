@@ -1,4 +1,4 @@
-"""A place that one process at a time may write; the system frees it when that process ends in any way."""
+"""A place that one process at a time may write; the system frees it however that process ends."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 
 @dataclass(frozen=True)
 class Checked:
-    """Counts by status, what was found, and what could not be verified."""
+    """Counts by status, the findings, and what could not be verified."""
 
     counts: dict[str, int]
     findings: tuple[Finding, ...]
@@ -106,27 +106,27 @@ def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]
         if name == "description" and not same_code:
             continue
         if found.get(name) != expected.get(name):
-            told = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
-            yield Finding("attribute", (), f"{told}; bring back a copy of zarr.json")
+            words = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
+            yield Finding("attribute", (), f"{words}; bring back a copy of zarr.json")
     names = [variable.name for variable in layout.variables]
     if store.keeps_all_chunks and sorted(found[ARRAYS]) != sorted(names):
         yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
 
 
 def _consolidated(store: Store) -> Iterator[Finding]:
-    """The descriptions in the store's own zarr.json, which xarray reads, beside those of the arrays."""
+    """Arrays that the store's zarr.json, which xarray reads, describes otherwise than their own."""
     gathered = consolidated_metadata(store.path)
-    differing = [name for name, array in store.described.items() if gathered.get(name) != array.told]
+    differing = [name for name, array in store.described.items() if gathered.get(name) != array.metadata]
     if differing:
         named = ", ".join(differing[:10])
-        told = (
+        words = (
             f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"
         )
-        yield Finding("gathered", (), told)
+        yield Finding("gathered", (), words)
 
 
 def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
-    """What tactsim did not write, what a killed run left, and what of its own is gone or changed."""
+    """Files that tactsim did not write, that a killed run left, or that are no longer as tactsim wrote them."""
     names = [variable.name for variable in variables]
     torn = sum(is_torn(name, names) for name in walked(store.path))
     if torn:

@@ -37,7 +37,7 @@ class Finding:
 
 @dataclass
 class Faults:
-    """What was found so far, by kind; numbers of samples."""
+    """The faults that are known so far, by kind; numbers of samples."""
 
     changed: list[int] = field(default_factory=list)
     unreadable: list[Finding] = field(default_factory=list)
@@ -86,7 +86,7 @@ def value_findings(store: Store, layout: Layout, status: Array) -> list[Finding]
         found.changed += read.changed.tolist()
         if len(read.values) == len(layout.variables):
             _look(read, layout, found, len(store.attributes["codes"]))
-    return _told(found)
+    return _as_findings(found)
 
 
 def _look(read: ChunkRead, layout: Layout, found: Faults, codes: int) -> None:
@@ -110,18 +110,18 @@ def _may_not_rest(variable: Variable) -> bool:
     return not variable.prescribed and bool(variable.sizes) and int(np.prod(variable.sizes)) > 1
 
 
-def _told(found: Faults) -> list[Finding]:
-    told = [*found.unreadable]
-    told += [Finding("gone", tuple(numbers), f"{name} is no longer there; {AGAIN}") for name, numbers in found.gone.items()]
+def _as_findings(found: Faults) -> list[Finding]:
+    findings = [*found.unreadable]
+    findings += [Finding("gone", tuple(numbers), f"{name} is no longer there; {AGAIN}") for name, numbers in found.gone.items()]
     if found.changed:
-        told.append(Finding("checksum", tuple(found.changed), f"the content is not what was written; {AGAIN}"))
+        findings.append(Finding("checksum", tuple(found.changed), f"the content is not what was written; {AGAIN}"))
     if found.uncoded:
-        told.append(Finding("damaged", tuple(found.uncoded), f"code is no entry of the attribute codes; {AGAIN}"))
-    told += [Finding("not finite", tuple(numbers), f"{name}; leave them out") for name, numbers in found.infinite.items()]
+        findings.append(Finding("damaged", tuple(found.uncoded), f"code is no entry of the attribute codes; {AGAIN}"))
+    findings += [Finding("not finite", tuple(numbers), f"{name}; leave them out") for name, numbers in found.infinite.items()]
     constant = found.constant.items()
-    told += [
+    findings += [
         Finding("constant", tuple(numbers), f"{name} has one value throughout; leave them out") for name, numbers in constant
     ]
     if found.equal:
-        told.append(Finding("duplicate", tuple(found.equal), "the same readings as an earlier sample; leave them out"))
-    return told
+        findings.append(Finding("duplicate", tuple(found.equal), "the same readings as an earlier sample; leave them out"))
+    return findings

@@ -97,7 +97,7 @@ def _check_closings(closings: Array, reference: float | None) -> None:
 
 
 def record(table: ConfusionTable, others: int, about: Mapping[str, Any]) -> dict[str, Any]:
-    """Everything; ``about`` is what is told of the run beside it, with the ``noise`` in N, ``others`` belong to no class."""
+    """All numbers of a table; ``about`` describes the run, with the ``noise`` in N; ``others`` samples belong to no class."""
     return {
         "schema": SCHEMA,
         **about,
@@ -111,7 +111,7 @@ def record(table: ConfusionTable, others: int, about: Mapping[str, Any]) -> dict
 
 
 def verdict(content: Mapping[str, Any]) -> str:
-    """How many were told right, in words."""
+    """How many grasps were classified rightly, as a sentence."""
     right = sum(row[k] for k, row in enumerate(content["counts"]))
     return f"{right} of {content['samples']} grasps told right"
 

@@ -57,15 +57,15 @@ def outcome(estimate: Estimate, truth: Truth) -> Outcome:
     if not estimate.inclusions:
         return Outcome(truth, False, estimate.probability)
     ball = estimate.inclusions[0]
-    told: dict[str, Any] = {"found": True, "probability": estimate.probability, "center": ball.center}
+    against: dict[str, Any] = {"found": True, "probability": estimate.probability, "center": ball.center}
     if ball.region is not None:
-        told["width"], told["height"] = ball.region.sizes(LEVEL)
+        against["width"], against["height"] = ball.region.sizes(LEVEL)
     if truth.center is not None and truth.radius is not None:
         away = np.asarray(ball.center) - truth.center
-        told |= {"lateral": float(np.hypot(*away[:2])), "depth": float(away[2])}
-        told["radius"] = None if ball.radius is None else ball.radius - truth.radius
-        told["covered"] = None if ball.region is None else ball.region.contains(np.asarray(truth.center), LEVEL)
-    return Outcome(truth, **told)
+        against |= {"lateral": float(np.hypot(*away[:2])), "depth": float(away[2])}
+        against["radius"] = None if ball.radius is None else ball.radius - truth.radius
+        against["covered"] = None if ball.region is None else ball.region.contains(np.asarray(truth.center), LEVEL)
+    return Outcome(truth, **against)
 
 
 def outcomes(
@@ -86,7 +86,7 @@ def outcomes(
 
 
 def measures(found: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
-    """Numbers in SI: rates, errors of lumps that were found, coverage and sizes of the regions, and the score.
+    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
     by the bootstrap over the samples; None where no sample tells.
@@ -95,19 +95,19 @@ def measures(found: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
     plain = [one for one in found if not one.truth.present]
     hits = [one for one in lumps if one.found]
     covered = [one.covered for one in hits if one.covered is not None]
-    told: dict[str, Any] = {"samples": len(found), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
-    told["detection_rate"] = share([one.found for one in lumps])
-    told["false_alarm_rate"] = share([one.found for one in plain])
-    told["score"] = interval([penalty(one, block_size) for one in found], np.mean)
+    by_name: dict[str, Any] = {"samples": len(found), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
+    by_name["detection_rate"] = share([one.found for one in lumps])
+    by_name["false_alarm_rate"] = share([one.found for one in plain])
+    by_name["score"] = interval([penalty(one, block_size) for one in found], np.mean)
     for name in ("lateral", "depth", "radius"):
         errors = [abs(float(value)) for one in hits if (value := getattr(one, name)) is not None]
-        told[f"{name}_error"] = spread(errors)
-        told[f"{name}_error_with_misses"] = _with_misses(lumps, name, block_size)
-    told["depth_bias"] = interval([float(one.depth) for one in hits if one.depth is not None], np.median)
-    told["coverage"] = share(covered)
-    told["region_width"] = interval([one.width for one in hits if one.width is not None], np.median)
-    told["region_height"] = interval([one.height for one in hits if one.height is not None], np.median)
-    return told
+        by_name[f"{name}_error"] = spread(errors)
+        by_name[f"{name}_error_with_misses"] = _with_misses(lumps, name, block_size)
+    by_name["depth_bias"] = interval([float(one.depth) for one in hits if one.depth is not None], np.median)
+    by_name["coverage"] = share(covered)
+    by_name["region_width"] = interval([one.width for one in hits if one.width is not None], np.median)
+    by_name["region_height"] = interval([one.height for one in hits if one.height is not None], np.median)
+    return by_name
 
 
 def penalty(one: Outcome, block_size: Array) -> float:
@@ -161,17 +161,17 @@ def share(given: Sequence[bool]) -> dict[str, float] | None:
 def binned(found: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:
     """For each label, the measures of lumps in parts of its range with equally many lumps."""
     lumps = [one for one in found if one.truth.present]
-    told: dict[str, list[dict[str, Any]]] = {}
+    by_label: dict[str, list[dict[str, Any]]] = {}
     for label in LABELS:
         values = np.array([getattr(one.truth, label) for one in lumps], dtype=float)
         edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1))) if values.size else np.zeros(0)
         edges = np.repeat(edges, 2) if len(edges) == 1 else edges
-        told[label] = []
+        by_label[label] = []
         for k, (low, high) in enumerate(pairwise(edges)):
             inside = (values >= low) & ((values <= high) if k == len(edges) - 2 else (values < high))
             own = [one for one, held in zip(lumps, inside, strict=True) if held]
-            told[label].append({"low": float(low), "high": float(high), **measures(own, block_size)})
-    return told
+            by_label[label].append({"low": float(low), "high": float(high), **measures(own, block_size)})
+    return by_label
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +191,7 @@ class Ranked:
     def record(self) -> dict[str, Any]:
         """All numbers, in SI, with one row for each sample."""
         rows = [asdict(one) for one in self.outcomes]
-        noises = [{"multiple": multiple, **told} for multiple, told in self.noises.items()]
+        noises = [{"multiple": multiple, **measures} for multiple, measures in self.noises.items()]
         return {"name": self.name, "measures": self.measures, "noise": noises, "bins": dict(self.bins), "samples": rows}
 
 
@@ -199,9 +199,9 @@ def ranking(
     estimators: Mapping[str, Estimator], samples: JudgedSamples, response: LumpResponse | None, *, seed: int = 1
 ) -> list[Ranked]:
     """Every estimator on every sample at every noise, the least score first."""
-    told = []
+    ranked = []
     for name, estimator in estimators.items():
         runs = {multiple: outcomes(estimator, samples, response, multiple=multiple, seed=seed) for multiple in NOISES}
         noises = {multiple: measures(found, samples.block_size) for multiple, found in runs.items()}
-        told.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
-    return sorted(told, key=lambda one: float(one.measures["score"]["value"]))
+        ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
+    return sorted(ranked, key=lambda one: float(one.measures["score"]["value"]))

@@ -17,7 +17,7 @@ from tactsim.units import format_quantity
 
 Array = np.ndarray
 BEYOND = 1e-3
-"""Closing beyond that of the reference, over its own, that still counts as the same."""
+"""Closing beyond that of the reference, as a share of the latter, that still counts as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class PlainGrasp:
     ----------
     closings : (n,) ascending in m, the first 0
     forces : (n, jaw, row, column) in N
-    readings : of its last step, which tell layout, block and middle
+    readings : of its last step, with layout, block and middle
     """
 
     closings: Array
@@ -97,8 +97,8 @@ def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str
         Naming what differs.
     """
     if not np.allclose(size, reference.block_size, rtol=1e-9):
-        told = [" x ".join(format_quantity(float(side), "m") for side in block) for block in (size, reference.block_size)]
-        raise InputError(f"the block of {whose} measures {told[0]}, that of the reference {told[1]}; needed: the same")
+        measured = [" x ".join(format_quantity(float(side), "m") for side in block) for block in (size, reference.block_size)]
+        raise InputError(f"the block of {whose} measures {measured[0]}, that of the reference {measured[1]}; needed: the same")
     if layout != reference.layout:
         raise InputError(f"the matrix of {whose} is {layout}, that of the reference {reference.layout}; needed: the same")
 

@@ -33,7 +33,7 @@ BINNED = (COLUMNS[1], COLUMNS[3], COLUMNS[5], COLUMNS[7], COLUMNS[8])
 
 
 def record(ranked: Sequence[Ranked], samples: JudgedSamples, about: Mapping[str, Any]) -> dict[str, Any]:
-    """Everything, in SI; ``about`` is what is told of the run beside it."""
+    """All numbers of a ranking, in SI; ``about`` describes the run: store, split, seed."""
     return {
         "schema": SCHEMA,
         **about,
@@ -52,16 +52,16 @@ def record(ranked: Sequence[Ranked], samples: JudgedSamples, about: Mapping[str,
 def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
     """For each estimator, its median lateral and depth error over that of the thesis's algorithm, misses counted in both."""
     base = next((one for one in ranked if one.name == BASELINE), None)
-    told: dict[str, dict[str, float]] = {}
+    ratios: dict[str, dict[str, float]] = {}
     for one in ranked:
         if base is None or one is base:
             continue
-        told[one.name] = {}
+        ratios[one.name] = {}
         for name in ("lateral_error_with_misses", "depth_error_with_misses"):
             own, other = one.measures[name], base.measures[name]
             if own is not None and other is not None and other["value"] > 0:
-                told[one.name][name] = own["value"] / other["value"]
-    return told
+                ratios[one.name][name] = own["value"] / other["value"]
+    return ratios
 
 
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str]) -> str:
@@ -92,7 +92,7 @@ def _ratios(found: Mapping[str, float]) -> str:
 
 
 def _of_one(one: Ranked) -> list[str]:
-    noises = [(f"{multiple:g} x", told) for multiple, told in one.noises.items()]
+    noises = [(f"{multiple:g} x", measures) for multiple, measures in one.noises.items()]
     lines = [*_table("noise", noises, (COLUMNS[0], COLUMNS[2], *BINNED)), ""]
     for label, bins in one.bins.items():
         rows = [(f"{_shown(part['low'], LABELS[label])} to {_shown(part['high'], LABELS[label])}", part) for part in bins]
@@ -105,13 +105,13 @@ def _table(
     first: str, rows: Sequence[tuple[str, Mapping[str, Any]]], columns: Sequence[tuple[str, tuple[str, ...], str]]
 ) -> list[str]:
     lines = [f"| {' | '.join([first, *(heading for heading, _, _ in columns)])} |", "|" + " --- |" * (len(columns) + 1)]
-    for name, told in rows:
-        lines.append(f"| {' | '.join([name, *(_cell(told, place, unit) for _, place, unit in columns)])} |")
+    for name, measures in rows:
+        lines.append(f"| {' | '.join([name, *(_cell(measures, place, unit) for _, place, unit in columns)])} |")
     return lines
 
 
-def _cell(told: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
-    found: Any = told
+def _cell(measures: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
+    found: Any = measures
     for key in place:
         found = None if found is None else found[key]
     if found is None:

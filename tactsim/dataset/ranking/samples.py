@@ -31,7 +31,7 @@ Array = np.ndarray
 SPHERE = 1
 """Number of a ball among the kinds of inclusions of a store."""
 REPEATED = 16
-"""Readings of the same forces from which the noise of a sensor is found."""
+"""Readings of the same forces from which the noise of a sensor is estimated."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class JudgedSamples:
 
     @cached_property
     def references(self) -> Array:
-        """What the plain tissue reads (n, jaw, row, column) at each sample's closing, in N; with noise of its own if read."""
+        """What the plain tissue reads (n, jaw, row, column) at each sample's closing, in N; read with noise like the samples."""
         closings = np.array([truth.closing for truth in self.truths])
         if self.source == "taxel_force":
             return self.plain.at(closings)

@@ -31,7 +31,7 @@ NOISES = (0.5, 4.0)
 CONTRASTS = (0.7, 5.0)
 """Range of the contrast of the fast model: from a lump twice as stiff to large rigid ones, which act several times more."""
 HELD_OUT = 0.2
-"""Part of the grasps that the uncertainty is found from."""
+"""Share of the grasps from which the uncertainty is estimated."""
 LEAST = 20
 """Grasps with a lump that training needs."""
 FLOOR = 1e-6

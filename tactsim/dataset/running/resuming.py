@@ -19,7 +19,7 @@ from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
 from tactsim.dataset.store.opening import Store, consolidated_metadata
 from tactsim.dataset.store.verifying import damaged_samples, mark_pending
-from tactsim.dataset.store.writing import consolidate, create, resize, restore, tell
+from tactsim.dataset.store.writing import consolidate, create, resize, restore, set_attributes
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
 from tactsim.storage.building import refuse_taken, remove_leftover
@@ -67,8 +67,8 @@ def _created(sweep: Sweep, layout: Layout, place: Path) -> Store:
     try:
         refuse_taken(place)
     except StorageError:
-        told = f"{one_line(place)} exists and is not a data set of tactsim; choose another with --out"
-        raise StorageError(told) from None
+        taken = f"{one_line(place)} exists and is not a data set of tactsim; choose another with --out"
+        raise StorageError(taken) from None
     return create(place, layout.variables, sweep.samples, attributes_of(sweep, layout))
 
 
@@ -86,7 +86,7 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
     run.recover()
     _mark_damaged(run)
     if code_identity() != store.attributes["codes"][-1]:
-        tell(store, codes=[*store.attributes["codes"], code_identity()])
+        set_attributes(store, codes=[*store.attributes["codes"], code_identity()])
         run.code += 1
     return run
 
@@ -107,8 +107,8 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
     if present is None:
         raise StorageError(f"{one_line(store.path)} has no array left; compute it anew with another --out, or bring back a copy")
     if sweep.samples < present.shape[0]:
-        told = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
-        raise StorageError(f"the data set {one_line(store.path)} {told}")
+        fewer = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
+        raise StorageError(f"the data set {one_line(store.path)} {fewer}")
     remove_torn(store.path, store.described)
     restored = restore(store, layout.variables)
     lengths = {array.shape[0] for array in store.described.values()}
@@ -116,7 +116,7 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
         store = Store.open(store.path, writing=True)
         resize(store, sweep.samples, layout.variables)
     if store.attributes["sweep"] != sweep.text:
-        tell(store, sweep=sweep.text)
+        set_attributes(store, sweep=sweep.text)
     elif restored or lengths != {sweep.samples} or not _is_gathered(store):
         consolidate(store.path)
     return Store.open(store.path, writing=True)
@@ -133,7 +133,7 @@ def _refuse_other_arrays(store: Store, layout: Layout) -> None:
 
 def _is_gathered(store: Store) -> bool:
     gathered = consolidated_metadata(store.path)
-    return all(gathered.get(name) == array.told for name, array in store.described.items())
+    return all(gathered.get(name) == array.metadata for name, array in store.described.items())
 
 
 def _mark_damaged(run: SweepRun) -> None:

@@ -62,19 +62,19 @@ class Tally:
         """One line of progress."""
         now = self.before + self.done + self.failed
         left = (self.samples - now) / self.rate if self.done + self.failed else None
-        told = f"{now} of {self.samples} samples, {self.failed} failed, {_per_time(self.rate)}"
-        return told if left is None else f"{told}, {_duration(left)} left"
+        so_far = f"{now} of {self.samples} samples, {self.failed} failed, {_per_time(self.rate)}"
+        return so_far if left is None else f"{so_far}, {_duration(left)} left"
 
     def summary(self) -> list[str]:
         """Lines at the end: counts, rate, and failures by reason."""
         seconds = time.monotonic() - self.begin
-        told = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
+        lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
-            told.append(f"{self.before} samples were there before")
+            lines.append(f"{self.before} samples were there before")
         if self.damaged:
-            told.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
-            told += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
-        return told + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]
+            lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
+            lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
+        return lines + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]
 
 
 def _per_time(rate: float) -> str:

@@ -53,8 +53,8 @@ def drawn_specimen(sweep: Sweep, specimen: int) -> list[Drawn]:
             return [_accepted(sweep, specimen, number, attempt) for number in numbers]
         except InputError as error:
             refusal = str(error).replace("\n", "; ")
-    told = f"no case was accepted in {most + 1} draws, the last because: {refusal}"
-    return [Drawn(number, specimen, None, {}, most, told) for number in numbers]
+    reason = f"no case was accepted in {most + 1} draws, the last because: {refusal}"
+    return [Drawn(number, specimen, None, {}, most, reason) for number in numbers]
 
 
 def fault_of(sweep: Sweep) -> str:

@@ -30,11 +30,11 @@ def sweep_json_schema() -> Fragment:
     definitions = {name: _inner(definition, f"#/$defs/{name}") for name, definition in case["$defs"].items()}
     definitions |= {VARYING[kind]: _distributions(kind, item) for kind, item in _items().items()}
     definitions |= {f"{PREFIX}{name}": definition for name, definition in settings.pop("$defs", {}).items()}
-    told = {name: value for name, value in case["properties"].items() if name not in ("schema", "title")}
+    sections = {name: value for name, value in case["properties"].items() if name not in ("schema", "title")}
     properties = {
         "schema": case["properties"]["schema"] | {"const": SCHEMA, "description": "Version of the sweep format."},
         "title": case["properties"]["title"],
-        **{name: _inner(value, f"#/properties/{name}") for name, value in told.items()},
+        **{name: _inner(value, f"#/properties/{name}") for name, value in sections.items()},
         SECTION: settings,
     }
     whole = case | {
@@ -55,14 +55,14 @@ def _distributions(kind: str, item: Fragment) -> Fragment:
     pair = {"type": "array", "items": item, "minItems": 2, "maxItems": 2}
     spread = {"type": "array", "items": [item, item, {"type": "integer", "minimum": 2}], "minItems": 3, "maxItems": 3}
     listed = _mapping("values", {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_OPTIONS}, weights=_WEIGHTS)
-    told = [listed, _mapping("range", spread | {"description": "First, last, number of values."})]
+    members = [listed, _mapping("range", spread | {"description": "First, last, number of values."})]
     if kind == "integer":
-        told.append(_mapping("integer", pair | {"description": "First and last whole number."}))
+        members.append(_mapping("integer", pair | {"description": "First and last whole number."}))
     else:
-        told += [_mapping(name, pair | {"description": "Least and largest."}) for name in ("uniform", "log_uniform")]
-        told.append(_mapping("normal", pair | {"description": "Mean and standard deviation."}, within=pair))
-    told.append(_choice({"anyOf": [item, {"$ref": f"#/$defs/{VARYING[kind]}"}]}))
-    return {"description": f"A distribution of a {kind}.", "anyOf": told}
+        members += [_mapping(name, pair | {"description": "Least and largest."}) for name in ("uniform", "log_uniform")]
+        members.append(_mapping("normal", pair | {"description": "Mean and standard deviation."}, within=pair))
+    members.append(_choice({"anyOf": [item, {"$ref": f"#/$defs/{VARYING[kind]}"}]}))
+    return {"description": f"A distribution of a {kind}.", "anyOf": members}
 
 
 _WEIGHTS: Fragment = {"type": "array", "items": {"type": "number", "minimum": 0}}
@@ -79,20 +79,20 @@ def _inner(fragment: Any, pointer: str) -> Any:
         return [_inner(item, f"{pointer}/{number}") for number, item in enumerate(fragment)]
     if not isinstance(fragment, dict):
         return fragment
-    told = dict(fragment)
+    varying = dict(fragment)
     for key, value in fragment.items():
         if key == "properties":
-            told[key] = {name: _place(item, f"{pointer}/{key}/{_escaped(name)}") for name, item in value.items()}
+            varying[key] = {name: _place(item, f"{pointer}/{key}/{_escaped(name)}") for name, item in value.items()}
         elif key in ("items", "additionalProperties", "patternProperties") and not isinstance(value, bool):
             several = isinstance(value, list)
-            told[key] = (
+            varying[key] = (
                 [_place(item, f"{pointer}/{key}/{n}") for n, item in enumerate(value)]
                 if several
                 else _place(value, f"{pointer}/{key}")
             )
         elif key in ("anyOf", "oneOf", "allOf"):
-            told[key] = _inner(value, f"{pointer}/{key}")
-    return told
+            varying[key] = _inner(value, f"{pointer}/{key}")
+    return varying
 
 
 def _place(value: Fragment, pointer: str) -> Fragment:

@@ -48,8 +48,8 @@ def layout_of(sweep: Sweep) -> Layout:
     """
     known = experiment_kinds()
     if sweep.kind not in known:
-        told = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
-        raise sweep.error(("experiment", "kind"), told)
+        unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
+        raise sweep.error(("experiment", "kind"), unknown)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
     index, own = index_variables(sweep.settings.splits.names), recorder.variables(first_case(sweep).experiment)
     labels = [variable for variable in own if variable.role == "label"]
@@ -84,13 +84,13 @@ def first_case(sweep: Sweep) -> Case:
 
 def varied_variables(sweep: Sweep) -> list[Variable]:
     """One variable for each place: its number in SI, or the index of the option."""
-    told = []
+    variables = []
     for place in sweep.places:
         listed = place.distribution
         by_index = isinstance(listed, Listed) and listed.numbers is None
         words = f"{place.key}{' (number of the option)' if by_index else ''}"
-        told.append(Variable(place.variable, place.distribution.unit or "1", words, "varied"))
-    return told
+        variables.append(Variable(place.variable, place.distribution.unit or "1", words, "varied"))
+    return variables
 
 
 def most_inclusions(document: Any) -> int:

@@ -120,8 +120,8 @@ def stored_layout(store: Store) -> tuple[Sweep, Layout]:
     try:
         return sweep, layout_of(sweep)
     except Unreadable as error:
-        told = f"{error}; files that a sweep names are looked for beside the store and in the working folder: run tactsim there"
-        raise StorageError(f"{one_line(store.path)}: {told}") from None
+        advice = f"{error}; files that a sweep names are looked for beside the store and in the working folder: run tactsim there"
+        raise StorageError(f"{one_line(store.path)}: {advice}") from None
     except UNUSABLE as error:
         raise _unusable(store, error) from None
 

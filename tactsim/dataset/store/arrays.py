@@ -34,7 +34,7 @@ LONGEST_TEXT = 2**14
 MOST_NESTED = 64
 """Levels of lists and mappings in a description; a sweep file has some ten."""
 TYPES = ("float64", "float32", "int64", "int32", "int16", "int8", "uint64", "uint32", "uint16", "uint8", "bool", "string")
-TOLD = ("units", "long_name", "role")
+IN_WORDS = ("units", "long_name", "role")
 """Attributes in words that every variable has."""
 BYTES, TEXT, PACKED = "bytes", "vlen-utf8", "zstd"
 """Codecs of numbers and of text, and the compression of both."""
@@ -50,7 +50,7 @@ WORDS = ("long_name", "flag_meanings")
 
 @dataclass(frozen=True)
 class ArrayDescription:
-    """One array: the values of its ``zarr.json`` that are relied on, and all of it as ``told``."""
+    """One array: the values of its ``zarr.json`` that are relied on, and all of it as ``metadata``."""
 
     name: str
     shape: tuple[int, ...]
@@ -58,12 +58,12 @@ class ArrayDescription:
     dtype: str
     """As ``Variable.dtype`` calls it."""
     dimensions: tuple[str, ...]
-    told: dict[str, Any]
+    metadata: dict[str, Any]
 
     @property
     def attributes(self) -> dict[str, Any]:
         """Units, meaning and role, and the meanings of whole numbers."""
-        return dict(self.told["attributes"])
+        return dict(self.metadata["attributes"])
 
     @property
     def chunk_bytes(self) -> int:
@@ -122,14 +122,14 @@ def described(folder: Path, name: str) -> ArrayDescription:
         If its description is missing, cannot be read, or is none that a sweep writes.
     """
     refuse_link(folder / name)
-    told = read_json(folder / name / META)
-    fault = next(_faults(told), "")
+    metadata = read_json(folder / name / META)
+    fault = next(_faults(metadata), "")
     if fault:
         raise StorageError(f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it")
-    kind = str(told["data_type"])
-    chunks = tuple(told["chunk_grid"]["configuration"]["chunk_shape"])
+    kind = str(metadata["data_type"])
+    chunks = tuple(metadata["chunk_grid"]["configuration"]["chunk_shape"])
     dtype = "str" if kind == "string" else kind
-    return ArrayDescription(name, tuple(told["shape"]), chunks, dtype, tuple(told["dimension_names"]), told)
+    return ArrayDescription(name, tuple(metadata["shape"]), chunks, dtype, tuple(metadata["dimension_names"]), metadata)
 
 
 def index_fault(array: ArrayDescription, samples: int, per_chunk: int) -> str:
@@ -146,38 +146,38 @@ def index_fault(array: ArrayDescription, samples: int, per_chunk: int) -> str:
     return ""
 
 
-def _faults(told: Any) -> Iterator[str]:
+def _faults(metadata: Any) -> Iterator[str]:
     """What no sweep writes."""
-    if not isinstance(told, dict) or told.get("node_type") != "array" or told.get("zarr_format") != 3:
+    if not isinstance(metadata, dict) or metadata.get("node_type") != "array" or metadata.get("zarr_format") != 3:
         yield "it is no array of Zarr format 3"
         return
-    kind, shape = told.get("data_type"), told.get("shape")
+    kind, shape = metadata.get("data_type"), metadata.get("shape")
     if kind not in TYPES:
         yield f"data_type is {one_line(kind, 80)!r}; allowed: {', '.join(TYPES)}"
     if not _lengths(shape, 0) or not shape or shape[0] > MOST_SAMPLES:
         yield f"shape is {one_line(shape, 80)}; allowed: up to {MOST_SAMPLES} samples"
         return
-    yield from _chunk_faults(told, kind, shape)
-    listed = told.get("codecs")
+    yield from _chunk_faults(metadata, kind, shape)
+    listed = metadata.get("codecs")
     codecs = [codec for codec in listed if isinstance(codec, dict)] if isinstance(listed, list) else []
     names: Any = [codec.get("name") for codec in codecs]
-    if names != [TEXT if kind == "string" else BYTES, PACKED] or told.get("storage_transformers"):
+    if names != [TEXT if kind == "string" else BYTES, PACKED] or metadata.get("storage_transformers"):
         yield f"codecs are {one_line(names, 80)}; allowed: {TEXT if kind == 'string' else BYTES}, {PACKED}"
     elif kind in TYPES and kind != "string" and codecs[0] not in _plain_codecs(str(kind)):
         yield f"the codec {BYTES} is {one_line(codecs[0], 80)}; allowed: little endian"
-    names = told.get("dimension_names")
+    names = metadata.get("dimension_names")
     if not isinstance(names, list) or len(names) != len(shape) or not all(isinstance(name, str) for name in names):
         yield f"dimension_names is {one_line(names, 80)}; expected: {len(shape)} names"
-    attributes = told.get("attributes")
-    for key in TOLD:
+    attributes = metadata.get("attributes")
+    for key in IN_WORDS:
         if not isinstance(attributes, dict) or not isinstance(attributes.get(key), str):
             yield f"the attribute {key} is missing or no text"
             return
 
 
-def _chunk_faults(told: dict[str, Any], kind: Any, shape: list[int]) -> Iterator[str]:
-    grid: Any = told.get("chunk_grid")
-    keys: Any = told.get("chunk_key_encoding")
+def _chunk_faults(metadata: dict[str, Any], kind: Any, shape: list[int]) -> Iterator[str]:
+    grid: Any = metadata.get("chunk_grid")
+    keys: Any = metadata.get("chunk_key_encoding")
     chunks: Any = grid.get("configuration", {}).get("chunk_shape") if _plain(grid, "regular") else None
     if not _lengths(chunks, 1) or len(chunks) != len(shape) or chunks[0] > CHUNK_SAMPLES:
         yield f"chunk_shape is {one_line(chunks, 80)}; expected: 1 to {CHUNK_SAMPLES} samples and {len(shape)} lengths"
@@ -185,7 +185,7 @@ def _chunk_faults(told: dict[str, Any], kind: Any, shape: list[int]) -> Iterator
         yield f"chunk_shape is {chunks} of {shape}; expected: whole samples of at most {LARGEST_CHUNK} bytes"
     if not _plain(keys, "default") or keys.get("configuration", {"separator": "/"}) != {"separator": "/"}:
         yield f"chunk_key_encoding is {one_line(keys, 80)}; expected: default"
-    fill = told.get("fill_value")
+    fill = metadata.get("fill_value")
     if not isinstance(fill, str if kind == "string" else int | float | str) or isinstance(fill, bool) is not (kind == "bool"):
         yield f"fill_value is {one_line(fill, 80)}"
     elif fill not in ("NaN", "", 0, False):
@@ -244,7 +244,7 @@ def differences(array: ArrayDescription, variable: Variable) -> Iterator[tuple[s
         "dtype": array.dtype,
         "shape": [*array.shape[1:]],
         "dimension_names": [*array.dimensions],
-        "fill_value": array.told["fill_value"],
+        "fill_value": array.metadata["fill_value"],
         **array.attributes,
     }
     for key in sorted(expected.keys() | found.keys()):

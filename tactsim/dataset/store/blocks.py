@@ -1,4 +1,4 @@
-"""Samples on their way: arrays by name for a few samples, as bytes without pickle, with a checksum of each, and their journal."""
+"""Samples between worker and store: arrays by name as bytes without pickle, a checksum of each sample, and their journal."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ CARD, FIGURES = "README.md", "figures"
 DEEPEST = 16
 """Levels of folders; an array has one for each of its dimensions and two more."""
 EARLIER = re.compile(rf"{FIGURES}/[a-z]+\.png")
-"""Figures in a store that is older than the list of own files."""
+"""Figures in a store that is older than the list of tactsim's files."""
 TORN_CHUNK = re.compile(r"(zarr|\d+)\.[0-9a-f]{32}\.partial")
 """A file that Zarr had not renamed yet."""
 TORN_FILE = re.compile(r"\.(README\.md|\.tactsim\.json|[a-z_]+\.png)\.\d+\.partial")
@@ -82,7 +82,7 @@ def remove_torn(folder: Path, arrays: Iterable[str]) -> None:
 
 
 def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: Iterable[str]) -> list[str]:
-    """Files that tactsim does not write there, sorted; ``own`` are the names of all its arrays."""
+    """Files that tactsim does not write there, sorted; ``own`` are the names of all arrays of the store."""
     known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
     chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
     names, listed = set(own), os.path.lexists(folder / OWN_LIST)

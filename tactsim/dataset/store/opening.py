@@ -89,7 +89,7 @@ class Store:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What the store says of itself."""
+        """The attributes of the store."""
         return dict(self.group.attrs)
 
     def array(self, name: str) -> zarr.Array[Any]:
@@ -171,10 +171,10 @@ def read_attributes(folder: Path) -> dict[str, Any]:
     StorageError
         If it is none, is damaged, or is of another version.
     """
-    told = _group(folder)
-    attributes = told.get("attributes", {})
+    metadata = _group(folder)
+    attributes = metadata.get("attributes", {})
     schema = attributes.get("schema") if isinstance(attributes, dict) else None
-    if schema is None or told.get("node_type") != "group":
+    if schema is None or metadata.get("node_type") != "group":
         raise StorageError(
             f"{one_line(folder)} is not a data set of tactsim: it is Zarr of another origin, without the schema {STORE_SCHEMA!r}"
         )
@@ -233,12 +233,12 @@ def _group(folder: Path) -> dict[str, Any]:
         older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
         raise StorageError(f"{one_line(folder)} is not a data set of tactsim: it holds no {META}{older}")
     try:
-        told = read_json(folder / META)
+        metadata = read_json(folder / META)
     except StorageError as error:
         raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: {error}") from None
-    if not isinstance(told, dict):
+    if not isinstance(metadata, dict):
         raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: it is no mapping; bring back a copy")
-    return told
+    return metadata
 
 
 def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDescription], dict[str, str]]:
@@ -264,9 +264,9 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
 
 
 def consolidated_metadata(folder: Path) -> dict[str, Any]:
-    """Name -> description of the arrays as the store's own ``zarr.json`` gathers them."""
-    told = _group(folder).get("consolidated_metadata")
-    metadata = told.get("metadata") if isinstance(told, dict) else None
+    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them."""
+    gathered = _group(folder).get("consolidated_metadata")
+    metadata = gathered.get("metadata") if isinstance(gathered, dict) else None
     return {name: one for name, one in metadata.items() if NAME.fullmatch(name)} if isinstance(metadata, dict) else {}
 
 

@@ -1,4 +1,4 @@
-"""Samples whose content is gone or is not what was written: found by their files and checksums, marked to be computed again."""
+"""Samples whose content is gone or not what was written: detected by files and checksums, marked to be computed again."""
 
 from __future__ import annotations
 
@@ -151,8 +151,8 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
         numbers = np.unique(np.concatenate(list(holed.values())))
         more = f" and {len(holed) - SHOWN} more" if len(holed) > SHOWN else ""
         raise StorageError(
-            f"{one_line(store.path)} has holes: {', '.join(list(holed)[:SHOWN])}{more} of {told(numbers)} are gone; bring back a "
-            "copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
+            f"{one_line(store.path)} has holes: {', '.join(list(holed)[:SHOWN])}{more} of {samples_in_words(numbers)} "
+            "are gone; bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
         )
 
 
@@ -173,12 +173,12 @@ def refuse_changed(store: Store, samples: Array) -> None:
         changed += read.changed.tolist()
     if changed:
         raise StorageError(
-            f"{one_line(store.path)} is damaged: the content of {told(np.array(changed))} is not what was written; bring back a "
-            "copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
+            f"{one_line(store.path)} is damaged: the content of {samples_in_words(np.array(changed))} is not what was "
+            "written; bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
         )
 
 
-def told(numbers: Array) -> str:
+def samples_in_words(numbers: Array) -> str:
     """Samples in words: how many, and the first of them."""
     more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
     return f"{len(numbers)} samples ({', '.join(map(str, numbers[:SHOWN].tolist()))}{more})"
@@ -229,5 +229,5 @@ def _was_left_out(store: Store, name: str, sample: int) -> bool:
     try:
         values = {variable.name: store.read(variable.name, rows)[0] for variable in variables}
     except StorageError:
-        return True  # the chunk that cannot be read is told by whoever reads it
+        return True  # the chunk that cannot be read is named by whoever reads it
     return bool(store.missing) or bool((checksum(values, variables) == values["checksum"]).all())

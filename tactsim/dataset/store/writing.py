@@ -37,17 +37,23 @@ def create(path: Path, variables: Sequence[Variable], samples: int, attributes: 
     import zarr
 
     per_chunk = chunk_samples(variables, samples)
-    told = {**attributes, "schema": STORE_SCHEMA, ARRAYS: [variable.name for variable in variables]}
+    described = {**attributes, "schema": STORE_SCHEMA, ARRAYS: [variable.name for variable in variables]}
     with built_beside(path) as place, naming(path):
-        group = zarr.open_group(place, mode="w-", zarr_format=3, attributes=told)
+        group = zarr.open_group(place, mode="w-", zarr_format=3, attributes=described)
         for variable in variables:
             _add(group, variable, samples, per_chunk)
         consolidate(place)
     return Store.open(path, writing=True)
 
 
-def tell(store: Store, **attributes: Any) -> None:
-    """Changes attributes."""
+def set_attributes(store: Store, **attributes: Any) -> None:
+    """Changes attributes of a store, in its group and in the gathered metadata.
+
+    Raises
+    ------
+    StorageError
+        If they cannot be written.
+    """
     with naming(store.path):
         store.group.attrs.update(attributes)
     consolidate(store.path)

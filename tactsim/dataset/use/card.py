@@ -18,7 +18,7 @@ from tactsim.outside.text import one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 TAGS = "tags: [tactile, simulation, tactsim]"
-"""A line of the head by which a card is known that was written before there were lists of own files."""
+"""A line of the head by which a card is known that was written before tactsim listed its files."""
 SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`<[]"} | {"|": "/"})
 """Characters that begin code, tags and links, escaped; a bar would end the cell of a table."""
 GENERAL_LIMITS = (
@@ -28,7 +28,7 @@ GENERAL_LIMITS = (
 )
 Array = np.ndarray
 MOST_REASONS = 50
-"""Reasons of failures that are told; the rest are counted."""
+"""Reasons of failures that are listed; the rest are counted."""
 
 
 def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
@@ -43,7 +43,7 @@ def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
 
 
 def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
-    """Counts card and figures as own that a tactsim wrote which kept no list of them."""
+    """Lists card and figures that an earlier tactsim wrote, which kept no list of its files."""
     card, own = path / CARD, OwnFiles(path)
     if (path / OWN_LIST).exists() or not card.is_file() or card.is_symlink():
         return
@@ -61,9 +61,9 @@ def plain(text: object) -> str:
 
 def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
     """The card in Markdown."""
-    told = store.attributes
-    title = plain(told["title"] or f"Data set {told['sweep_id']}")
-    head = ["---", f"license: {plain(told['license']).lower()}", TAGS, "---", f"# {title}", ""]
+    attributes = store.attributes
+    title = plain(attributes["title"] or f"Data set {attributes['sweep_id']}")
+    head = ["---", f"license: {plain(attributes['license']).lower()}", TAGS, "---", f"# {title}", ""]
     parts = [
         layout.recorder.describe(),
         "",
@@ -71,17 +71,17 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
         *_counts(store, sweep),
         *_figures(store.path),
         *_use(layout),
-        *_limits(told["limits"]),
+        *_limits(attributes["limits"]),
     ]
     tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
     tables += _table("Variables", ("variable", "dimensions beside sample", "unit", "meaning"), variable_rows(store))
-    case = ["## The sweep", "```json", json.dumps(json.loads(told["sweep"]), indent=1), "```", ""]
+    case = ["## The sweep", "```json", json.dumps(json.loads(attributes["sweep"]), indent=1), "```", ""]
     return "\n".join([*head, *parts, *tables, *case])
 
 
 def _how(store: Store, sweep: Sweep) -> list[str]:
-    told, settings = store.attributes, sweep.settings
-    versions = plain(", ".join(f"{name} {number}" for name, number in told["versions"].items()))
+    attributes, settings = store.attributes, sweep.settings
+    versions = plain(", ".join(f"{name} {number}" for name, number in attributes["versions"].items()))
     shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
     hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
     specimens, draws = redrawn(store)
@@ -90,7 +90,7 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
         f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
         f"Sample k depends on the seed and on k only{hypercube}.",
         f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
-        f"Computed by tactsim {plain(', '.join(told['codes']))}; {versions}.",
+        f"Computed by tactsim {plain(', '.join(attributes['codes']))}; {versions}.",
         "",
     ]
 
@@ -99,10 +99,10 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     rows = [(name, str(count)) for name, count in status_counts(store).items()]
     counts = split_counts(store)
     splits = [(name, str(count)) for name, count in counts.items()]
-    told = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
-    told += [*empty_split_lines(empty_splits(counts, sweep.settings.splits)), ""]
+    lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
+    lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits)), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
-    return told + (_table("Failures", ("reason", "samples"), failed) if failed else [])
+    return lines + (_table("Failures", ("reason", "samples"), failed) if failed else [])
 
 
 def empty_split_lines(names: Sequence[str]) -> list[str]:
@@ -171,9 +171,9 @@ def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -
 def description(path: str | Path) -> str:
     """What ``tactsim data info`` prints."""
     store = Store.open(path)
-    told = store.attributes
-    lines = [one_line(told["title"] or path), f"  {one_line(told['description'])}"]
-    lines += [f"  licence {one_line(told['license'], 80)}, sweep {one_line(told['sweep_id'], 80)}"]
+    attributes = store.attributes
+    lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]
+    lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
     lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {row[0]:<36} {row[1]:<28} {row[2]:<6} {row[3]}" for row in variable_rows(store)]

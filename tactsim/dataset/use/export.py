@@ -94,7 +94,7 @@ def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[s
 
 
 def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: Path, target: Path) -> None:
-    """Writes HDF5 in a process of its own: on a full disk the library ends the process that it is in."""
+    """Writes HDF5 in a child process: on a full disk the library ends the process that it runs in."""
     if importlib.util.find_spec("h5py") is None:
         raise InputError("HDF5 needs h5py; install it with: pip install 'tactsim[export]'")
     names = None if split is None else [split] if isinstance(split, str) else list(split)
@@ -109,13 +109,13 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
         )
 
 
-def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, *, failed: list[dict[str, Any]], card: str) -> None:
+def _hdf5(data: xarray.Dataset, attributes: dict[str, Any], target: Path, *, failed: list[dict[str, Any]], card: str) -> None:
     """One data set per variable, the first dimension the sample; dimensions and units as attributes. What failed and the card are
     data sets too: attributes would be too small for them."""
     import h5py
 
     with h5py.File(target, "w") as file:
-        file.attrs.update({name: _plain(value) for name, value in told.items()})
+        file.attrs.update({name: _plain(value) for name, value in attributes.items()})
         file["card"] = card
         file["failed/sample"] = np.array([sample["sample"] for sample in failed], dtype=np.int64)
         file["failed/reason"] = np.array([sample["reason"].encode() for sample in failed], dtype=h5py.string_dtype())
@@ -128,7 +128,7 @@ def _hdf5(data: xarray.Dataset, told: dict[str, Any], target: Path, *, failed: l
             file[str(name)].attrs["dimensions"] = ",".join(map(str, values.dims))
 
 
-def _shards(data: xarray.Dataset, told: dict[str, Any], target: Path) -> None:
+def _shards(data: xarray.Dataset, attributes: dict[str, Any], target: Path) -> None:
     """The index has one row per sample with every variable that is one number or text, and the shard of its arrays."""
     try:
         import pyarrow
@@ -145,7 +145,7 @@ def _shards(data: xarray.Dataset, told: dict[str, Any], target: Path) -> None:
         arrays = {str(name): values.values for name, values in part.data_vars.items() if values.ndim > 1}
         np.savez(target / f"shard_{number:05d}.npz", allow_pickle=False, sample=part["sample"].values, **arrays)
     described = {str(name): {"dimensions": list(v.dims), **v.attrs} for name, v in data.data_vars.items()}
-    text = json.dumps({"attributes": told, "variables": described}, indent=1, default=_listed)
+    text = json.dumps({"attributes": attributes, "variables": described}, indent=1, default=_listed)
     (target / META).write_text(text + "\n", encoding="utf-8")
 
 
@@ -178,9 +178,9 @@ def _listed(value: Any) -> Any:
 
 
 def main(store: str, target: str, splits: str) -> int:
-    """Writes HDF5; what the process of its own does."""
-    names, told = json.loads(splits), Store.open(store).attributes
-    _hdf5(load(store, split=names), told, Path(target), failed=_failed(store, names), card=_card(Path(store)))
+    """Writes HDF5; what the child process does."""
+    names, attributes = json.loads(splits), Store.open(store).attributes
+    _hdf5(load(store, split=names), attributes, Path(target), failed=_failed(store, names), card=_card(Path(store)))
     return 0
 
 

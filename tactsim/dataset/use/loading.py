@@ -95,8 +95,8 @@ def dataset_of(store: Store) -> xarray.Dataset:
 
     lengths = {name: array.shape[0] for name, array in store.described.items()}
     if len(set(lengths.values())) > 1:
-        told = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
-        raise StorageError(f"{store.path} cannot be opened: {told}: a run was killed while it made room; go on with --resume")
+        reason = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
+        raise StorageError(f"{store.path} cannot be opened: {reason}: a run was killed while it made room; go on with --resume")
     with reading(store.path):
         return xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
 

@@ -24,7 +24,7 @@ MOST_RANGED = 64
 LONGEST_SHOWN = 40
 """Characters of an unknown name that a message shows."""
 SHORTEST, LONGEST = 4.0, 20.0
-"""Limits in s of the time that a recording takes to play; between them it plays at its own speed."""
+"""Limits in s of the time that a recording takes to play; between them it plays in real time."""
 
 
 class Selection:

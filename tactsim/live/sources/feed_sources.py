@@ -153,7 +153,7 @@ async def _follow_file(feed: Feed, path: Path, read: Callable[[int], bytes], des
 
 
 def _read_input(feed: Feed, loop: asyncio.AbstractEventLoop) -> None:
-    """Reads standard input in a thread of its own, which may wait for ever and ends with the process."""
+    """Reads standard input in a separate thread, which may wait for ever and ends with the process."""
     if sys.stdin is None:  # the caller closed it before the start
         feed.tell("standard input is closed")
         return

@@ -30,7 +30,7 @@ from tactsim.dataset.sampling.drawing import drawn_specimen, noise_seed, used_se
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
-from tactsim.dataset.store.writing import chunk_samples, tell
+from tactsim.dataset.store.writing import chunk_samples, set_attributes
 from tactsim.dataset.use.card import redrawn, split_counts
 from tactsim.errors import CaseError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
@@ -183,7 +183,7 @@ def test_what_is_not_a_data_set_is_left_alone(tmp_path: Path, thing: str) -> Non
 
 def test_a_store_of_another_schema_is_refused(whole: Path, tmp_path: Path) -> None:
     place = Path(shutil.copytree(whole, tmp_path / "s.zarr"))
-    tell(Store.open(place, writing=True), schema="tactsim/dataset/2")
+    set_attributes(Store.open(place, writing=True), schema="tactsim/dataset/2")
     with pytest.raises(StorageError, match=r"schema 'tactsim/dataset/2'; this tactsim reads 'tactsim/dataset/1'"):
         Store.open(place)
 
