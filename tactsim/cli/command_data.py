@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.checking.check import check
+    from tactsim.dataset.checking import check
 
     checked = check(arguments.store)
     for note in checked.notes[:MOST_NOTES]:
@@ -170,12 +170,13 @@ def _confusion(arguments: argparse.Namespace) -> int:
 
 
 def _drawn(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> dict[str, bytes]:
-    """File name -> PNG; a figure that cannot be drawn never costs the numbers."""
-    try:
-        return {name: draw() for name, draw in drawings().items()}
-    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-        return {}
+    """File name -> PNG bytes; a note for what could not be drawn."""
+    from tactsim.cli.rendering import drawn_figures
+
+    drawn, warnings = drawn_figures(drawings)
+    for warning in warnings:
+        console.note(f"warning: {warning}")
+    return drawn
 
 
 def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping[str, bytes]) -> None:

@@ -18,7 +18,7 @@ from sweeps import TEXT, Inline, assert_same, run_sweep, small_store, sweep_file
 
 from tactsim.cli import command_sweep, main
 from tactsim.dataset import TorchSamples, load
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
@@ -357,7 +357,7 @@ def test_a_bomb_is_refused_before_it_is_unpacked(store: Path) -> None:
 
 def test_few_files_may_be_open_at_once(kept: Path) -> None:
     program = (
-        "import resource, sys; from tactsim.cli import main; import zarr, xarray, tactsim.dataset.checking.check; "
+        "import resource, sys; from tactsim.cli import main; import zarr, xarray, tactsim.dataset.checking; "
         "resource.setrlimit(resource.RLIMIT_NOFILE, (int(sys.argv[2]),) * 2); sys.exit(main(['data', 'check', sys.argv[1]]))"
     )
     for most in (5, 8, 12):

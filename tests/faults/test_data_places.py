@@ -55,8 +55,8 @@ def test_an_estimator_replaces_estimators_only(what: str, tmp_path: Path, capsys
 def test_findings_without_end_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tactsim.dataset.checking import check as checking
-    from tactsim.dataset.checking.samples import Finding
+    from tactsim.dataset import checking
+    from tactsim.dataset.checking import Finding
 
     many = checking.Checked({}, tuple(Finding("kind", (), str(number)) for number in range(1000)))
     monkeypatch.setattr(checking, "check", lambda store: many)

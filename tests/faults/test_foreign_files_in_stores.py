@@ -11,7 +11,7 @@ from pretence import PNG
 from sweeps import Inline, sweep_file
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.storage.own_files import OWN_LIST
 

@@ -17,7 +17,7 @@ from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
 
 from tactsim.cli import command_sweep, main
 from tactsim.dataset import load
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.running import computing
 from tactsim.dataset.running import run as running

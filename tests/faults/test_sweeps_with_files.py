@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.sampling.sweep import load_sweep

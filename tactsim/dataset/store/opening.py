@@ -72,7 +72,7 @@ class Store:
         """
         import zarr
 
-        from tactsim.dataset.store.guarded_files import GuardedFiles
+        from tactsim.dataset.store.files import GuardedFiles
 
         folder = _folder(path)
         _refuse_few_descriptors(folder)

@@ -13,7 +13,7 @@ from sweeps import small_store
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.errors import StorageError
 
 

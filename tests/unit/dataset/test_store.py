@@ -21,7 +21,7 @@ import xarray
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
 
 from tactsim import code_identity
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.running import resuming
 from tactsim.dataset.running import run as running
 from tactsim.dataset.running.executors import LocalWorkers

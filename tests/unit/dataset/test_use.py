@@ -21,7 +21,7 @@ from sweeps import small_store, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
-from tactsim.dataset.checking.check import check
+from tactsim.dataset.checking import check
 from tactsim.dataset.running.run import Tally
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import sweep_of_text

@@ -1,1 +1,0 @@
-"""Whether a data set is what its sweep wrote."""
