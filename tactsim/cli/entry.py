@@ -42,6 +42,13 @@ class _Parser(argparse.ArgumentParser):
     """An argument parser whose refusals are errors like all others."""
 
     def error(self, message: str) -> NoReturn:
+        """Refuses the arguments.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
         raise InputError(f"{message}\nsee: {self.prog} --help")
 
 

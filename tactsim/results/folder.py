@@ -126,7 +126,9 @@ class OutputFolder:
                 self.replaced.rename(self.path)
             _refuse_foreign_names(self.replaced)
             if names_in(self.replaced) and not (self.replaced / MANIFEST).exists():
-                self.replaced.rename(self._place_for_earlier())
+                kept = self._place_for_earlier()
+                remove(kept)
+                self.replaced.rename(kept)
             _remove_own(self.replaced)
             self._bring_back_outdated()
             self._remove_unmarked()

@@ -111,7 +111,10 @@ def test_a_death_at_any_step_keeps_the_result_that_was_kept_before(tmp_path: Pat
             assert ids_beside(place) in ({"older", "old"}, {"old"}, {"old", "new"})
 
 
-def test_what_an_earlier_version_left_in_the_exchange_is_kept(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kept_before", [False, True])
+def test_what_an_earlier_version_left_in_the_exchange_is_kept(tmp_path: Path, kept_before: bool) -> None:
+    if kept_before:
+        write(tmp_path / "out.earlier", "older")
     write(tmp_path / ".out.replaced", "old")
     (tmp_path / ".out.replaced" / MANIFEST).unlink()
     write(tmp_path / "out", "new")

@@ -44,8 +44,7 @@ def load(
         If there is no such split or variable.
     StorageError
         If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
-        gone. What a chunk holds is looked at when it is read; a damaged one is refused then. If ``verified``, also if a sample is
-        not what was written.
+        gone; if ``verified``, also if a sample is not what was written. Else a damaged chunk is refused when it is read.
     """
     from tactsim.dataset.store.opening import Store
     from tactsim.dataset.store.verifying import refuse_changed, refuse_holes
@@ -54,9 +53,8 @@ def load(
     whole = dataset_of(place)
     names = [*map(str, whole.data_vars), *place.missing]
     keep = names if variables is None else list(map(str, variables))
-    for name in keep:
-        if name not in names:
-            raise UnknownName("variable", name, names)
+    if unknown := [name for name in keep if name not in names]:
+        raise UnknownName("variable", unknown[0], names)
     chosen = chosen_samples(whole, split, failed=failed)
     refuse_holes(place, dict.fromkeys((*(names if verified else keep), "split")), chosen)
     if verified:
