@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
-from tactsim.storage.files import beside, naming, sync, write_bytes
+from tactsim.storage.files import beside, naming, sync
 
 MARK = ".tactsim-partial"
 """Name of the file that says whose the folder is; what it holds is for people."""
@@ -44,7 +44,7 @@ def begin(place: Path) -> Path:
         place.parent.mkdir(parents=True, exist_ok=True)
         remove_leftover(place)
         waiting_folder(place).mkdir()
-        write_bytes(waiting_folder(place) / MARK, WORDS)
+        (waiting_folder(place) / MARK).write_bytes(WORDS)  # its name is enough, so that nothing waits for the disk
     return waiting_content(place)
 
 
