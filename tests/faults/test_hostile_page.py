@@ -20,9 +20,9 @@ from live_pages import description, frame_line, grasp_folder, line, made_up_stor
 from served_pages import FRAMES, OP_TEXT, fault_or_code, framed, received, requests, served
 
 from tactsim.errors import InputError
-from tactsim.live.commands import read_command
 from tactsim.live.defects import LOGGER, telling_defects
-from tactsim.live.feed import Feed
+from tactsim.live.session.commands import read_command
+from tactsim.live.sources.feed import Feed
 
 END = 2.0
 """Time in s in which Ctrl-C must end the page."""

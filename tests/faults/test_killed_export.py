@@ -16,9 +16,9 @@ from failing_disk import At, Killed, disk
 from sweeps import small_store
 
 from tactsim.cli import main
-from tactsim.dataset import export
-from tactsim.dataset.building import MARK
+from tactsim.dataset.use import export
 from tactsim.errors import StorageError
+from tactsim.storage.building import MARK
 
 STRIDE = 7
 """Steps between those that the quick run tries; a prime, so that it meets every kind of step."""

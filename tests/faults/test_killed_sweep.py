@@ -16,10 +16,13 @@ from pretence import PNG
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset import computing, load, running
+from tactsim.dataset import load
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running import computing
+from tactsim.dataset.running import run as running
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import TactsimError
 
 SAMPLES, MORE = 4, 6
@@ -163,7 +166,7 @@ def creations(folder: Path) -> Callable[[], None]:
     sweep = load_sweep(sweep_file(folder, PLAIN), samples=SAMPLES)
 
     def create() -> None:
-        with running.opened_run(sweep, folder / "s.zarr"):
+        with opened_run(sweep, folder / "s.zarr"):
             pass
 
     return create
@@ -184,7 +187,7 @@ def test_a_death_at_any_step_of_the_creation_leaves_a_whole_store_or_none(tmp_pa
         seen.add((tmp_path / "s.zarr").exists())
         if (tmp_path / "s.zarr").exists():
             assert load(tmp_path / "s.zarr").sizes["sample"] == 0
-            with running.opened_run(load_sweep(tmp_path / "sweep.yaml", samples=SAMPLES), tmp_path / "s.zarr", resume=True):
+            with opened_run(load_sweep(tmp_path / "sweep.yaml", samples=SAMPLES), tmp_path / "s.zarr", resume=True):
                 pass
         else:
             create()

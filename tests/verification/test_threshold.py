@@ -103,7 +103,7 @@ def check_halved_steps(case, whole):
 
 def test_halved_steps_change_little(icf):
     record, _ = icf
-    check_halved_steps("annulus_icf", record.threshold["reaction_force"] / record.experiment.body.area)
+    check_halved_steps("annulus_icf", record.event.values["reaction_force"] / record.setup.body.area)
 
 
 @pytest.mark.slow
