@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 import xarray
 
-from tactsim.dataset.drawing import drawn_specimen
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.results.result import Status

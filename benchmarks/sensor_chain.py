@@ -1,4 +1,4 @@
-"""Speed of the signal chain of two 3 x 3 matrices, from conductance to force; prints JSON."""
+"""Speed of the signal chain of two 3 x 3 matrices, from conductance to force, and of the switch probe; prints JSON."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ import time
 
 import numpy as np
 
+from tactsim.experiments.switch_probe.setup import ProbeTissue
+from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.relaxation import Relaxation
 from tactsim.sensors.calibration import THESIS_LINE
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import SignalChain
@@ -29,7 +33,14 @@ def measure() -> dict[str, float]:
         for name, run in (("record", _record), ("stream", _stream)):
             run(chain, conductance[: 10 * CHUNK])
             figures[f"{words}{name}_real_time_factor"] = SECONDS / min(_seconds(run, chain, conductance) for _ in range(REPEATS))
-    return figures
+    return figures | {"probe_samples_per_second": _probe_samples_per_second()}
+
+
+def _probe_samples_per_second() -> float:
+    """Samples of the switch probe per second: 10 s at 1 kHz on one tissue; 2000 are asked for."""
+    material = NeoHookean(c10=5e3, relaxation=Relaxation(fractions=(0.9,), times=(6.0,)))
+    probe = SwitchProbe(tissues=(ProbeTissue(name="tissue", material=material),), sides="followed")
+    return 10_000 / min(probe.run().timing["total"] for _ in range(3))
 
 
 def _record(chain: SignalChain, conductance: np.ndarray) -> None:

@@ -11,15 +11,19 @@ import numpy as np
 
 from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.force_factor import annulus_force
+from tactsim.analytic.histories import sampled
+from tactsim.analytic.response import response
 from tactsim.analytic.stepping import kelvin_step, rest_state, step_constants
 
 PAIRS = 1_000_000
 STEPS = 1_000_000
+SAMPLES = 100_000
+"""Of a recorded signal, whose response is to take less than a second."""
 REPEATS = 3
 
 
 def measure() -> dict[str, float]:
-    """Force-displacement pairs per second, and the time of one step of the atrial model from Python and compiled."""
+    """Force-displacement pairs per second, samples of a response, and the time of one step from Python and compiled."""
     generator = np.random.default_rng(1)
     depth, ratio = generator.uniform(0, 1e-3, PAIRS), generator.uniform(0, 0.99, PAIRS)
     annulus_force(depth[:10], 3e-3, ratio[:10], 1e3)
@@ -31,7 +35,12 @@ def measure() -> dict[str, float]:
     compiled = numba.njit(_looped)
     compiled(kelvin_step, constants, state, 1)
     looped = min(_seconds(lambda: compiled(kelvin_step, constants, state, STEPS)) for _ in range(REPEATS))
+    times = np.cumsum(generator.uniform(0.5e-3, 1.5e-3, SAMPLES))
+    history = sampled(times, generator.normal(size=SAMPLES))
+    response(model, history, times[:2])
+    recorded = min(_seconds(lambda: response(model, history, times)) for _ in range(REPEATS))
     return {
+        "response_samples_per_second": SAMPLES / recorded,
         "pairs_per_second": PAIRS / pairs,
         "step_from_python_microseconds": 1e6 * called / (STEPS // 10),
         "step_compiled_microseconds": 1e6 * looped / STEPS,

@@ -12,9 +12,9 @@ import numpy as np
 from scenes import grasp_scene
 from sweeps import run_sweep
 
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
-from tactsim.dataset.variable import PENDING
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.arrays import PENDING
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder

@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 from scenes import grasp_scene
 
-from tactsim.dataset.ranking_reference import PlainGrasp
-from tactsim.dataset.ranking_source import SPHERE, JudgedSamples, Truth
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
-from tactsim.dataset.variable import DONE
+from tactsim.dataset.ranking.reference import PlainGrasp
+from tactsim.dataset.ranking.samples import SPHERE, JudgedSamples, Truth
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.arrays import DONE
+from tactsim.dataset.store.blocks import checksum
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import stored_variables
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse
@@ -116,6 +118,15 @@ def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLay
     return str(folder)
 
 
+def sum_up(place: Path) -> None:
+    """Writes the checksum of every sample of a store as it stands."""
+    store = Store.open(place, writing=True)
+    variables = list(stored_variables(store))
+    values = {variable.name: store.read(variable.name) for variable in variables}
+    rows = [{name: content[row] for name, content in values.items()} for row in range(store.samples)]
+    store.array("checksum")[...] = np.stack([checksum(row, variables) for row in rows])
+
+
 def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: bool = True) -> Path:
     """A store whose samples hold the made-up grasps; the first thirty are for training."""
     path = folder / "sweep.yaml"
@@ -145,4 +156,5 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
     for name in store.described:
         array = store.array(name)
         array[...] = np.asarray(values[name], dtype=array.dtype) if name in values else array[...]
+    sum_up(place)
     return place

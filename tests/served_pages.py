@@ -10,12 +10,13 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
 import time
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+
+from fork_server import forked_command
 
 OP_TEXT, OP_BINARY, OP_CLOSE = 1, 2, 8
 
@@ -68,8 +69,8 @@ class Served:
 
 @contextmanager
 def served(*arguments: str, **options: object) -> Iterator[Served]:
-    """The command in a process of its own, once it has told its address."""
-    command = [sys.executable, "-W", "error", "-m", "tactsim.cli", "show", *arguments, "--web", "--no-browser"]
+    """The command in a process of its own, forked from one that has loaded it, once it has told its address."""
+    command = [*forked_command("-W", "error"), "show", *arguments, "--web", "--no-browser"]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
     with subprocess.Popen(command, text=True, **streams) as process:  # type: ignore[call-overload]
         try:

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tactsim.dataset.computing import computed
-from tactsim.dataset.executor import Executor, Outcome
-from tactsim.dataset.layout import layout_of
-from tactsim.dataset.running import SweepRun, opened_run
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import Sweep, load_sweep
+from tactsim.dataset.running.computing import computed
+from tactsim.dataset.running.executors import Executor, Outcome
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.running.run import SweepRun
+from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.sweep import Sweep, load_sweep
+from tactsim.dataset.store.opening import Store
 
 TEXT = """\
 schema: tactsim/sweep/1
@@ -113,7 +114,10 @@ def main() -> None:
     import os
     import sys
 
-    from tactsim.dataset import building, journal, running, store_writing
+    from tactsim.dataset.running import run as running
+    from tactsim.dataset.store import blocks as journal
+    from tactsim.dataset.store import writing as store_writing
+    from tactsim.storage import building
 
     running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
     journal.sync = building.sync = store_writing.sync = lambda path: None  # a kill leaves what the system holds

@@ -12,8 +12,8 @@ import pytest
 import zarr
 from sweeps import run_sweep
 
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.opening import Store
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 

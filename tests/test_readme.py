@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from fork_server import forked_command
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
@@ -17,6 +19,8 @@ BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", README, re.M | re.S)
 FILES = iter(re.findall(r"Save this as\s+`(\w+\.yaml)`", README))
 NAMES = [next(FILES) if language == "yaml" else "" for language, _ in BLOCKS]
 """Under which name the text tells to save each case."""
+FIRST = 1
+"""The block that starts the installed command itself; the others fork it from a process that has loaded it."""
 
 
 @pytest.fixture(scope="module")
@@ -24,9 +28,19 @@ def folder(tmp_path_factory):
     """A clone's folder as the commands of the README see it."""
     place = tmp_path_factory.mktemp("readme")
     shutil.copytree(ROOT / "cases", place / "cases")
-    (place / ".venv").mkdir()
-    (place / ".venv" / "bin").symlink_to(Path(sys.executable).parent)
+    (place / ".venv" / "bin").mkdir(parents=True)
     return place
+
+
+def provide_command(folder, number):
+    """The command that the blocks name."""
+    command = folder / ".venv" / "bin" / "tactsim"
+    command.unlink(missing_ok=True)
+    if number == FIRST:
+        command.symlink_to(Path(sys.executable).with_name("tactsim"))
+    else:
+        command.write_text(f'#!/bin/sh\nexec {shlex.join(forked_command())} "$@"\n')
+        command.chmod(0o755)
 
 
 def test_setup_commands_are_those_of_ci():
@@ -47,6 +61,7 @@ def test_block(number, folder):
     if language == "yaml":
         (folder / NAMES[number]).write_text(text)
         return
+    provide_command(folder, number)
     command = ["sh", "-e", "-c", text] if language == "sh" else [sys.executable, "-c", text]
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, timeout=600, env={**os.environ, "HOME": str(folder)}

@@ -58,7 +58,8 @@ def experiment_kinds() -> dict[str, type[Experiment]]:
 def case_class(experiment: Any) -> type[Case]:
     """The case whose experiment has this type, which may be ``Any`` to check everything else."""
     field = Field(description=Case.model_fields["experiment"].description)
-    return create_model("Case", __base__=Case, __doc__=Case.__doc__, experiment=(experiment, field))
+    sourceless = {"use_attribute_docstrings": False}  # pydantic would look for them in every frame of the stack
+    return create_model("Case", __base__=Case, __doc__=Case.__doc__, __cls_kwargs__=sourceless, experiment=(experiment, field))
 
 
 def any_experiment() -> Any:

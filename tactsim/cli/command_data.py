@@ -14,7 +14,7 @@ from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimErr
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
-    from tactsim.dataset.ranking_source import JudgedSamples
+    from tactsim.dataset.ranking.samples import JudgedSamples
     from tactsim.experiments.localization.source import Source
 
 NAME = "data"
@@ -68,7 +68,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     actions = {"check": _check, "info": _info, "export": _export, "rank": _rank, "train": _train, CONFUSION: _confusion}
     return actions[arguments.action](arguments)
 
@@ -90,14 +96,14 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _info(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.description import description
+    from tactsim.dataset.use.card import description
 
     console.out(description(arguments.store))
     return 0
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.export import exported
+    from tactsim.dataset.use.export import exported
 
     if arguments.to is None:
         raise InputError("export: --to is missing; name a file ending in .h5, or a folder for Parquet and npz")
@@ -108,8 +114,8 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.figures.estimator_ranking import ranking_figures
-    from tactsim.dataset.ranking import ranking
-    from tactsim.dataset.ranking_report import as_text, record
+    from tactsim.dataset.ranking.measures import ranking
+    from tactsim.dataset.ranking.report import as_text, record
     from tactsim.experiments.localization.response_store import stored_response
     from tactsim.localization.estimators.learned import LearnedEstimator
     from tactsim.localization.estimators.model_based import ModelBasedEstimator
@@ -138,8 +144,7 @@ def _rank(arguments: argparse.Namespace) -> int:
 
 
 def _confusion(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.confusion import store_confusion
-    from tactsim.dataset.confusion_report import as_text, record, verdict
+    from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, verdict
     from tactsim.experiments.localization.figures.confusion import confusion_png
     from tactsim.localization.estimators.hypotheses import HypothesesEstimator
     from tactsim.localization.interface import ROUNDING_NOISE
@@ -164,18 +169,19 @@ def _confusion(arguments: argparse.Namespace) -> int:
 
 
 def _drawn(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> dict[str, bytes]:
-    """File name -> PNG; a figure that cannot be drawn never costs the numbers."""
-    try:
-        return {name: draw() for name, draw in drawings().items()}
-    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-        return {}
+    """File name -> PNG bytes; a note for what could not be drawn."""
+    from tactsim.cli.figures.result_figures import drawn_figures
+
+    drawn, warnings = drawn_figures(drawings)
+    for warning in warnings:
+        console.note(f"warning: {warning}")
+    return drawn
 
 
 def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping[str, bytes]) -> None:
     """Writes report.json, in which every number is finite, report.md and the figures."""
-    from tactsim.dataset.own_files import OwnFiles
-    from tactsim.results.storage import naming
+    from tactsim.storage.files import naming
+    from tactsim.storage.own_files import OwnFiles
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -187,7 +193,7 @@ def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping
 
 def _refuse_place(folder: Path) -> None:
     """Refuses a folder for a report that holds something else, before anything is computed."""
-    from tactsim.dataset.own_files import OwnFiles
+    from tactsim.storage.own_files import OwnFiles
 
     if os.path.lexists(folder) and not folder.is_dir():
         raise StorageError(f"{one_line(folder)} exists and is not a folder; choose another with --out")
@@ -211,7 +217,7 @@ def _refuse_file(path: Path) -> None:
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
     """The samples that are judged or trained on, as the options say."""
-    from tactsim.dataset.ranking_source import judged_samples, stored_experiment
+    from tactsim.dataset.ranking.samples import judged_samples, stored_experiment
 
     references, noise = _references(arguments), _noise(arguments)
     source: Source = arguments.readings or ("read_force" if stored_experiment(arguments.store).readout else "taxel_force")
@@ -238,9 +244,9 @@ def _noise(arguments: argparse.Namespace) -> float | None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.training import trained
+    from tactsim.dataset.ranking.training import trained
     from tactsim.experiments.localization.response_store import stored_response
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     if arguments.out is None or arguments.out.suffix != ".npz":
         raise InputError("train: --out is missing; name a file ending in .npz")

@@ -41,7 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     _check_image(arguments.save)
     if arguments.fit is not None:
         return _fit(arguments)
@@ -163,7 +169,7 @@ def _check_image(place: Path | None) -> None:
 
 
 def _save(image: bytes, place: Path) -> None:
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     replace_file(place, image)
     console.out(f"figure {place}")

@@ -71,13 +71,14 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = _time_limit(arguments.time_limit)
     with interruptible() as interruption:
         document, place = read_document(arguments.case, arguments.set)
-        case = validated_case(document, place)
-        told = check_inputs(case, document, place)
+        with collected_warnings() as read:
+            case = validated_case(document, place)
+            told = check_inputs(case, document, place)
         directory = arguments.out or Path("results") / arguments.case.stem
         with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
             with collected_warnings() as said:
                 result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
-            result = replace(result, warnings=(*result.warnings, *told, *said.lines()))
+            result = replace(result, warnings=(*result.warnings, *told, *read.lines(), *said.lines()))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
 

@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     import json
 
-    from tactsim.results.storage import replace_file
+    from tactsim.storage.files import replace_file
 
     text = json.dumps(_schema(arguments.sweep), indent=2)
     if arguments.out is None:
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _schema(sweep: bool) -> dict[str, Any]:
     if sweep:
-        from tactsim.dataset.json_schema import sweep_json_schema
+        from tactsim.dataset.sampling.json_schema import sweep_json_schema
 
         return sweep_json_schema()
     from tactsim.case import case_json_schema

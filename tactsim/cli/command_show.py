@@ -58,7 +58,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
     if arguments.web:
         from tactsim.cli.live_page import run_page
 
@@ -89,7 +95,7 @@ def _show_result(arguments: argparse.Namespace) -> int:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
     if arguments.save is not None:
         from tactsim.cli.figures.result_figures import rendered_figures
-        from tactsim.results.storage import replace_file
+        from tactsim.storage.files import replace_file
 
         figures, warnings = rendered_figures(stored.result)
         for warning in warnings:
@@ -102,12 +108,12 @@ def _show_result(arguments: argparse.Namespace) -> int:
 
 
 def _show_data_set(arguments: argparse.Namespace) -> int:
-    from tactsim.dataset.description import description
+    from tactsim.dataset.use.card import description
 
     console.out(description(arguments.result))
     if arguments.save is not None:
         from tactsim.dataset.figures.card import card_figures
-        from tactsim.results.storage import replace_file
+        from tactsim.storage.files import replace_file
 
         drawings = card_figures(arguments.result)
         if not drawings:

@@ -15,10 +15,9 @@ from tactsim.errors import INTERRUPTED, ConvergenceError, InputError
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
-    from tactsim.dataset.executor import Executor
-    from tactsim.dataset.progress import Tally
-    from tactsim.dataset.running import SweepRun
-    from tactsim.dataset.sweep import Sweep
+    from tactsim.dataset.running.executors import Executor
+    from tactsim.dataset.running.run import SweepRun, Tally
+    from tactsim.dataset.sampling.sweep import Sweep
 
 NAME = "sweep"
 SUMMARY = "compute a data set from a case with ranges"
@@ -68,9 +67,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
-    from tactsim.dataset.running import opened_run
-    from tactsim.dataset.sweep import load_sweep
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    TactsimError
+        Whatever ends the command with an exit code of its own, such as options that do not go together.
+    """
+    from tactsim.dataset.running.resuming import opened_run
+    from tactsim.dataset.sampling.sweep import load_sweep
 
     for name in ("samples", "workers"):
         given = getattr(arguments, name)
@@ -93,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _check_inputs(sweep: Sweep) -> None:
     """Looks for the files that the sweep names, by its first possible case, before anything is computed."""
     from tactsim.case.inputs import check_inputs
-    from tactsim.dataset.layout import first_case
+    from tactsim.dataset.sampling.layout import first_case
 
     for line in check_inputs(first_case(sweep), sweep.document, sweep.where):
         console.note(f"warning: {line}")
@@ -112,9 +117,9 @@ def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace
 
 def _card(going: SweepRun) -> None:
     """Writes the card, unless another file stands in its place."""
-    from tactsim.dataset.card import adopt_earlier_files, write_card
     from tactsim.dataset.figures.card import FIGURE_FILES
-    from tactsim.dataset.own_files import ForeignFile
+    from tactsim.dataset.use.card import adopt_earlier_files, write_card
+    from tactsim.storage.own_files import ForeignFile
 
     try:
         adopt_earlier_files(going.store.path, FIGURE_FILES)
@@ -127,8 +132,8 @@ def _draw(store: Path) -> None:
     """Draws the figures of the card; one that cannot be drawn never costs the data."""
     try:
         from tactsim.dataset.figures.card import card_figures
-        from tactsim.dataset.own_files import OwnFiles
-        from tactsim.dataset.store_files import FIGURES
+        from tactsim.dataset.store.files import FIGURES
+        from tactsim.storage.own_files import OwnFiles
 
         for name, draw in card_figures(store).items():
             OwnFiles(store).replace(f"{FIGURES}/{name}", draw())
@@ -138,10 +143,10 @@ def _draw(store: Path) -> None:
 
 def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:
     if arguments.scheduler:
-        from tactsim.dataset.cluster import Cluster
+        from tactsim.dataset.running.executors import Cluster
 
         return Cluster(sweep.text, arguments.scheduler, folder=sweep.folder)
-    from tactsim.dataset.local_workers import LocalWorkers, usable_cores
+    from tactsim.dataset.running.executors import LocalWorkers, usable_cores
 
     return LocalWorkers(sweep.text, arguments.workers or usable_cores(), folder=sweep.folder)
 
@@ -161,9 +166,8 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
 
 
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
-    from tactsim.dataset.card import empty_split_lines
-    from tactsim.dataset.description import empty_splits, split_counts
-    from tactsim.dataset.variable import FAILED
+    from tactsim.dataset.store.arrays import FAILED
+    from tactsim.dataset.use.card import empty_split_lines, empty_splits, split_counts
 
     failed = int((going.store.read("status") == FAILED).sum())
     if not arguments.quiet:

@@ -42,6 +42,13 @@ class _Parser(argparse.ArgumentParser):
     """An argument parser whose refusals are errors like all others."""
 
     def error(self, message: str) -> NoReturn:
+        """Refuses the arguments.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
         raise InputError(f"{message}\nsee: {self.prog} --help")
 
 
@@ -81,7 +88,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _told_warnings() -> Iterator[None]:
-    """A block whose warnings of libraries are told when it ends, those that no result holds."""
+    """A block whose warnings of libraries are printed when it ends, those that no result holds."""
     with collected_warnings() as said:
         try:
             yield

@@ -31,7 +31,13 @@ class Interruption:
             self._deferred = False
 
     def receive(self, number: int, frame: FrameType | None) -> None:
-        """Handles a signal."""
+        """Handles a signal.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            At the first signal, unless it is deferred.
+        """
         if self.requested:
             os._exit(INTERRUPTED)
         self.requested = True

@@ -22,10 +22,10 @@ def run_page(arguments: argparse.Namespace) -> int:
     StorageError
         If a folder, the feed or the port cannot be used.
     """
-    from tactsim.live.content import opened_content
-    from tactsim.live.feed import Feed
-    from tactsim.live.feed_sources import FeedPlace, is_loopback
     from tactsim.live.server import LOOPBACK, Serving, serve
+    from tactsim.live.session.content import opened_content
+    from tactsim.live.sources.feed import Feed
+    from tactsim.live.sources.feed_sources import FeedPlace, is_loopback
 
     if arguments.save is not None:
         raise InputError("--save and --web: one at a time; leave one out")

@@ -3,7 +3,6 @@
 What is heavy is imported by the function that needs it.
 """
 
-from tactsim.dataset.loading import load
-from tactsim.dataset.torch_samples import TorchSamples
+from tactsim.dataset.use.loading import TorchSamples, load
 
 __all__ = ["TorchSamples", "load"]

@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from tactsim.code_identity import code_identity
-from tactsim.dataset.checking_arrays import WORDS, differences, earlier_words
-from tactsim.dataset.checking_samples import leaks, value_findings
-from tactsim.dataset.finding import Finding
-from tactsim.dataset.holes import JOURNAL, lost_status
-from tactsim.dataset.identity import attributes_of
-from tactsim.dataset.layout import Layout
-from tactsim.dataset.own_files import MANIFEST, OwnFiles
-from tactsim.dataset.store import ARRAYS, Store, consolidated_metadata
-from tactsim.dataset.store_files import CARD, foreign_files, is_torn, walked
-from tactsim.dataset.stored_sweep import stored_layout
-from tactsim.dataset.sweep import Sweep
-from tactsim.dataset.variable import FAILED, PENDING, STATUS
+from tactsim.dataset.sampling.layout import Layout
+from tactsim.dataset.sampling.stored import attributes_of, stored_layout
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences, earlier_words
+from tactsim.dataset.store.blocks import JOURNAL
+from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
+from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
+from tactsim.dataset.store.verifying import ChunkRead, computed_chunks, lost_status
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
+from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 Array = np.ndarray
 COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
@@ -32,11 +29,28 @@ FORM = ("dtype", "shape")
 """What must be right before samples can be read."""
 MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 """Attributes that do not follow from the sweep."""
+AGAIN = "go on with --resume, which computes them again, or bring back a copy"
+SHOWN = 10
+"""Samples named in one finding."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Its kind, the samples, and in words what it is and what to do."""
+
+    kind: str
+    samples: tuple[int, ...]
+    words: str
+
+    def __str__(self) -> str:
+        more = f" and {len(self.samples) - SHOWN} more" if len(self.samples) > SHOWN else ""
+        which = f"; samples {', '.join(map(str, self.samples[:SHOWN]))}{more}" if self.samples else ""
+        return f"{self.kind}: {one_line(self.words, 1000)}{which}"
 
 
 @dataclass(frozen=True)
 class Checked:
-    """Counts by status, what was found, and what could not be verified."""
+    """Counts by status, the findings, and what could not be verified."""
 
     counts: dict[str, int]
     findings: tuple[Finding, ...]
@@ -111,27 +125,27 @@ def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]
         if name == "description" and not same_code:
             continue
         if found.get(name) != expected.get(name):
-            told = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
-            yield Finding("attribute", (), f"{told}; bring back a copy of zarr.json")
+            words = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
+            yield Finding("attribute", (), f"{words}; bring back a copy of zarr.json")
     names = [variable.name for variable in layout.variables]
     if store.keeps_all_chunks and sorted(found[ARRAYS]) != sorted(names):
         yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
 
 
 def _consolidated(store: Store) -> Iterator[Finding]:
-    """The descriptions in the store's own zarr.json, which xarray reads, beside those of the arrays."""
+    """Arrays that the store's zarr.json, which xarray reads, describes otherwise than their own."""
     gathered = consolidated_metadata(store.path)
-    differing = [name for name, array in store.described.items() if gathered.get(name) != array.told]
+    differing = [name for name, array in store.described.items() if gathered.get(name) != array.metadata]
     if differing:
         named = ", ".join(differing[:10])
-        told = (
+        words = (
             f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"
         )
-        yield Finding("gathered", (), told)
+        yield Finding("gathered", (), words)
 
 
 def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
-    """What tactsim did not write, what a killed run left, and what of its own is gone or changed."""
+    """Files that tactsim did not write, that a killed run left, or that are no longer as tactsim wrote them."""
     names = [variable.name for variable in variables]
     torn = sum(is_torn(name, names) for name in walked(store.path))
     if torn:
@@ -165,7 +179,7 @@ def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: 
     """What cannot be verified."""
     if not store.keeps_all_chunks:
         yield "the store is of an earlier tactsim, which left out chunks of nothing but fill values; checksums stand for them"
-    if not (store.path / MANIFEST).exists() and (store.path / CARD).exists():
+    if not (store.path / OWN_LIST).exists() and (store.path / CARD).exists():
         yield f"{CARD} and figures cannot be verified: an earlier tactsim kept no checksums of them"
     if same_code:
         return
@@ -174,3 +188,95 @@ def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: 
             for key, words in differences(store.described[variable.name], variable):
                 if key == "long_name":
                     yield f"the store is of other code, and perhaps therefore {variable.name}: {words}"
+
+
+@dataclass
+class Faults:
+    """The faults that are known so far, by kind; numbers of samples."""
+
+    changed: list[int] = field(default_factory=list)
+    unreadable: list[Finding] = field(default_factory=list)
+    gone: dict[str, list[int]] = field(default_factory=dict)
+    infinite: dict[str, list[int]] = field(default_factory=dict)
+    constant: dict[str, list[int]] = field(default_factory=dict)
+    equal: list[int] = field(default_factory=list)
+    uncoded: list[int] = field(default_factory=list)
+    seen: set[bytes] = field(default_factory=set)
+
+
+def leaks(store: Store, status: Array) -> Iterator[Finding]:
+    """Specimens in two splits, and case ids in two splits or twice."""
+    try:
+        split, specimen, case = store.read("split"), store.read("specimen"), store.read("case_id")
+    except StorageError:
+        return  # `value_findings` tells which chunk cannot be read
+    names = str(store.described["split"].attributes["flag_meanings"]).split()
+    computed = np.flatnonzero(status != PENDING)
+    unknown = computed[split[computed] >= len(names)]
+    if unknown.size:
+        yield Finding("damaged", tuple(unknown.tolist()), f"the split is none of {', '.join(names)}; {AGAIN}")
+    for what, keys in (("specimen", specimen), ("case", case)):
+        own = computed if what == "specimen" else computed[case[computed] != ""]
+        _, inverse = np.unique(keys[own], return_inverse=True)
+        low, high = np.full(len(own), 10**6), np.full(len(own), -1)
+        np.minimum.at(low, inverse, split[own].astype(int))
+        np.maximum.at(high, inverse, split[own].astype(int))
+        leaking = own[low[inverse] != high[inverse]] if len(own) else own
+        if leaking.size:
+            yield Finding("leakage", tuple(leaking.tolist()), f"a {what} is in two splits; do not train on this data set")
+        if what == "case" and len(own):
+            twice = own[np.bincount(inverse)[inverse] > 1]
+            if twice.size:
+                yield Finding("duplicate", tuple(twice.tolist()), "the same case more than once; leave out all but one")
+
+
+def value_findings(store: Store, layout: Layout, status: Array) -> list[Finding]:
+    """Content that is gone, unreadable or changed, numbers that are not finite, readings that never change, equal samples."""
+    found = Faults()
+    for read in computed_chunks(store, layout.variables, status):
+        for name, reason in read.unreadable.items():
+            found.unreadable.append(Finding("damaged", tuple(read.numbers.tolist()), f"{name}: {reason}"))
+        for name, lost in read.gone.items():
+            found.gone.setdefault(name, []).extend(lost.tolist())
+        found.changed += read.changed.tolist()
+        if len(read.values) == len(layout.variables):
+            _look(read, layout, found, len(store.attributes["codes"]))
+    return _as_findings(found)
+
+
+def _look(read: ChunkRead, layout: Layout, found: Faults, codes: int) -> None:
+    """Looks at the samples of a chunk that are done."""
+    readings = [variable for variable in layout.variables if variable.role == "reading"]
+    found.uncoded += read.numbers[read.values["code"] >= codes].tolist()
+    for row in np.flatnonzero(read.values["status"] == DONE).tolist():
+        number, sample = int(read.numbers[row]), {name: values[row] for name, values in read.values.items()}
+        for variable in readings:
+            values = sample[variable.name]
+            if not (variable.optional or np.isfinite(values).all()):
+                found.infinite.setdefault(variable.name, []).append(number)
+            if _may_not_rest(variable) and np.ptp(values) == 0:
+                found.constant.setdefault(variable.name, []).append(number)
+        key = b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)
+        found.equal += [number] if key in found.seen else []
+        found.seen.add(key)
+
+
+def _may_not_rest(variable: Variable) -> bool:
+    return not variable.prescribed and bool(variable.sizes) and int(np.prod(variable.sizes)) > 1
+
+
+def _as_findings(found: Faults) -> list[Finding]:
+    findings = [*found.unreadable]
+    findings += [Finding("gone", tuple(numbers), f"{name} is no longer there; {AGAIN}") for name, numbers in found.gone.items()]
+    if found.changed:
+        findings.append(Finding("checksum", tuple(found.changed), f"the content is not what was written; {AGAIN}"))
+    if found.uncoded:
+        findings.append(Finding("damaged", tuple(found.uncoded), f"code is no entry of the attribute codes; {AGAIN}"))
+    findings += [Finding("not finite", tuple(numbers), f"{name}; leave them out") for name, numbers in found.infinite.items()]
+    constant = found.constant.items()
+    findings += [
+        Finding("constant", tuple(numbers), f"{name} has one value throughout; leave them out") for name, numbers in constant
+    ]
+    if found.equal:
+        findings.append(Finding("duplicate", tuple(found.equal), "the same readings as an earlier sample; leave them out"))
+    return findings

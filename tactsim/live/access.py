@@ -14,7 +14,7 @@ from aiohttp import web
 from aiohttp.typedefs import Handler, Middleware
 
 from tactsim.live.defects import report
-from tactsim.live.feed_sources import is_loopback
+from tactsim.live.sources.feed_sources import is_loopback
 
 HEADERS = {
     "Content-Security-Policy": (

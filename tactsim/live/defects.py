@@ -1,4 +1,4 @@
-"""What goes wrong in the server itself: each defect is told once, in one line. What clients do wrong is answered, not told."""
+"""Defects of the server: each is reported once, in one line. What clients do wrong is answered, not reported."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LOGGER = logging.getLogger("tactsim.live")
 SERVERS = ("tactsim.live", "aiohttp", "asyncio")
 """Loggers of this page and of the libraries that serve it."""
 MOST_TOLD = 10
-"""Different defects that are told while the page is open; a client that provokes more of them cannot fill the terminal."""
+"""Different defects that are reported while the page is open; a client that provokes more of them cannot fill the terminal."""
 OF_CLIENTS = (
     HttpProcessingError,
     web.HTTPException,
@@ -29,14 +29,14 @@ OF_CLIENTS = (
 
 
 def report(error: BaseException) -> str:
-    """Words for a client about a defect, which the user is told of, too."""
+    """Words for a client about a defect, which is also logged for the user."""
     LOGGER.error("%s", one_line(error), exc_info=error)
     return f"internal error ({type(error).__name__}); please report it"
 
 
 @contextmanager
 def telling_defects(tell: Callable[[str], None]) -> Iterator[None]:
-    """A block whose logged errors are told by ``tell`` in one line each; nothing else of the libraries' logs is shown."""
+    """A block whose logged errors are passed to ``tell`` in one line each; nothing else of the libraries' logs is shown."""
     teller = _Teller(tell)
     loggers = [logging.getLogger(name) for name in SERVERS]
     before = [(logger.propagate, logger.level) for logger in loggers]
@@ -54,7 +54,7 @@ def telling_defects(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 class _Teller(logging.Handler):
-    """Makes one line of a record, unless a client caused it or it was told before."""
+    """Makes one line of a record, unless a client caused it or it was reported before."""
 
     def __init__(self, tell: Callable[[str], None]):
         super().__init__(logging.ERROR)

@@ -16,11 +16,11 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from tactsim.errors import StorageError
 from tactsim.live.access import guard, same_origin
-from tactsim.live.content import Content
 from tactsim.live.defects import report, telling_defects
-from tactsim.live.feed_sources import FeedPlace, feeding
-from tactsim.live.session import Session
-from tactsim.live.threads import Threads
+from tactsim.live.session.content import Content
+from tactsim.live.session.session import Session
+from tactsim.live.session.thinking import Threads
+from tactsim.live.sources.feed_sources import FeedPlace, feeding
 from tactsim.outside.text import one_line
 
 LOOPBACK = "127.0.0.1"
@@ -133,7 +133,7 @@ async def _close_sockets(app: web.Application) -> None:
 
 @dataclass(frozen=True)
 class Serving:
-    """Where the page is served and who is told what."""
+    """Where the page is served, and where messages go."""
 
     ready: Callable[[str], None]
     """Called once with the address of the page."""

@@ -13,7 +13,7 @@ from scipy.special import expit
 from tactsim.errors import InputError, StorageError
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.interface import Readings
-from tactsim.outside.arrays import read_arrays
+from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
 
@@ -129,7 +129,7 @@ def read_weights(path: str | Path) -> LearnedWeights:
     StorageError
         If there is no such file, or it does not hold the weights of this version.
     """
-    file = read_arrays(opened(path, "weights").read(), str(path))
+    file = read_arrays(opened(path, "weights").read(), str(path), largest=LARGEST_FOREIGN)
     try:
         if str(file["schema"]) != SCHEMA:
             raise StorageError(f"{path} has the schema {one_line(file['schema'], 40)!r}; this tactsim reads {SCHEMA!r}")

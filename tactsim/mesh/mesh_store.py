@@ -26,9 +26,8 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.shipped import shipped_folders
 from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
-from tactsim.outside.arrays import LARGEST, read_arrays
+from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
-from tactsim.outside.processes import machine_memory
 from tactsim.user_cache import user_cache
 
 Array = np.ndarray
@@ -136,7 +135,7 @@ def write_block_mesh(block: BlockMesh, place: Path) -> None:
 def _arrays(place: Path) -> dict[str, Array] | None:
     """The arrays in a file, None if there is none, it is damaged, or the mesh is not the one it was written with."""
     try:
-        arrays = read_arrays(opened(place, "kept file").read(), place.name, largest=machine_memory() or LARGEST)
+        arrays = read_arrays(opened(place, "kept file").read(), place.name)
         mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
         return arrays if str(arrays["content"]) == content_hash(mesh) else None
     except _DAMAGE:

@@ -29,8 +29,8 @@ from tactsim.mesh.curving import fitted
 from tactsim.mesh.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import at_jaw_edges, background
 from tactsim.mesh.solid import Inclusion, Triangles, outward
-from tactsim.outside.arrays import LARGEST, read_arrays
-from tactsim.outside.processes import Ended, machine_memory, run_child
+from tactsim.outside.arrays import read_arrays
+from tactsim.outside.processes import Ended, run_child
 
 Array = np.ndarray
 ENVELOPE = 0.03
@@ -150,7 +150,7 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
             check_time()
         if done.code or not answer.exists():
             raise _failure(done, time_limit)
-        found = read_arrays(answer.read_bytes(), "the mesher's answer", largest=machine_memory() or LARGEST)
+        found = read_arrays(answer.read_bytes(), "the mesher's answer")
         corners, simplices = found["corners"], found["simplices"]
     if not len(simplices) or not np.isfinite(corners).all():
         raise ConvergenceError("the mesher gave no tetrahedra")
@@ -171,7 +171,7 @@ def main(asked: str, answer: str) -> None:
     """Answer one request; what the child process does."""
     import pytetwild
 
-    request: dict[str, Any] = dict(read_arrays(Path(asked).read_bytes(), "the request", largest=machine_memory() or LARGEST))
+    request: dict[str, Any] = dict(read_arrays(Path(asked).read_bytes(), "the request"))
     request |= {name: float(request[name]) for name in ("edge_length_abs", "epsilon", "stop_energy")}
     corners, simplices = pytetwild.tetrahedralize(**request, vtk_ordering=True, disable_filtering=True, quiet=True)
     np.savez(answer, corners=corners, simplices=simplices)

@@ -10,17 +10,18 @@ import sys
 import zipfile
 import zlib
 from tokenize import TokenError
-from typing import Any
+from typing import IO
 
 import numpy as np
 from numpy.lib import format as npy
 
 from tactsim.errors import StorageError
+from tactsim.outside.processes import machine_memory
 from tactsim.outside.text import one_line
 
 Array = np.ndarray
-LARGEST = 2**30
-"""Bytes that all arrays of a file may take together, where the reader names no other bound."""
+LARGEST_FOREIGN = 2**30
+"""Bytes that the arrays of a file of others may take together, or of any file where the memory of the machine is not known."""
 KINDS = frozenset("biufcUS")
 """numpy's letters for kinds of arrays that are read: truth values, numbers and text."""
 MOST_ARRAYS = 100_000
@@ -33,20 +34,22 @@ DAMAGE = (*_ARCHIVE, *_HEADER_TEXT, *_CONTENT)
 """What the archive, its compression, the header of an array, which is Python text, and its numbers raise."""
 
 
-def read_arrays(content: bytes, name: str, *, largest: int = LARGEST) -> dict[str, Array]:
+def read_arrays(content: bytes, name: str, *, largest: int | None = None) -> dict[str, Array]:
     """The arrays of an npz file by name.
 
     Parameters
     ----------
     content : the bytes of the file
     name : how messages call it
-    largest : bytes that the arrays may take in memory; their headers are checked before anything is allocated
+    largest : bytes that the arrays may take in memory, by default what the machine has; their headers are checked before anything
+        is allocated
 
     Raises
     ------
     StorageError
         If the file is damaged, or its arrays hold objects or are too large.
     """
+    largest = (machine_memory() or LARGEST_FOREIGN) if largest is None else largest
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
@@ -64,9 +67,9 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Array:
         shape, dtype = _header(file)
         if dtype.hasobject:
             raise ValueError(f"{entry.filename} holds objects, which could run code")
-        told = math.prod(shape) * dtype.itemsize
-        if told > entry.file_size:
-            raise ValueError(f"{entry.filename} says that it holds {told} bytes and has {entry.file_size}")
+        claimed = math.prod(shape) * dtype.itemsize
+        if claimed > entry.file_size:
+            raise ValueError(f"{entry.filename} says that it holds {claimed} bytes and has {entry.file_size}")
         if dtype.kind not in KINDS:
             raise ValueError(f"{entry.filename} holds neither numbers nor text")
     with archive.open(entry) as file:
@@ -82,7 +85,7 @@ def _is_text(array: Array) -> bool:
     return bool((codes <= sys.maxunicode).all())
 
 
-def _header(file: Any) -> tuple[tuple[int, ...], np.dtype]:
+def _header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
     version = npy.read_magic(file)
     read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
     shape, _, dtype = read(file)

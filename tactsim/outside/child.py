@@ -10,7 +10,7 @@ import threading
 import time
 
 LOOK = 1.0
-"""Seconds between looks at whether the parent still lives, where the system does not tell."""
+"""Seconds between looks at whether the parent still lives, where the system does not signal its end."""
 DEATH_SIGNAL = 1
 """Linux: PR_SET_PDEATHSIG."""
 KILL = 9

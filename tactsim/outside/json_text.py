@@ -17,12 +17,13 @@ LONGEST_INTEGER = 40
 """Digits: more than any count or seed has, and few enough to become a float."""
 
 
-def read_json(text: str, name: str) -> Any:
+def read_json(text: str, name: str, *, deepest: int = DEEPEST) -> Any:
     """The values in a JSON text.
 
     Parameters
     ----------
     name : how messages call it
+    deepest : levels of lists and mappings inside each other that are allowed
 
     Raises
     ------
@@ -34,25 +35,25 @@ def read_json(text: str, name: str) -> Any:
     try:
         content = json.loads(text, parse_constant=_no_number, parse_float=_float, parse_int=_integer)
     except RecursionError:
-        raise _too_deep(name) from None
+        raise _too_deep(name, deepest) from None
     except ValueError as error:
         raise StorageError(f"{one_line(name)} is damaged: {one_line(error)}") from None
-    _check_depth(content, name)
+    _check_depth(content, name, deepest)
     return content
 
 
-def _check_depth(content: Any, name: str) -> None:
+def _check_depth(content: Any, name: str, deepest: int) -> None:
     level = [content]
-    for _ in range(DEEPEST):
+    for _ in range(deepest):
         inner = [value.values() if isinstance(value, dict) else value for value in level if isinstance(value, dict | list)]
         level = [item for items in inner for item in items if isinstance(item, dict | list)]
         if not level:
             return
-    raise _too_deep(name)
+    raise _too_deep(name, deepest)
 
 
-def _too_deep(name: str) -> StorageError:
-    return StorageError(f"{one_line(name)} is damaged: more than {DEEPEST} lists and mappings inside each other")
+def _too_deep(name: str, deepest: int) -> StorageError:
+    return StorageError(f"{one_line(name)} is damaged: more than {deepest} lists and mappings inside each other")
 
 
 def _float(text: str) -> float:

@@ -1,4 +1,4 @@
-"""Warnings of libraries become warnings of the run: collected while it goes on, told once each in plain words."""
+"""Warnings of libraries become warnings of the run: collected while it goes on, each shown once."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import PurePath
 
 from tactsim.outside.text import one_line
 
-MOST_TOLD = 10
-"""Different warnings that are told; the rest are counted."""
+MOST_SHOWN = 10
+"""Different warnings that are shown; the rest are counted."""
 
 
 class LibraryWarnings:
@@ -23,9 +23,9 @@ class LibraryWarnings:
     def lines(self) -> list[str]:
         """One line for each different warning: which library, what it says, how often."""
         counts = Counter(f"{_library(one.filename)}: {one_line(one.message, 200)}" for one in self._caught)
-        told = [line if count == 1 else f"{line} ({count} times)" for line, count in counts.most_common(MOST_TOLD)]
-        left = len(counts) - len(told)
-        return told + ([f"and {left} other warnings of libraries"] if left > 0 else [])
+        most_common = [line if count == 1 else f"{line} ({count} times)" for line, count in counts.most_common(MOST_SHOWN)]
+        left = len(counts) - len(most_common)
+        return most_common + ([f"and {left} other warnings of libraries"] if left > 0 else [])
 
 
 @contextmanager

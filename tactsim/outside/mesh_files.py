@@ -4,10 +4,14 @@ truncated file, and a small compressed one may unpack to more than the machine h
 from __future__ import annotations
 
 import io
+import re
 import sys
 import tempfile
+import warnings
+from contextlib import redirect_stderr
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,13 +30,22 @@ UNPACKED = 50
 ANSWER_MEMORY, READER_MEMORY = 64 * MEBIBYTE, 512 * MEBIBYTE
 """Bytes that any mesh and any reader may take besides."""
 MODULE = "tactsim.outside.mesh_files"
+READER = "meshio"
+"""The library that reads, by which its warnings are known."""
+MOST_WARNINGS = 100
+WARNED = re.compile(r"^Warning: ", re.MULTILINE)
+"""How meshio begins a warning, which it writes to standard error."""
 NODES = {"vertex": 1, "line": 2, "line3": 3, "triangle": 3, "triangle6": 6, "tetra": 4, "tetra10": 10}
 """Nodes of a cell of the types that are used."""
 
 
+class MeshFileWarning(UserWarning):
+    """What the reader of a file said of its content: what it passed over or completed."""
+
+
 @dataclass(frozen=True)
 class MeshArrays:
-    """What a file holds, in its own units: points (n, d), blocks of cells (type, (m, k) node numbers), and data by name.
+    """The content of a file, in its units: points (n, d), blocks of cells (type, (m, k) node numbers), and data by name.
 
     ``cell_data`` has one array for each block, ``groups`` the whole number of every named group.
     """
@@ -55,6 +68,11 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
     ------
     StorageError
         If the file is damaged, of an unknown format, or asks for more time or memory than a file of its size should.
+
+    Warns
+    -----
+    MeshFileWarning
+        For each thing that the reader warned of.
     """
     allowed = TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE if time_limit is None else time_limit
     largest = ANSWER_MEMORY + UNPACKED * file.size
@@ -71,7 +89,11 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
         if done.code or not answer.exists():
             reason = f"damaged or of an unknown format ({done.ending})"
             raise StorageError(f"{named}: {(file.quotable and done.last_line) or reason}")
-        found = _unpacked(read_arrays(answer.read_bytes(), file.named, largest=largest))
+        arrays = read_arrays(answer.read_bytes(), file.named, largest=largest)
+    for line in arrays.pop("warnings").tolist():
+        words = line if file.quotable else "a part of the file was passed over or completed"
+        warnings.warn_explicit(f"{one_line(file.named)}: {words}", MeshFileWarning, READER, 0)
+    found = _unpacked(arrays)
     if not _consistent(found):
         raise StorageError(f"{named}: the numbers of points, nodes of cells and data do not fit each other; is it damaged?")
     return found
@@ -99,21 +121,31 @@ def _unpacked(arrays: dict[str, Array]) -> MeshArrays:
     )
 
 
+def _read(path: str) -> tuple[Any, list[str]]:
+    """meshio's mesh, and each different warning on one line; what it writes when it fails goes on to the parent."""
+    import meshio
+
+    written = io.StringIO()
+    try:
+        with warnings.catch_warnings(record=True) as caught, redirect_stderr(written), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore", RuntimeWarning)  # meshio guesses from the first bytes whether a file is binary
+            mesh = meshio.read(path)
+    except BaseException:
+        sys.stderr.write(written.getvalue())
+        raise
+    lines = [*WARNED.split(written.getvalue())[1:], *(str(one.message) for one in caught)]
+    return mesh, list(dict.fromkeys(one_line(" ".join(line.split())) for line in lines))[:MOST_WARNINGS]
+
+
 def main(path: str, answer: str, largest: str) -> int:
     """Read one file and write its arrays; what the child process does.
 
     Raises
     ------
     MemoryError
-        If the file does not fit into the memory.
+        If the arrays take more bytes than ``largest``; meshio's own errors end the process, too.
     """
-    import warnings
-
-    import meshio
-
-    warnings.simplefilter("ignore")  # the parent judges what was read
-    with np.errstate(all="ignore"):  # meshio guesses from the first bytes whether a file is binary
-        mesh = meshio.read(path)
+    mesh, said = _read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
     point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}
     cell_data = {name: [np.atleast_1d(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
@@ -136,6 +168,7 @@ def main(path: str, answer: str, largest: str) -> int:
         cell_names=np.array(list(cell_data), dtype=str),
         group_names=np.array(list(groups), dtype=str),
         group_numbers=np.array(list(groups.values()), dtype=np.int64),
+        warnings=np.array(said, dtype=str),
         **arrays,
     )
     Path(answer).write_bytes(content.getvalue())

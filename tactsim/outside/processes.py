@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import tactsim
 from tactsim.outside.text import one_line
@@ -65,7 +65,7 @@ def run_child(
     memory: int | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> Ended:
-    """Runs a module of tactsim as a program of its own and waits for its end.
+    """Runs a module of tactsim as a separate program and waits for its end.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def ending(code: int | None) -> str:
 
 
 def machine_memory() -> int:
-    """Bytes of memory of this machine, 0 if it does not tell."""
+    """Bytes of memory of this machine, 0 if they are not known."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -160,6 +160,6 @@ def _killed(child: subprocess.Popen[bytes]) -> None:
         child.wait()
 
 
-def _last_words(words: Any) -> str:
+def _last_words(words: IO[bytes]) -> str:
     words.seek(max(0, words.seek(0, os.SEEK_END) - LAST_WORDS))
     return words.read().decode("utf-8", "replace")

@@ -1,4 +1,4 @@
-"""A number of workers that share requests; a lost one costs its own request only and is replaced."""
+"""A number of workers that share requests; a lost worker costs the request it had and is replaced."""
 
 from __future__ import annotations
 

@@ -169,8 +169,8 @@ def parse_document(text: str, name: str) -> ResultDocument:
         return ResultDocument.model_validate(content)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        told = f"{one_line('.'.join(map(str, first['loc'])), LONGEST_NAME)}: {one_line(first['msg'])}"
-        raise StorageError(f"{one_line(name)} is damaged: {told}") from None
+        fault = f"{one_line('.'.join(map(str, first['loc'])), LONGEST_NAME)}: {one_line(first['msg'])}"
+        raise StorageError(f"{one_line(name)} is damaged: {fault}") from None
 
 
 def result_of(document: ResultDocument) -> Result:

@@ -13,7 +13,6 @@ from tactsim.outside.files import opened
 from tactsim.outside.mesh_files import read_mesh_file
 from tactsim.outside.text import one_line
 from tactsim.results.result import FieldFrame
-from tactsim.results.storage import read_text
 
 INDEX = "fields.pvd"
 
@@ -44,7 +43,7 @@ def read_fields(directory: Path) -> tuple[FieldFrame, ...]:
     if not index.exists():
         return ()
     try:
-        entries = [dict(entry.attrib) for entry in ElementTree.fromstring(read_text(index, "description")).iter("DataSet")]
+        entries = [dict(entry.attrib) for entry in ElementTree.fromstring(opened(index, "description").text()).iter("DataSet")]
         return tuple(_read_frame(directory / Path(e["file"]).name, float(e["timestep"])) for e in entries)
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         raise StorageError(f"{index} is damaged: {one_line(error)}") from None

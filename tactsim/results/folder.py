@@ -1,25 +1,37 @@
 """An output folder that one run owns: written beside its place under another name, moved into place last.
 
 Beside ``results/press`` may stand, while a run is alive, ``results/.press.lock`` (held by the operating system, so it ends with
-its process) and ``results/.press.partial``; ``results/.press.replaced`` is the folder about to be replaced. What a killed run
-left of these is tidied by the next one. A folder gives way only if its manifest names everything in it, unchanged.
+its process) and ``results/.press.partial``, in which the result waits; ``results/.press.replaced`` is the folder about to be
+replaced. What a killed run left of these is tidied by the next one. A folder gives way only if its manifest names everything in
+it, unchanged; one without a manifest, and one that is to be kept, is renamed to ``results/press.earlier`` at once.
 """
 
 from __future__ import annotations
 
+import glob
 import os
 import re
-import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
-from tactsim.results.locking import beside, only_one
-from tactsim.results.manifest import MANIFEST, foreign, manifest_of, names_in, read_manifest
-from tactsim.results.storage import naming, write_bytes
+from tactsim.storage.building import (
+    begin,
+    is_marked,
+    moved_aside,
+    remove,
+    remove_leftover,
+    remove_marked,
+    settle,
+    waiting_content,
+    waiting_folder,
+)
+from tactsim.storage.files import beside, naming, write_bytes
+from tactsim.storage.locking import only_one
+from tactsim.storage.own_files import MANIFEST, manifest_of, names_in, read_manifest
 
 RESULT_FILE = "result.json"
 _OWN_NAME = re.compile(
@@ -40,22 +52,34 @@ class OutputFolder:
     @property
     def partial(self) -> Path:
         """Where the files are written before they are complete."""
-        return beside(self.path, "partial")
+        return waiting_content(self.path)
 
     @property
     def replaced(self) -> Path:
-        """Where the earlier folder stands for the moment of the exchange."""
+        """Where the earlier folder stands for the moment of the exchange, if it is not kept."""
         return beside(self.path, "replaced")
 
     def start(self) -> Path:
-        """An empty folder to write into."""
+        """An empty folder to write into.
+
+        Raises
+        ------
+        StorageError
+            If it cannot be made, or something that tactsim did not write stands in its place.
+        """
         with naming(self.path):
-            _remove_own(self.partial)
-            self.partial.mkdir(parents=True)
+            self._remove_unmarked()
+            begin(self.path).mkdir()
         return self.partial
 
     def finish(self) -> None:
-        """Writes the manifest of what stands in the partial folder and brings its names down to the disk."""
+        """Writes the manifest of what stands in the partial folder.
+
+        Raises
+        ------
+        StorageError
+            If it cannot be written.
+        """
         with naming(self.path):
             write_bytes(self.partial / MANIFEST, manifest_of(self.partial))
 
@@ -68,42 +92,57 @@ class OutputFolder:
             If the place was taken meanwhile or cannot be written; an earlier folder is then where it was.
         """
         with naming(self.path):
+            settle(self.partial)
             if not os.path.lexists(self.path):
                 self.partial.rename(self.path)
                 return None
             check_replaceable(self.path, self.replace)
-            keep = keep_earlier or not (self.path / MANIFEST).exists()  # what no manifest names may be somebody's
-            self.path.rename(self.replaced)
-            try:
+            if keep_earlier or not (self.path / MANIFEST).exists():  # what no manifest names may be somebody's
+                return self._publish_beside_earlier()
+            with moved_aside(self.path, self.replaced):
                 self.partial.rename(self.path)
-            except BaseException:
-                self.replaced.rename(self.path)
-                raise
-        return self._retire(keep)
+        with suppress(OSError):
+            _remove_own(self.replaced)
+        return None
 
     def discard(self) -> None:
         """Removes what was written so far."""
         with suppress(OSError):
-            _remove_own(self.partial)
+            if is_marked(waiting_folder(self.path)):
+                remove_leftover(self.path)
 
     def recover(self) -> None:
-        """Puts right what a killed run left: brings back a folder caught in the exchange, removes partial files."""
+        """Puts right what a killed run left: brings back a folder caught in the exchange, removes partial files.
+
+        A folder without a manifest that an earlier version was about to replace is kept.
+
+        Raises
+        ------
+        StorageError
+            If the folder cannot be written, or holds under such a name what tactsim did not write.
+        """
         with naming(self.path):
             if self.replaced.exists() and not os.path.lexists(self.path):
                 self.replaced.rename(self.path)
+            _refuse_foreign_names(self.replaced)
+            if names_in(self.replaced) and not (self.replaced / MANIFEST).exists():
+                kept = self._place_for_earlier()
+                remove(kept)
+                self.replaced.rename(kept)
             _remove_own(self.replaced)
-            _remove_own(self.partial)
+            self._bring_back_outdated()
+            self._remove_unmarked()
+            remove_leftover(self.path)
 
-    def _retire(self, keep: bool) -> Path | None:
-        with suppress(OSError):
-            if not keep:
-                _remove_own(self.replaced)
-                return None
-            kept = self._place_for_earlier()
-            _remove(kept)
-            self.replaced.rename(kept)
-            return kept
-        return None
+    def _publish_beside_earlier(self) -> Path:
+        """The exchange in which the earlier folder gets its lasting name at once, so that no kill leaves it under another."""
+        kept = self._place_for_earlier()
+        with ExitStack() as exchange:
+            if os.path.lexists(kept):
+                exchange.enter_context(moved_aside(kept, waiting_folder(self.path) / kept.name))
+            exchange.enter_context(moved_aside(self.path, kept))
+            self.partial.rename(self.path)
+        return kept
 
     def _place_for_earlier(self) -> Path:
         """The first name beside the folder that is free, or holds an earlier result with a manifest, which may go."""
@@ -112,6 +151,19 @@ class OutputFolder:
             if not os.path.lexists(kept) or ((kept / MANIFEST).exists() and not _foreign(kept)):
                 return kept
         raise StorageError(f"{one_line(self.path)} has {MOST_EARLIER} earlier results beside it; remove some")
+
+    def _bring_back_outdated(self) -> None:
+        """Puts a kept result back that a killed run moved aside and put nothing in its place."""
+        waiting = waiting_folder(self.path)
+        for outdated in waiting.glob(f"{glob.escape(self.path.name)}.earlier*") if is_marked(waiting) else ():
+            if not os.path.lexists(self.path.with_name(outdated.name)):
+                outdated.rename(self.path.with_name(outdated.name))
+
+    def _remove_unmarked(self) -> None:
+        """Removes partial files of an earlier version, which did not mark them."""
+        waiting = waiting_folder(self.path)
+        if os.path.lexists(waiting) and not is_marked(waiting):
+            _remove_own(waiting)
 
 
 @contextmanager
@@ -131,8 +183,6 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     path = Path(directory)
     path = path if path.name not in ("", "..") else Path(os.path.abspath(path))
     folder = OutputFolder(path, replace)
-    with naming(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
     with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another with --out"):
         try:
             folder.recover()
@@ -170,7 +220,7 @@ def _foreign(path: Path) -> list[str]:
     except StorageError as error:
         return [f"a manifest that cannot be read ({one_line(error, 200)})"]
     if manifest is not None:
-        return foreign(path, manifest)
+        return manifest.foreign(path)
     unknown = [name for name in names_in(path) if not _OWN_NAME.fullmatch(name)]
     if not unknown and not (path / RESULT_FILE).is_file() and not (path / "validation.json").is_file():
         return ["no result of tactsim"]
@@ -178,21 +228,15 @@ def _foreign(path: Path) -> list[str]:
 
 
 def _remove_own(path: Path) -> None:
-    """Removes what a run left half-written or replaced, unless somebody put something else there.
+    """Removes what a run left half-written or replaced, if anything, unless somebody put something else there."""
+    _refuse_foreign_names(path)
+    if path.is_dir() and not path.is_symlink():
+        remove_marked(path, MANIFEST)
+    else:
+        remove(path)
 
-    Raises
-    ------
-    StorageError
-        If it holds what no run writes.
-    """
+
+def _refuse_foreign_names(path: Path) -> None:
     strangers = [name for name in names_in(path) if name != MANIFEST and not _OWN_NAME.fullmatch(name)]
     if strangers:
         raise StorageError(f"{one_line(path)} holds {one_line(strangers[0])!r}, which tactsim did not write; move that away")
-    _remove(path)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)

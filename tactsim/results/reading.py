@@ -7,15 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.errors import StorageError
-from tactsim.outside.files import opened_folder
+from tactsim.outside.files import opened, opened_folder
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
 from tactsim.results.fields import read_fields
 from tactsim.results.folder import RESULT_FILE
-from tactsim.results.manifest import changed, read_manifest
 from tactsim.results.result import Result
-from tactsim.results.storage import read_text
+from tactsim.storage.own_files import read_manifest
 
 
 @dataclass(frozen=True)
@@ -41,17 +40,17 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     folder, _ = opened_folder(directory, "result of tactsim")
     if not (folder / RESULT_FILE).exists():
         raise StorageError(f"{one_line(directory)} holds no {RESULT_FILE}, so it is not a result of tactsim")
-    document = parse_document(read_text(folder / RESULT_FILE), str(folder / RESULT_FILE))
+    document = parse_document(opened(folder / RESULT_FILE, "result").text(), str(folder / RESULT_FILE))
     provenance = _provenance(folder / "provenance.json")
     result = result_of(document)
     frames = read_fields(folder) if fields else ()
     manifest = read_manifest(folder)
-    edited = () if manifest is None else tuple(changed(folder, manifest, frozenset({RESULT_FILE, "provenance.json"})))
+    edited = () if manifest is None else tuple(manifest.changed(folder, RESULT_FILE, "provenance.json"))
     return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited)
 
 
 def _provenance(path: Path) -> dict[str, Any]:
-    content = read_json(read_text(path), str(path))
+    content = read_json(opened(path, "result").text(), str(path))
     if not isinstance(content, dict):
         raise StorageError(f"{one_line(path)} is damaged: it is not a mapping")
     return content

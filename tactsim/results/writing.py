@@ -15,7 +15,7 @@ from tactsim.results.document import document_text, plain_json
 from tactsim.results.fields import write_fields
 from tactsim.results.folder import RESULT_FILE, OutputFolder, claimed
 from tactsim.results.result import Result
-from tactsim.results.storage import naming, write_bytes
+from tactsim.storage.files import naming, write_bytes
 
 
 def write_result(
@@ -65,7 +65,7 @@ def fill(
 
 
 def write_files(files: Mapping[str, bytes], directory: str | Path) -> Path:
-    """Writes files, by their paths with ``/``, as a folder that is complete or absent; an earlier one of tactsim gives way.
+    """Writes files, by their paths with ``/``, as a folder that is complete or absent; an earlier folder of tactsim gives way.
 
     Raises
     ------

@@ -15,10 +15,11 @@ from tactsim.code_identity import code_identity
 from tactsim.contact.annulus import Annulus
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.experiments.indentation.scene import PressedBodyScene
+from tactsim.outside.files import opened
 from tactsim.outside.processes import requests
 from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results import Result
-from tactsim.results.storage import read_text, replace_file
+from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 from tactsim.validation.study import RunOutcome, Study
 
@@ -85,7 +86,7 @@ class StudyRunner:
     def _stored(self, case_id: str) -> RunOutcome | None:
         """What the cache holds, None if nothing that can be read."""
         with suppress(StorageError, ValueError):
-            return RunOutcome.model_validate_json(read_text(self._place(case_id)))
+            return RunOutcome.model_validate_json(opened(self._place(case_id), "result").text())
         return None
 
     def _store(self, outcome: RunOutcome) -> None:

@@ -20,8 +20,8 @@ from tactsim.cli import command_sweep, main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import StorageError
 
 OLD_SWEEP = "arrays"

@@ -56,7 +56,7 @@ def test_findings_without_end_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from tactsim.dataset import checking
-    from tactsim.dataset.finding import Finding
+    from tactsim.dataset.checking import Finding
 
     many = checking.Checked({}, tuple(Finding("kind", (), str(number)) for number in range(1000)))
     monkeypatch.setattr(checking, "check", lambda store: many)

@@ -67,7 +67,7 @@ def test_the_renderer_is_isolated(hostile: Path) -> None:
 
 
 def test_workers_are_isolated(hostile: Path) -> None:
-    pool: WorkerPool[int] = WorkerPool("tactsim.dataset.local_workers", (), 1)
+    pool: WorkerPool[int] = WorkerPool("tactsim.dataset.running.executors", (), 1)
     pool.submit(0, b'{"sweep": "{}", "samples": [0]}')
     (answer,) = pool.wait()
     pool.close()

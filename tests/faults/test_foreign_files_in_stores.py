@@ -13,7 +13,7 @@ from sweeps import Inline, sweep_file
 from tactsim.cli import command_sweep, main
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.own_files import MANIFEST
+from tactsim.storage.own_files import OWN_LIST
 
 
 @pytest.fixture(autouse=True)
@@ -48,7 +48,7 @@ def test_a_file_of_the_user_is_kept(name: str, before: bool, tmp_path: Path, cap
     store = tmp_path / "s.zarr"
     assert swept(tmp_path, 3) == 0
     if before:  # as if it had been there from the beginning
-        (store / MANIFEST).unlink()
+        (store / OWN_LIST).unlink()
         (store / "README.md").unlink()
     (store / name).write_text("mine", encoding="utf-8")
     assert swept(tmp_path, 6, "--resume") == 0
@@ -61,7 +61,7 @@ def test_a_file_of_the_user_is_kept(name: str, before: bool, tmp_path: Path, cap
 def test_files_of_an_earlier_version_are_known_by_the_card(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     store = tmp_path / "s.zarr"
     assert swept(tmp_path, 3) == 0
-    (store / MANIFEST).unlink()
+    (store / OWN_LIST).unlink()
     assert check(store).findings == ()
     assert "cannot be verified" in check(store).notes[-1]
     assert swept(tmp_path, 6, "--resume") == 0
@@ -73,9 +73,9 @@ def test_files_of_an_earlier_version_are_known_by_the_card(tmp_path: Path, capsy
 def test_a_list_of_another_program_is_kept(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     store = tmp_path / "s.zarr"
     assert swept(tmp_path, 3) == 0
-    (store / MANIFEST).write_text(text)
+    (store / OWN_LIST).write_text(text)
     assert swept(tmp_path, 6, "--resume") == 0
-    assert (store / MANIFEST).read_text() == text
+    assert (store / OWN_LIST).read_text() == text
     assert "move" in capsys.readouterr().err
     assert main(["data", "check", str(store)]) in (4, 5)
 

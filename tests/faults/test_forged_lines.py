@@ -12,7 +12,7 @@ import pytest
 
 from tactsim.cli import main
 from tactsim.results import Result
-from tactsim.results.manifest import MANIFEST
+from tactsim.storage.own_files import MANIFEST
 
 FORGED = "ok\x1b[31m\nconverged: FAKE\r\x07\x9b2J\u202e"
 

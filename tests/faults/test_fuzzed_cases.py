@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from tactsim.case import load_case
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.sampling.sweep import load_sweep
 
 ROOT = Path(__file__).parents[2]
 CASES = sorted(path.name for path in (ROOT / "cases").glob("*.yaml"))

@@ -41,7 +41,7 @@ from tactsim.errors import TactsimError
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_data import read_dma
 from tactsim.identification.uniaxial_data import read_uniaxial_curve
-from tactsim.live.feed import Feed
+from tactsim.live.sources.feed import Feed
 from tactsim.localization.networks import read_weights
 from tactsim.mesh import mesh_store
 from tactsim.mesh.foreign import read_foreign
@@ -54,6 +54,7 @@ from tactsim.results.document import parse_document
 from tactsim.results.fields import read_fields, write_fields
 from tactsim.results.result import FieldFrame
 
+pytestmark = pytest.mark.filterwarnings("ignore::tactsim.outside.mesh_files.MeshFileWarning")
 MOST_MEMORY = 2**30
 """In bytes, of all inputs."""
 

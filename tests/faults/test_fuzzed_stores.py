@@ -18,8 +18,9 @@ from hypothesis import strategies as st
 from sweeps import Inline, assert_same, small_store, sweep_file
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset import computing, load
+from tactsim.dataset import load
 from tactsim.dataset.figures import card as dataset_card
+from tactsim.dataset.running import computing
 from tactsim.errors import TactsimError
 
 QUICK = settings(derandomize=True, deadline=None, max_examples=60, suppress_health_check=list(HealthCheck))

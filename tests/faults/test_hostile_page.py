@@ -8,21 +8,21 @@ import os
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fork_server import forked_command
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from live_pages import description, frame_line, grasp_folder, line, made_up_store
 from served_pages import FRAMES, OP_TEXT, fault_or_code, framed, received, requests, served
 
 from tactsim.errors import InputError
-from tactsim.live.commands import read_command
 from tactsim.live.defects import LOGGER, telling_defects
-from tactsim.live.feed import Feed
+from tactsim.live.session.commands import read_command
+from tactsim.live.sources.feed import Feed
 
 END = 2.0
 """Time in s in which Ctrl-C must end the page."""
@@ -120,7 +120,7 @@ def test_a_page_of_samples_bears_any_command(tmp_path: Path) -> None:
 def test_a_pipe_or_a_device_as_a_file_of_frames_is_refused_with_advice(tmp_path: Path, how: str) -> None:
     place = tmp_path / "frames"
     os.mkfifo(place) if how == "fifo" else place.symlink_to("/dev/zero")
-    command = [sys.executable, "-m", "tactsim.cli", "show", "--web", "--no-browser", "--live", str(place)]
+    command = [*forked_command(), "show", "--web", "--no-browser", "--live", str(place)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 5
     assert "allowed: a regular file" in done.stderr

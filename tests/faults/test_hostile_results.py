@@ -15,12 +15,12 @@ from live_pages import grasp_folder, localized_folder
 
 from tactsim.cli import main
 from tactsim.errors import TactsimError
-from tactsim.live.choices import stored_choice
-from tactsim.live.content import opened_content
-from tactsim.live.estimating import frame_readings
-from tactsim.live.messages import Scales, frame_message, scene_message, shapes_message
-from tactsim.live.session import readings_or_fault
-from tactsim.live.thinking import estimate_message, message_or_fault
+from tactsim.live.session.choices import stored_choice
+from tactsim.live.session.content import opened_content
+from tactsim.live.session.estimating import frame_readings
+from tactsim.live.session.messages import Scales, frame_message, scene_message, shapes_message
+from tactsim.live.session.session import readings_or_fault
+from tactsim.live.session.thinking import estimate_message, message_or_fault
 from tactsim.outside import json_text
 from tactsim.results.reading import read_result
 

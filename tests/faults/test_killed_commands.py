@@ -14,7 +14,7 @@ from failing_disk import At, Killed, disk
 from tactsim.cli import main
 from tactsim.errors import StorageError
 from tactsim.results import read_result
-from tactsim.results.manifest import foreign, read_manifest
+from tactsim.storage.own_files import read_manifest
 
 MOST_STEPS = 150
 
@@ -33,7 +33,7 @@ def mark_of(out: Path) -> object:
         return None
     manifest = read_manifest(out)
     assert manifest is not None
-    assert foreign(out, manifest) == []
+    assert manifest.foreign(out) == []
     assert all((out / name).exists() for name in manifest.files), "a file of the new set is missing"
     return (
         "x" in read_result(out, fields=False).provenance["overrides"][-1]

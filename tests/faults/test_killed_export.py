@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,9 +16,13 @@ from failing_disk import At, Killed, disk
 from sweeps import small_store
 
 from tactsim.cli import main
-from tactsim.dataset import export
-from tactsim.dataset.building import MARK
+from tactsim.dataset.use import export
 from tactsim.errors import StorageError
+from tactsim.storage.building import MARK
+
+STRIDE = 7
+"""Steps between those that the quick run tries; a prime, so that it meets every kind of step."""
+EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["some", "every"])
 
 
 @pytest.fixture(scope="module")
@@ -60,13 +65,19 @@ def is_whole(place: Path) -> bool:
     return True
 
 
+def chosen(total: int, every: bool) -> Iterator[int]:
+    """Steps to try, the last among them."""
+    yield from range(total, 0, -1 if every else -STRIDE)
+
+
+@EVERY
 @pytest.mark.parametrize("name", ["flat", "whole.h5"])
-def test_a_death_at_any_step_leaves_all_or_nothing(kept: Path, tmp_path: Path, name: str) -> None:
+def test_a_death_at_any_step_leaves_all_or_nothing(kept: Path, tmp_path: Path, name: str, every: bool) -> None:
     counter = At(0)
     with disk(counter):
         assert exported(kept, tmp_path / name) == 0
     seen = set()
-    for number in range(1, counter.count + 1):
+    for number in chosen(counter.count, every):
         place = tmp_path / str(number) / name
         with suppress(Killed), disk(At(number)):
             exported(kept, place)
@@ -78,14 +89,15 @@ def test_a_death_at_any_step_leaves_all_or_nothing(kept: Path, tmp_path: Path, n
     assert seen == {False, True}
 
 
+@EVERY
 @pytest.mark.parametrize("name", ["flat", "whole.h5"])
 def test_a_disk_that_fails_once_leaves_nothing_half_written(
-    kept: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+    kept: Path, tmp_path: Path, name: str, every: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
     counter = At(0)
     with disk(counter):
         assert exported(kept, tmp_path / name) == 0
-    for number in range(1, counter.count + 1):
+    for number in chosen(counter.count, every):
         place = tmp_path / str(number) / name
         with disk(At(number, lambda: OSError(errno.ENOSPC, "No space left on device"), for_good=False)):
             code = exported(kept, place)

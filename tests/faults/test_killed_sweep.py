@@ -16,18 +16,21 @@ from pretence import PNG
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset import computing, load, running
+from tactsim.dataset import load
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running import computing
+from tactsim.dataset.running import run as running
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import TactsimError
 
 SAMPLES, MORE = 4, 6
 PLAIN = TEXT.replace("  reading: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}}\n", "").replace(
     "samples_per_specimen: 3", "samples_per_specimen: 2"
 )
-STRIDE = 89
-"""Steps between those that the quick run tries, beside all of the creation; a prime, so that it meets every kind of step."""
+STRIDE, CREATION_STRIDE = 89, 11
+"""Steps between those that the quick run tries, of a sweep and of its creation; primes, so that they meet every kind of step."""
 
 
 @pytest.fixture(autouse=True)
@@ -102,8 +105,9 @@ def assert_completed(place: Path, whole: Path, samples: int) -> None:
     assert os.listdir(place.parent) == ["s.zarr"]
 
 
-def chosen(total: int, every: bool) -> Iterator[int]:
-    yield from (range(1, total + 1) if every else range(1, total + 1, STRIDE))
+def chosen(total: int, every: bool, stride: int = STRIDE) -> Iterator[int]:
+    """Steps to try, the last among them."""
+    yield from range(total, 0, -1 if every else -stride)
 
 
 EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["some", "every"])
@@ -162,18 +166,19 @@ def creations(folder: Path) -> Callable[[], None]:
     sweep = load_sweep(sweep_file(folder, PLAIN), samples=SAMPLES)
 
     def create() -> None:
-        with running.opened_run(sweep, folder / "s.zarr"):
+        with opened_run(sweep, folder / "s.zarr"):
             pass
 
     return create
 
 
-def test_a_death_at_any_step_of_the_creation_leaves_a_whole_store_or_none(tmp_path: Path) -> None:
+@EVERY
+def test_a_death_at_any_step_of_the_creation_leaves_a_whole_store_or_none(tmp_path: Path, every: bool) -> None:
     create, counter = creations(tmp_path), At(0)
     with disk(counter):
         create()
     seen = set()
-    for number in range(1, counter.count + 1):
+    for number in chosen(counter.count, every, CREATION_STRIDE):
         for path in sorted((tmp_path / "s.zarr").rglob("*"), reverse=True):
             path.unlink() if path.is_file() else path.rmdir()
         (tmp_path / "s.zarr").rmdir()
@@ -182,7 +187,7 @@ def test_a_death_at_any_step_of_the_creation_leaves_a_whole_store_or_none(tmp_pa
         seen.add((tmp_path / "s.zarr").exists())
         if (tmp_path / "s.zarr").exists():
             assert load(tmp_path / "s.zarr").sizes["sample"] == 0
-            with running.opened_run(load_sweep(tmp_path / "sweep.yaml", samples=SAMPLES), tmp_path / "s.zarr", resume=True):
+            with opened_run(load_sweep(tmp_path / "sweep.yaml", samples=SAMPLES), tmp_path / "s.zarr", resume=True):
                 pass
         else:
             create()

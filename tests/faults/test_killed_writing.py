@@ -15,7 +15,9 @@ from pretence import PNG, pretended_result
 
 from tactsim.errors import StorageError
 from tactsim.results import Status, StepRecord, read_result, write_result
-from tactsim.results.folder import OutputFolder
+from tactsim.results.folder import OutputFolder, claimed
+from tactsim.results.writing import fill
+from tactsim.storage.own_files import MANIFEST
 
 RESULT = pretended_result(Status.CONVERGED, "done", (StepRecord(1, 4, 1e-11, {"displacement": 1e-4}),))
 MOST_STEPS = 60
@@ -66,6 +68,59 @@ def test_a_death_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, earlier: 
         assert read_result(place, fields=False).case_id == "next"
         assert os.listdir(place.parent) == ["out"]
     assert seen == ({"old", "new", None} if earlier else {"new", None})
+
+
+def ids_beside(place: Path) -> set[str]:
+    """What is read in every folder beside a place, its own and hidden ones included."""
+    return {read_result(folder, fields=False).case_id for folder in place.parent.iterdir() if (folder / "result.json").exists()}
+
+
+def test_a_death_at_any_step_keeps_a_result_without_a_manifest(tmp_path: Path) -> None:
+    for number in range(1, steps_of_one_writing(tmp_path / "count") + 5):
+        place = tmp_path / str(number) / "out"
+        write(place, "old")
+        (place / MANIFEST).unlink()
+        with suppress(Killed), disk(At(number, Killed, for_good=True)):
+            write(place, "new")
+        assert "old" in ids_beside(place)
+        write(place, "next")
+        assert ids_beside(place) == {"old", "next"}
+        assert read_result(place, fields=False).case_id == "next"
+        assert set(os.listdir(place.parent)) == {"out", "out.earlier"}
+
+
+def test_a_death_at_any_step_keeps_the_result_that_was_kept_before(tmp_path: Path) -> None:
+    def write_beside(place: Path, case_id: str) -> None:
+        with claimed(place, replace=True) as folder:
+            fill(folder, RESULT, case_id=case_id, provenance={}, figures={})
+            folder.publish(keep_earlier=True)
+
+    counter = At(0)
+    for case_id in ("0", "1"):
+        write_beside(tmp_path / "count" / "out", case_id)
+    with disk(counter):
+        write_beside(tmp_path / "count" / "out", "2")
+    for number in range(1, counter.count + 1):
+        place = tmp_path / str(number) / "out"
+        write_beside(place, "older")
+        write_beside(place, "old")
+        with suppress(Killed), disk(At(number, Killed, for_good=True)):
+            write_beside(place, "new")
+        assert "old" in ids_beside(place)
+        with claimed(place, replace=True):
+            assert ids_beside(place) in ({"older", "old"}, {"old"}, {"old", "new"})
+
+
+@pytest.mark.parametrize("kept_before", [False, True])
+def test_what_an_earlier_version_left_in_the_exchange_is_kept(tmp_path: Path, kept_before: bool) -> None:
+    if kept_before:
+        write(tmp_path / "out.earlier", "older")
+    write(tmp_path / ".out.replaced", "old")
+    (tmp_path / ".out.replaced" / MANIFEST).unlink()
+    write(tmp_path / "out", "new")
+    write(tmp_path / "out", "next")
+    assert ids_beside(tmp_path / "out") == {"old", "next"}
+    assert set(os.listdir(tmp_path)) == {"out", "out.earlier"}
 
 
 @pytest.mark.parametrize("number", range(1, MOST_STEPS))

@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 
 from tactsim.cli import command_sweep, main
-from tactsim.dataset.block import decoded
 from tactsim.dataset.checking import check
-from tactsim.dataset.computing import computed
-from tactsim.dataset.executor import Executor
-from tactsim.dataset.local_workers import LocalWorkers
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running.computing import computed
+from tactsim.dataset.running.executors import Executor, LocalWorkers
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.blocks import decoded
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import StorageError
 from tactsim.outside.worker_pool import WorkerPool
 
@@ -96,7 +95,7 @@ class Lost(Executor):
         self.tasks.append(samples)
 
     def wait(self, seconds: float) -> list:
-        from tactsim.dataset.executor import Outcome
+        from tactsim.dataset.running.executors import Outcome
 
         task = self.tasks.pop()
         return [Outcome(task, computed(self.sweep.text, task, "not run", folder=self.sweep.folder))]

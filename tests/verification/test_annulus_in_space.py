@@ -29,7 +29,7 @@ THIN = {
     "steps": {"first": 0.05e-3},
     "penetration_tolerance": 2e-7,
 }
-SIZES = {"finest": 0.4e-3, "growth": 1.5, "adaptive": False}
+SIZES = {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}
 TILT = 0.02
 """In rad: the outer edge stands 0.06 mm lower than the middle."""
 DEMANDED = 0.02
@@ -112,7 +112,8 @@ def test_half_a_body_is_two_quarters(quarter):
 
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base():
-    experiment = posed(tilt_y=TILT, displacement=0.04e-3)
+    coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh
+    experiment = posed(tilt_y=TILT, displacement=0.04e-3, mesh=coarse)
     model = experiment.model()
     *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)
     state, contact = last.contact, last.contact.contacts[0]

@@ -10,8 +10,8 @@ from tactsim.errors import InputError
 from tactsim.experiments.grasp.grasp import Grasp
 
 COUNT, SIZE = 50, (40e-3, 40e-3, 20e-3)
-QUICK = 3
-"""Of these, how many run in CI."""
+QUICK = (1, 2, 7)
+"""Those that run in CI: two lumps that are refused, and one so large that few elements hold it."""
 COARSE = {"kind": "tetrahedra", "size": 8e-3, "edge_size": 6e-3, "growth": 1.0}
 FINE_ENOUGH = 0.45
 """Element size at a lump over its radius, at most 3 mm."""
@@ -45,7 +45,7 @@ def outcome(number):
     return str(result.status), result.reason, result
 
 
-@pytest.mark.parametrize("number", [n if n < QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(COUNT)])
+@pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(COUNT)])
 def test_a_random_grasp_converges_or_is_refused(number):
     status, reason, result = outcome(number)
     if status == "refused":

@@ -6,7 +6,6 @@ import json
 import shutil
 import socket
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fork_server import forked_command
 from live_pages import TITLE, description, frame_line, grasp_folder, line, localized_folder, made_up_store, taxel_forces
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
@@ -48,7 +48,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
 @contextmanager
 def shown(browser: webdriver.Chrome, *arguments: str) -> Iterator[None]:
     """The page of a command, which must say nothing to the console but warnings of the graphics driver."""
-    command = [sys.executable, "-m", "tactsim.cli", "show", *arguments, "--web", "--no-browser"]
+    command = [*forked_command(), "show", *arguments, "--web", "--no-browser"]
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout is not None
@@ -200,9 +200,6 @@ def test_a_live_feed_is_drawn_and_its_title_stays_text(browser: webdriver.Chrome
         until(lambda: shows(browser, taxel_forces(1, count)[0], 1e-3 if count == 3 else 5.1e-2))
         until(lambda: "malformed in the stream, the last one: line" in words(browser, "alerts"))
         assert "'<b>'; needed: a finite number" in words(browser, "alerts")
-        begin, before = time.monotonic(), drawn(browser)
-        time.sleep(2)
-        rate = (drawn(browser) - before) / (time.monotonic() - begin)
-        (tmp_path / "rate.txt").write_text(f"{count} x {count}: {rate:.1f} frames per second\n")
+        before = drawn(browser)
+        until(lambda: drawn(browser) > before + 5)
         browser.save_screenshot(str(tmp_path / f"live{count}.png"))
-        assert rate > 1, "frames come; how many on an idle machine is a benchmark's matter"

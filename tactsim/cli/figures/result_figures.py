@@ -1,7 +1,8 @@
-"""Rendering of a result's figures; a figure that cannot be drawn never costs the numbers."""
+"""Drawing of figures; one that cannot be drawn never costs the numbers."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from tactsim.outside.library_warnings import collected_warnings
@@ -10,14 +11,23 @@ from tactsim.results import Result
 
 
 def rendered_figures(result: Result) -> tuple[dict[str, bytes], list[str]]:
-    """File name -> PNG bytes, the main figure first, and a warning for each that could not be drawn."""
+    """File name -> PNG bytes of a result's figures, the main one first, and warnings."""
+
+    def drawings() -> Mapping[str, Callable[[], bytes]]:
+        from tactsim.plotting import figures_for  # type: ignore[attr-defined,unused-ignore]
+
+        return figures_for(result)
+
+    return drawn_figures(drawings)
+
+
+def drawn_figures(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> tuple[dict[str, bytes], list[str]]:
+    """File name -> PNG bytes of those figures that could be drawn, and warnings: of libraries, and why others could not."""
     drawn: dict[str, bytes] = {}
     warnings: list[str] = []
     try:
-        from tactsim.plotting import figures_for  # type: ignore[attr-defined,unused-ignore]
-
         with collected_warnings() as said:
-            for name, draw in figures_for(result).items():
+            for name, draw in drawings().items():
                 drawn[name if Path(name).suffix else f"{name}.png"] = draw()
         warnings += said.lines()
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tactsim.dataset import load
 from tactsim.plotting.canvas import despined, new_figure, png, scale_of, styled
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = np.ndarray
 Drawing = Callable[[], bytes]
@@ -62,7 +65,7 @@ def taxels(force: Array) -> bytes:
         return png(figure)
 
 
-def _numbers(data: Any) -> dict[str, tuple[Array, str]]:
+def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:
     """Labels, then readings of one number, finite values only."""
     found = {}
     for role in ("label", "reading"):

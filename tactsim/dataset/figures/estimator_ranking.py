@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,16 +24,44 @@ AXES = {
     "contrast": "shear modulus over the tissue's",
     "closing": "closing of each jaw [mm]",
 }
-ROWS: tuple[tuple[str, tuple[str, ...], str], ...] = (
-    ("detection_rate", (), "part detected"),
-    ("lateral_error", ("median",), "lateral error [mm]"),
-    ("depth_error", ("median",), "depth error [mm]"),
-    ("coverage", (), "coverage of 90 % regions"),
-)
-"""Measure, place in it, heading."""
-RATES = ("detection_rate", "coverage")
 NOMINAL = (0.85, 0.95)
 """Band in which the coverage of 90 % regions should lie: the plan of the display."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A row of panels: the name of a measure, the statistic of it that is drawn, if it has several, and a heading."""
+
+    name: str
+    statistic: str | None
+    heading: str
+
+    @property
+    def is_rate(self) -> bool:
+        """Whether it is a part of 1, not a length."""
+        return self.statistic is None
+
+    def of(self, measures: Mapping[str, Any]) -> dict[str, float] | None:
+        """Its value and interval among the measures of an estimator, None if it is not known."""
+        found = measures[self.name]
+        return found if found is None or self.statistic is None else found[self.statistic]
+
+
+@dataclass(frozen=True)
+class Style:
+    """How an estimator is drawn and what it is called."""
+
+    name: str
+    colour: str
+    marker: str
+
+
+ROWS = (
+    Measure("detection_rate", None, "part detected"),
+    Measure("lateral_error", "median", "lateral error [mm]"),
+    Measure("depth_error", "median", "depth error [mm]"),
+    Measure("coverage", None, "coverage of 90 % regions"),
+)
 
 
 def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
@@ -50,12 +79,12 @@ def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
     with styled():
         figure = new_figure(2.6 * len(AXES) + 0.6, 2.1 * len(ROWS) + 0.5)
         grid = figure.subplots(len(ROWS), len(AXES), squeeze=False, sharex="col", sharey="row")
-        for row, (measure, place, heading) in enumerate(ROWS):
+        for row, measure in enumerate(ROWS):
             for column, (label, words) in enumerate(AXES.items()):
                 axis = grid[row, column]
-                _draw_bins(axis, estimators, label, (measure, place))
+                _draw_bins(axis, estimators, label, measure)
                 if column == 0:
-                    axis.set_ylabel(heading)
+                    axis.set_ylabel(measure.heading)
                 if row == len(ROWS) - 1:
                     axis.set_xlabel(words)
         _legend(figure, grid[0, 0])
@@ -66,13 +95,12 @@ def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
     """The same over the noise."""
     with styled():
         figure = new_figure(2.7 * len(ROWS), 2.7)
-        for axis, (measure, place, heading) in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
-            for number, one in enumerate(estimators):
-                multiples = np.array([told["multiple"] for told in one["noise"]])
-                values = [_number(told, measure, place) for told in one["noise"]]
-                _draw_line(axis, multiples, values, number=number, name=one["name"], measure=measure)
+        for axis, measure in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
+            for style, estimator in zip(_styles(estimators), estimators, strict=True):
+                multiples = np.array([measures["multiple"] for measures in estimator["noise"]])
+                _draw_line(axis, multiples, [measure.of(measures) for measures in estimator["noise"]], style, measure)
             axis.set_xlabel("noise over the stated noise")
-            axis.set_title(heading)
+            axis.set_title(measure.heading)
             _finish(axis, measure)
         _legend(figure, figure.axes[0])
     return figure
@@ -99,44 +127,43 @@ def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[
     return figure
 
 
-def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, measure: tuple[str, tuple[str, ...]]) -> None:
+def _styles(estimators: Sequence[Mapping[str, Any]]) -> list[Style]:
+    return [
+        Style(estimator["name"], COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)])
+        for number, estimator in enumerate(estimators)
+    ]
+
+
+def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, measure: Measure) -> None:
     factor = 1.0 if label == "contrast" else MILLIMETRES
     if label == "contrast":
         ends = [part[end] for one in estimators for part in one["bins"][label] for end in ("low", "high")]
         axis.set_xscale("log")
         axis.set_xlim(min(ends, default=1.0) / 1.2, max(ends, default=10.0) * 1.2)
-    for number, one in enumerate(estimators):
-        bins = one["bins"][label]
+    for style, estimator in zip(_styles(estimators), estimators, strict=True):
+        bins = estimator["bins"][label]
         middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
-        values = [_number(part, *measure) for part in bins]
-        _draw_line(axis, factor * middles, values, number=number, name=one["name"], measure=measure[0])
-    _finish(axis, measure[0])
+        _draw_line(axis, factor * middles, [measure.of(part) for part in bins], style, measure)
+    _finish(axis, measure)
 
 
-def _draw_line(axis: Axes, at: Array, values: Sequence[dict | None], *, number: int, name: str, measure: str) -> None:
+def _draw_line(axis: Axes, at: Array, values: Sequence[dict[str, float] | None], style: Style, measure: Measure) -> None:
     """One estimator's values with their intervals; those that are not known are left out."""
-    factor = 1.0 if measure in RATES else MILLIMETRES
-    known = [k for k, value in enumerate(values) if value is not None]
-    told = factor * np.array([[values[k][key] for key in ("value", "low", "high")] for k in known]).reshape(-1, 3)  # type: ignore[index]
-    colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
-    axis.plot(at[known], told[:, 0], f"-{marker}", color=colour, markersize=4, label=name)
-    axis.vlines(at[known], told[:, 1], told[:, 2], color=colour, linewidth=0.8, alpha=0.6)
+    factor = 1.0 if measure.is_rate else MILLIMETRES
+    known = [(place, value) for place, value in zip(at, values, strict=True) if value is not None]
+    places = [place for place, _ in known]
+    drawn = factor * np.array([[value[key] for key in ("value", "low", "high")] for _, value in known]).reshape(-1, 3)
+    axis.plot(places, drawn[:, 0], f"-{style.marker}", color=style.colour, markersize=4, label=style.name)
+    axis.vlines(places, drawn[:, 1], drawn[:, 2], color=style.colour, linewidth=0.8, alpha=0.6)
 
 
-def _finish(axis: Axes, measure: str) -> None:
-    if measure == "coverage":
+def _finish(axis: Axes, measure: Measure) -> None:
+    if measure.name == "coverage":
         axis.axhspan(*NOMINAL, color="0.9", zorder=0)
-    axis.set_ylim(bottom=0, top=1.05 if measure in RATES else None)
+    axis.set_ylim(bottom=0, top=1.05 if measure.is_rate else None)
     despined(axis)
 
 
 def _legend(figure: Figure, axis: Axes) -> None:
     handles, labels = axis.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=min(4, len(labels)), fontsize=8)
-
-
-def _number(told: Mapping[str, Any], measure: str, place: Sequence[str]) -> dict | None:
-    found: Any = told[measure]
-    for key in place:
-        found = None if found is None else found[key]
-    return found

@@ -21,7 +21,7 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
     course = stretches(experiment.histories(), experiment.duration)
     contact = model.start(experiment.contact, experiment.regularisation())
     start = TimedState.at_rest(model.body, contact, 1 + len(experiment.lumens))
-    return TimedPath(grasped_block(experiment, model), experiment.policy(), course, start)
+    return TimedPath(grasped_block(experiment, model), experiment.time.policy(experiment.materials), course, start)
 
 
 def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:

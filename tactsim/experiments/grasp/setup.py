@@ -15,6 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
+from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Material
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
@@ -23,11 +24,10 @@ from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
 from tactsim.mechanics.loading import AnyLoading, check_periods
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.sensors.matrix_readout import MatrixReadout
-from tactsim.units import Angle, FrozenModel, Length, Time, format_quantity
+from tactsim.units import Angle, FrozenModel, Length, format_quantity
 
 Array = np.ndarray
 
@@ -39,8 +39,6 @@ PENETRATION_OF_CLOSING = 1e-2
 """That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
-MANY_ITERATIONS = 60
-"""Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
 SWITCH_LENGTH = 1e-3
 """Length in m over which the state of a surface point may change its mind."""
 
@@ -92,22 +90,6 @@ class JawSettings(FrozenModel):
         )
         posed = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
         return Jaw.model_validate({"width": width, "depth": depth, "side": side, **posed})
-
-
-class GraspTimeSettings(TimeSettings):
-    """Steps of time: load steps of elastic tissue, controlled by their error if a material relaxes."""
-
-    steps: Annotated[int, Field(ge=1, le=1000)] = 2
-    """Load steps of a ramp, at least."""
-    per_period: Annotated[int, Field(ge=4, le=1000)] = 8
-    """Steps per period of a sine or pulse, at least."""
-    tolerance: Annotated[float, Field(gt=0, le=0.1)] = 5e-3
-    """Largest estimated error of the stress of materials that relax, relative to its root mean square over the volume."""
-    first: Annotated[Time, Field(gt=0)] | None = None
-    """First step of each piece if a material relaxes; by default a thousandth of the piece, and after a sudden change of the
-    shortest relaxation time if that is shorter."""
-    per_decade: Annotated[int, Field(ge=0, le=1000)] = 0
-    """Times per decade of time at which a step must end if a material relaxes."""
 
 
 class GraspSetup(FrozenModel):
@@ -172,18 +154,6 @@ class GraspSetup(FrozenModel):
     def relaxes(self) -> bool:
         """Whether a material relaxes."""
         return any(material.relaxation is not None for material in self.materials)
-
-    def policy(self) -> StepPolicy:
-        """Lengths of the steps."""
-        time = self.time
-        return StepPolicy(
-            time,
-            shortest_relaxation_time(self.materials),
-            per_ramp=time.steps,
-            per_period=time.per_period,
-            many_iterations=MANY_ITERATIONS,
-            sparing=True,
-        )
 
     @property
     def lumens(self) -> dict[int, AnyLumenPressure]:

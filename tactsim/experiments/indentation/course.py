@@ -57,7 +57,7 @@ def indentation_course(setup: IndentationSetup) -> Course:
 def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> ContactEquilibrium:
     """The body at first touch of the undeformed tissue, whose contact is as stiff as a shear modulus in Pa."""
     scale = Regularisation(setup.tolerance, modulus, switch_length=SWITCH_LENGTH * setup.contact_radius)
-    body = setup.pressed_body
+    body = setup.posed().body
     return model.start(body, model.touching_place(body), setup.contact, scale)
 
 
@@ -94,12 +94,13 @@ class DisplacementPath:
             yield state, touched
             rise = self.model.rise(state.contact, radius)[0]
             peak, peak_load = max((peak, peak_load), (rise, state.contact.load))
-            if setup.stops_at_touch and rise < PAST_PEAK * peak and not touched:
+            if self._drive.stops_at_touch and rise < PAST_PEAK * peak and not touched:
                 highest, where = format_quantity(peak, "m"), format_quantity(peak_load, "m")
                 raise ConvergenceError(f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling")
-        if touched and not setup.stops_at_touch:
-            place = state.contact.contacts[0].place + recess * setup.axis
-            sensor = self.model.contact(setup.inner_sensor, setup.contact, place)
+        posed = setup.posed()
+        if touched and not self._drive.stops_at_touch and posed.inner_sensor is not None:
+            place = state.contact.contacts[0].place + recess * posed.axis
+            sensor = self.model.contact(posed.inner_sensor, setup.contact, place)
             yield from self.follow(self.model.with_contact(state.contact, sensor), None, adapted)
 
     def follow(
@@ -146,7 +147,7 @@ class HistoryPath:
     """Follows a history of force or displacement; its mesh stays."""
 
     def __init__(self, setup: IndentationSetup, drive: Timed, model: PressedModel):
-        self._setup, self._model = setup, model
+        self._setup, self._drive, self._model = setup, drive, model
         stiffest = max(shear_relaxation(material).instantaneous_modulus for material in setup.specimen.materials)
         share = min(1.0, setup.tolerance / (LEAST_PENETRATION * setup.contact_radius))
         self._start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
@@ -173,7 +174,7 @@ class HistoryPath:
             If the path cannot be followed to its end.
         """
         event = None
-        if self._setup.stops_at_touch and self._setup.recess is not None:
+        if self._drive.stops_at_touch and self._setup.recess is not None:
             recess, radius = self._setup.recess, self._setup.body.inner_radius
             event = TimeEvent[TimedState](lambda state: self._model.rise(state.contact, radius)[0] - recess)
         yield from self._path.states(event)

@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
 from tactsim.fem.loading import StepControl
 from tactsim.fem.progress import check_steps
-from tactsim.results.result import Status
 from tactsim.units import FrozenModel, Length, format_quantity
 
 LEAST_STEP = 1e-9
@@ -71,19 +70,13 @@ class DisplacedSetup(IndentationSetup):
 
     def drive(self) -> Displaced:
         """Load steps to the displacement."""
-        return Displaced(self.displacement, self.control())
-
-    @property
-    def stops_at_touch(self) -> bool:
-        """Whether the run ends at the threshold."""
-        return self.stop == "threshold"
-
-    def ending(self, *, touched: bool) -> tuple[Status, str]:
-        """Failed where the threshold was asked for and not reached."""
-        if self.stops_at_touch and not touched:
-            reached = format_quantity(self.displacement, "m")
-            return Status.FAILED, f"the threshold was not reached within the displacement of {reached}"
-        return Status.CONVERGED, f"{self.stop} reached"
+        return Displaced(
+            stops_at_touch=self.stop == "threshold",
+            reached=f"{self.stop} reached",
+            missed=f"the threshold was not reached within the displacement of {format_quantity(self.displacement, 'm')}",
+            displacement=self.displacement,
+            control=self.control(),
+        )
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""

@@ -12,7 +12,7 @@ from tactsim.contact.tilted import Tilt, Tilted
 from tactsim.experiments.indentation.course import indentation_course
 from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.record import history_units
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.setup import MeshSettings, Posed
 from tactsim.fem.loading import StepControl
 from tactsim.fem.space import Measure
 from tactsim.interfaces import Experiment
@@ -22,8 +22,6 @@ from tactsim.mechanics.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import largest_offset, shifted_outside, swept
 from tactsim.units import Length, format_quantity
-
-Array = np.ndarray
 
 COARSENING = 3.0
 """Element size at the edges of the body over that of the section's own model: a fillet instead of a third of one."""
@@ -101,30 +99,12 @@ class SpaceIndentation(DisplacedSetup, Experiment):
             return SweepSymmetry.WHOLE
         return SweepSymmetry.HALF if self.offset != 0 or self.tilt_y != 0 else SweepSymmetry.QUARTER
 
-    @property
-    def pressed_body(self) -> Tilted:
-        """The body as it leans."""
-        return Tilted(body=self.body, tilt_x=self.tilt_x, tilt_y=self.tilt_y)
-
-    @property
-    def axis(self) -> Array:
-        """Unit vector (3,) along the leaning axis, away from the tissue."""
-        return self.pressed_body.rotation[:, 2]
-
-    @property
-    def away(self) -> float:
-        """The offset in m."""
-        return self.offset
-
-    @property
-    def sectors(self) -> int:
-        """As many as the whole mesh has around the axis."""
-        return 4 * self.mesh.sectors
-
-    @property
-    def inner_sensor(self) -> Tilted:
-        """The sensor in the hole of the annulus, which leans with it."""
-        return Tilted(body=super().inner_sensor, tilt_x=self.tilt_x, tilt_y=self.tilt_y)
+    def posed(self) -> Posed:
+        """The body as it leans, off the axis."""
+        tilts = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y}
+        body, punch = Tilted(body=self.body, **tilts), self.inner_punch
+        sensor = None if punch is None else Tilted(body=punch, **tilts)
+        return Posed(body, body.rotation[:, 2], sensor, self.offset, 4 * self.mesh.sectors)
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""

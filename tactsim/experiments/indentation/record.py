@@ -80,8 +80,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def __init__(self, setup: IndentationSetup, model: PressedModel, path: StartedPath):
         super().__init__(model, path, tolerance=setup.tolerance)
         drive = setup.drive()
-        self.setup, self.adaptations, self._start = setup, 0, path.start
-        self._clock = drive if isinstance(drive, Timed) else None
+        self.setup, self.adaptations, self._start, self._posed = setup, 0, path.start, setup.posed()
+        self._drive, self._clock = drive, drive if isinstance(drive, Timed) else None
         self._comparison = None if self._clock is None or self._clock.compare is None else Comparison(setup, self._clock)
 
     def adapted(self, model: PressedModel, split: Refinement) -> None:
@@ -127,7 +127,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def verdict(self) -> tuple[Status, str]:
         """As the touch of the inner sensor, or none, ends what the case asks for."""
-        return self.setup.ending(touched=self.event is not None)
+        return self._drive.ending(touched=self.event is not None)
 
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step."""
@@ -162,7 +162,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
             ),
         }
         if self.setup.body.kind == "annulus":
-            sectors = self.setup.sectors
+            sectors = self._posed.sectors
             around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
             text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
             found["pressure_around"] = Quantity(around.tolist(), "Pa", text)
@@ -206,7 +206,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         """Where a history leaves the recess or the closed form behind."""
         setup, told = self.setup, []
         highest = max(values.get("tissue_rise", 0.0) for values in series)
-        if setup.recess is not None and not setup.stops_at_touch and highest >= setup.recess:
+        if setup.recess is not None and not self._drive.stops_at_touch and highest >= setup.recess:
             recess = format_quantity(setup.recess, "m")
             told.append(f"the tissue rose beyond the recess of {recess}; the inner sensor's contact is not part of this run")
         part = max(values["displacement"] for values in series) / setup.contact_radius
@@ -218,7 +218,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         """The body and where it touched first."""
         if isinstance(self.model, SolidModel):
             symmetry = self.model.symmetry.name.lower()
-            return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self.setup.away)
+            return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self._posed.offset)
         if self._clock is not None:
             return TimedIndentationScene(**self._pressed(), control=self._clock.loading.control, compare=self._clock.compare)
         return IndentationScene(**self._pressed())
@@ -226,7 +226,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def _pressed(self) -> dict[str, Any]:
         """What every scene of a pressed body has, by name."""
         return {
-            "body": self.setup.pressed_body,
+            "body": self._posed.body,
             "starting_height": float(self._start.contacts[0].place[-1]),
             "recess": self.setup.recess,
             "solver": self.solver_report(mesh_adaptations=self.adaptations),

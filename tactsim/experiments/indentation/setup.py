@@ -51,7 +51,25 @@ class MeshSettings(FrozenModel):
 
 
 @dataclass(frozen=True)
-class Displaced:
+class Drive:
+    """What moves the body, and how a path that comes to its end is told."""
+
+    stops_at_touch: bool
+    """Whether the run is over when the tissue touches the inner sensor; a path without a touch has failed then."""
+    reached: str
+    """Reason of success."""
+    missed: str
+    """Reason of failure where the touch did not come."""
+
+    def ending(self, *, touched: bool) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end, by whether the tissue has touched the inner sensor."""
+        if self.stops_at_touch and not touched:
+            return Status.FAILED, self.missed
+        return Status.CONVERGED, self.reached
+
+
+@dataclass(frozen=True)
+class Displaced(Drive):
     """The body moves by ``displacement`` in m in load steps, without regard to time."""
 
     displacement: float
@@ -59,7 +77,7 @@ class Displaced:
 
 
 @dataclass(frozen=True)
-class Timed:
+class Timed(Drive):
     """The body follows a history of displacement or force."""
 
     loading: DisplacementLoading | ForceLoading
@@ -73,6 +91,21 @@ class Timed:
     def by_force(self) -> bool:
         """Whether the history is that of the force."""
         return self.loading.control == "force"
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A body as it stands, in the coordinates of the tissue."""
+
+    body: RigidBody
+    axis: Array
+    """Unit vector (d,) along its axis, away from the tissue."""
+    inner_sensor: RigidBody | None = None
+    """The sensor in the hole of an annulus."""
+    offset: float = 0.0
+    """Distance in m of its reference point from the axis of the specimen."""
+    sectors: int = 1
+    """Equal sectors around its axis by which its pressure is reported."""
 
 
 class IndentationSetup(FrozenModel):
@@ -103,38 +136,15 @@ class IndentationSetup(FrozenModel):
     def drive(self) -> Displaced | Timed:
         """What moves the body: the clock of the simulation, or none."""
 
-    @property
-    @abstractmethod
-    def stops_at_touch(self) -> bool:
-        """Whether the run is over when the tissue touches the inner sensor."""
-
-    @abstractmethod
-    def ending(self, *, touched: bool) -> tuple[Status, str]:
-        """Status and reason of a path that came to its end, by whether the tissue has touched the inner sensor."""
+    def posed(self) -> Posed:
+        """The body as it stands: upright on the axis."""
+        return Posed(self.body, np.array([0.0, 1.0]), self.inner_punch)
 
     @property
-    def pressed_body(self) -> RigidBody:
-        """The body as it stands."""
-        return self.body
-
-    @property
-    def axis(self) -> Array:
-        """Unit vector (d,) along the body's axis, away from the tissue."""
-        return np.array([0.0, 1.0])
-
-    @property
-    def away(self) -> float:
-        """Distance in m of the body's reference point from the axis of the specimen."""
-        return 0.0
-
-    @property
-    def sectors(self) -> int:
-        """Equal sectors around the body's axis by which its pressure is reported."""
-        return 1
-
-    @property
-    def inner_sensor(self) -> RigidBody:
-        """The sensor in the hole of the annulus as it stands."""
+    def inner_punch(self) -> Punch | None:
+        """The sensor that fills the hole of an annulus; None for another body."""
+        if self.body.kind != "annulus":
+            return None
         return Punch(radius=self.body.inner_radius, height=self.body.height)
 
     @property

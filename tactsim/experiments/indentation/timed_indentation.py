@@ -16,7 +16,6 @@ from tactsim.materials.library import named_material
 from tactsim.mechanics.loading import AnyLoading, DisplacementLoading
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
-from tactsim.results.result import Status
 from tactsim.units import Length, format_quantity
 
 LOAD_STEPS = 20
@@ -68,19 +67,15 @@ class TimedIndentation(IndentationSetup, Experiment):
     def drive(self) -> Timed:
         """The history, with steps of time."""
         materials, steps = self.specimen.materials, LOAD_STEPS
-        policy = StepPolicy(self.time, shortest_relaxation_time(materials), per_ramp=steps, per_period=steps)
-        return Timed(self.loading, policy, self.compare, self.time.earliest or 0.0)
-
-    @property
-    def stops_at_touch(self) -> bool:
-        """Whether the run ends at the touch."""
-        return self.stop == "touch"
-
-    def ending(self, *, touched: bool) -> tuple[Status, str]:
-        """Failed where the touch was asked for and did not come."""
-        if self.stops_at_touch and not touched:
-            return Status.FAILED, "the tissue did not touch the inner sensor within the history"
-        return Status.CONVERGED, "touched the inner sensor" if touched else "end of the history"
+        return Timed(
+            stops_at_touch=self.stop == "touch",
+            reached="touched the inner sensor" if self.stop == "touch" else "end of the history",
+            missed="the tissue did not touch the inner sensor within the history",
+            loading=self.loading,
+            policy=StepPolicy(self.time, shortest_relaxation_time(materials), per_ramp=steps, per_period=steps),
+            compare=self.compare,
+            compared_from=self.time.earliest or 0.0,
+        )
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

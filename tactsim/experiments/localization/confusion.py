@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from tactsim.errors import InputError
+from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
@@ -22,29 +22,22 @@ from tactsim.experiments.localization.source import (
 )
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
-from tactsim.localization.interface import ROUNDING_NOISE, Readings
+from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, format_quantity
 
-
-@dataclass
-class _Counted:
-    """What the grasps that were estimated until now make."""
-
-    table: ConfusionTable = field(default_factory=ConfusionTable)
-    steps: list[StepRecord] = field(default_factory=list)
-    judged: list[JudgedGrasp] = field(default_factory=list)
+Array = np.ndarray
+TUBE = "tube"
 
 
 class Confusion(Experiment):
     """Estimates of many stored grasps of one tissue, counted by their true and their estimated class.
 
     Each grasp is read ``draws`` times with seeded Gaussian noise on it and on the reference. For a data set use
-    ``tactsim.dataset.confusion``. A grasp whose inclusion has the material of the tissue counts by its shape: leave it out.
+    ``tactsim data confusion``. A grasp whose inclusion has the material of the tissue counts by its shape: leave it out.
     """
 
     kind: Literal["confusion"] = "confusion"
@@ -128,3 +121,62 @@ def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
         recalls = Quantity(table.recalls, "1", f"share of each true class told right: {order}; null if there is none")
         found["recalls"] = recalls
     return found
+
+
+def class_of(kinds: Sequence[str]) -> str | None:
+    """Class of inclusions by the names of their shapes; None for a lump beside an artery and for more than two."""
+    tubes = sum(kind == TUBE for kind in kinds)
+    names = {(0, 0): "none", (1, 0): "lump", (2, 0): "two_lumps", (1, 1): "artery", (2, 2): "two_arteries"}
+    return names.get((len(kinds), tubes))
+
+
+def estimated_class(estimate: Estimate) -> str:
+    """The likeliest class; of an estimator that tells none apart, that of what it found, which then counts as a lump."""
+    if estimate.classes is not None:
+        classes = estimate.classes
+        return max(classes, key=lambda name: classes[name])
+    return class_of([found.kind for found in estimate.inclusions]) or "lump"
+
+
+@dataclass
+class ConfusionTable:
+    """Counts (true, estimated) in the order of ``CLASSES``."""
+
+    counts: Array = field(default_factory=lambda: np.zeros((len(CLASSES),) * 2, int))
+
+    def add(self, true: str, estimated: str) -> None:
+        """Count one.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there is no such class.
+        """
+        for name in (true, estimated):
+            if name not in CLASSES:
+                raise InvalidQuantity(f"there is no class {name!r}; allowed: {', '.join(CLASSES)}")
+        self.counts[CLASSES.index(true), CLASSES.index(estimated)] += 1
+
+    @property
+    def total(self) -> int:
+        """Number of estimates."""
+        return int(self.counts.sum())
+
+    @property
+    def share_right(self) -> float | None:
+        """Share on the diagonal; None if nothing was counted."""
+        return float(np.trace(self.counts) / self.total) if self.total else None
+
+    @property
+    def recalls(self) -> list[float | None]:
+        """Share of each true class that was found as such; None for a class that does not occur."""
+        return [float(row[k] / row.sum()) if row.sum() else None for k, row in enumerate(self.counts)]
+
+
+@dataclass
+class _Counted:
+    """What the grasps that were estimated until now make."""
+
+    table: ConfusionTable = field(default_factory=ConfusionTable)
+    steps: list[StepRecord] = field(default_factory=list)
+    judged: list[JudgedGrasp] = field(default_factory=list)

@@ -21,7 +21,7 @@ from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
 from tactsim.results.reading import read_result
-from tactsim.results.storage import replace_file
+from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 
 Array = np.ndarray

@@ -1,12 +1,11 @@
-"""The quick force factor: interpolation error, formulas, units, speed and what is refused."""
+"""The quick force factor: interpolation error, formulas, units, work and what is refused."""
 
 from __future__ import annotations
-
-import time
 
 import numpy as np
 import pytest
 
+from tactsim.analytic import force_factor as interpolated
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.analytic.force_factor import (
     FORMULAS,
@@ -28,7 +27,8 @@ def test_the_interpolant_keeps_its_error():
     assert INTERPOLATION_ERROR <= 1e-9
     assert np.abs(force_errors).max() <= INTERPOLATION_ERROR
     assert np.abs(rise_errors).max() <= INTERPOLATION_ERROR
-    assert np.abs(force_errors + 3 * INTERPOLATION_ERROR).max() > INTERPOLATION_ERROR
+    shifted = force_factor(RATIOS * (1 - 1e-9)) - [punch.force_factor for punch in punches]
+    assert np.abs(shifted).max() > INTERPOLATION_ERROR, "a ratio off by 1e-9 is seen"
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,12 @@ def test_the_interpolant_keeps_its_error():
 def test_the_formulas_have_their_known_errors(formula, ratio, error, tolerance):
     found = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
     assert found == pytest.approx(error, abs=tolerance)
-    assert found != pytest.approx(error + 3 * tolerance, abs=tolerance)
+
+
+def test_the_formulas_are_told_apart():
+    values = np.array([float(force_factor(0.8, formula)) for formula in FORMULAS])
+    apart = np.abs(values[:, None] - values)[~np.eye(values.size, dtype=bool)]
+    assert apart.min() > 1e-3
 
 
 @pytest.mark.parametrize("formula", FORMULAS)
@@ -76,17 +81,11 @@ def test_displacement_inverts_force_over_broadcast_arrays(formula):
     np.testing.assert_allclose(back, np.broadcast_to(displacement, (5, 7)), rtol=1e-14)
 
 
-def test_two_hundred_thousand_pairs_a_second():
-    """A tenth of a million times ten of what one idle core does, so that a loaded machine passes."""
-    generator = np.random.default_rng(3)
-    ratio, displacement = generator.uniform(0, 0.99, 100_000), generator.uniform(0, 1e-3, 100_000)
-    force_factor(0.5)
-    times = []
-    for _ in range(5):
-        start = time.perf_counter()
-        annulus_force(displacement, 3e-3, ratio, 1e3)
-        times.append(time.perf_counter() - start)
-    assert ratio.size / min(times) >= 2e5
+def test_a_hundred_thousand_pairs_need_no_more_solutions_than_one(monkeypatch):
+    force_factor(0.5)  # makes the interpolant
+    monkeypatch.setattr(interpolated, "solve_annular_punch", None)
+    ratio = np.random.default_rng(3).uniform(0, 0.99, 100_000)
+    assert annulus_force(1e-3, 3e-3, ratio, 1e3).shape == ratio.shape
 
 
 def test_unknown_formulas_are_refused_with_the_known_ones():

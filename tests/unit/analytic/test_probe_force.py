@@ -20,7 +20,8 @@ def test_a_ramp_is_the_integral_of_the_modulus_on_uneven_times():
     terms = MODULUS.moduli * MODULUS.times * -np.expm1(-time[:, None] / MODULUS.times)
     expected = (3.0 * time + terms.sum(axis=1)) / 10.0
     np.testing.assert_allclose(quasi_linear(time, time, MODULUS), expected, rtol=1e-12)
-    assert not np.allclose(quasi_linear(time, time, MODULUS), (1 + 3e-12) * expected, rtol=1e-12, atol=0)
+    swapped = GeneralizedMaxwell(3.0, MODULUS.moduli[::-1], MODULUS.times)
+    assert not np.allclose(quasi_linear(time, time, swapped), expected, rtol=1e-2, atol=0)
 
 
 def test_a_jump_relaxes_by_the_modulus_and_columns_are_alone():
@@ -70,7 +71,6 @@ def test_force_at_a_depth_grows_with_the_rate_for_any_tissue_that_relaxes():
         modulus = GeneralizedMaxwell(moduli[3], moduli[:3], times)
         forces = np.array([pressed(rate, modulus).force[1:] for rate in (0.25e-3, 0.5e-3, 1e-3, 3e-3)])
         assert (np.diff(forces, axis=0) > 0).all()
-        assert not (np.diff(forces[::-1], axis=0) > 0).any()
 
 
 def test_contact_opens_on_the_way_back():

@@ -1,9 +1,8 @@
-"""Response to histories: convolution by quadrature, another solver, exact series at early times, and the cost."""
+"""Response to histories: convolution by quadrature, another solver, and exact series at early times."""
 
 from __future__ import annotations
 
 import itertools
-import time
 from decimal import Decimal, getcontext
 
 import numpy as np
@@ -152,15 +151,3 @@ def test_lags_are_exact_to_round_off_from_the_earliest_times(h):
         size = min(1.0, h) * min(1.0, 1 / lag) if angle > 1 else 0.0  # zeros of waves are met to round-off of the wave
         assert float(found[0]) == pytest.approx(float(c), rel=2e-14, abs=1e-14 * size)
         assert float(found[1]) == pytest.approx(float(s), rel=2e-14, abs=1e-14 * size)
-
-
-def test_a_recorded_signal_of_a_hundred_thousand_samples_takes_less_than_a_second():
-    generator = np.random.default_rng(7)
-    t, f = np.cumsum(generator.uniform(0.5e-3, 1.5e-3, 100_000)), generator.normal(size=100_000)
-    history = sampled(t, f)
-    kelvin = GeneralizedKelvin(1.0, np.ones(8), np.logspace(-3, 3, 8))
-    for model in (kelvin, maxwell_of(kelvin)):
-        response(model, history, t[:2])  # compiles
-        start = time.perf_counter()
-        response(model, history, t)
-        assert time.perf_counter() - start < 1.0

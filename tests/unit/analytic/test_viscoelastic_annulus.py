@@ -28,12 +28,13 @@ def agree(found, expected):
 
 
 def test_without_delay_it_is_the_elastic_annulus():
-    elastic = annulus(tissue=GeneralizedKelvin(1 / 5e3, [], []))
+    tissue = GeneralizedKelvin(1 / 5e3, [], [])
+    elastic = annulus(tissue=tissue)
     expected = annulus_displacement(0.7, RADIUS, 0.4, 5e3)
     agree(elastic.displacement(step(0.7), [0.0, 3.0]), expected)
     agree(elastic.force(step(float(expected)), [0.0, 3.0]), 0.7)
     with pytest.raises(AssertionError):
-        agree(elastic.displacement(step(0.7), 3.0), expected * (1 + 3 * ROUND_OFF))
+        agree(annulus(tissue=tissue, formula="thesis_4_2_21").displacement(step(0.7), 3.0), expected)
 
 
 def test_a_step_creeps_like_the_compliance():
@@ -53,8 +54,8 @@ def test_force_undoes_displacement(times):
     error = np.abs(found - expected).max()
     # The moduli over a time step of 0.5 ms change by less than a percent; so does the largest force
     assert error < 0.01 * 0.5
-    with pytest.raises(AssertionError):
-        np.testing.assert_allclose(found, 1.04 * expected, atol=0.01 * 0.5)
+    other = annulus(tissue=atrial_shear_compliance(times, "half_shear"))
+    assert np.abs(other.force(history, t) - expected).max() > 0.01 * 0.5, "another reading of the compliance is seen"
 
 
 def test_the_contact_opens_where_the_force_is_negative():

@@ -111,12 +111,12 @@ def test_a_figure_that_cannot_be_drawn_does_not_cost_the_numbers(
 def test_a_disk_that_fills_up_still_shows_the_numbers(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tactsim.results import storage
+    from tactsim.storage import files
 
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(storage.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     assert main(["run", "case.yaml"]) == 5
     out, err = capsys.readouterr()
     assert "threshold_pressure  17.2 kPa" in out

@@ -9,7 +9,7 @@ import pytest
 
 from tactsim.case import case_json_schema
 from tactsim.cli import main
-from tactsim.dataset.json_schema import sweep_json_schema
+from tactsim.dataset.sampling.json_schema import sweep_json_schema
 
 
 def test_the_schema_is_printed_or_written(pretended: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

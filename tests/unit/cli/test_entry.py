@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -64,8 +63,5 @@ def test_a_known_error_has_its_traceback_only_for_debugging(tmp_path: Path, caps
 
 def test_help_is_quick_because_it_imports_nothing_heavy() -> None:
     code = "import sys; from tactsim.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
-    started = time.perf_counter()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    duration = time.perf_counter() - started
     assert not {"numpy", "pydantic", "pint", "ruamel", "matplotlib", "meshio"} & set(done.stderr.split())
-    assert duration < 3  # the goal is 0.3 s; ten times that leaves room for a busy machine

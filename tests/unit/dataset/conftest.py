@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.dataset import building, journal, store_writing
+from tactsim.dataset.store import blocks as journal
+from tactsim.dataset.store import writing as store_writing
+from tactsim.storage import building
 
 
 @pytest.fixture(autouse=True)

@@ -10,11 +10,11 @@ from types import ModuleType
 import pytest
 from sweeps import Inline, sweep_file
 
-from tactsim.dataset.card import card_text
-from tactsim.dataset.layout import layout_of
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.use.card import card_text
 
 
 @pytest.fixture(scope="module")

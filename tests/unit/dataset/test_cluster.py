@@ -16,10 +16,10 @@ import pytest
 from sweeps import assert_same, small_store, sweep_file
 
 from tactsim.cli import main
-from tactsim.dataset import running
-from tactsim.dataset.cluster import Cluster
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.running import run as running
+from tactsim.dataset.running.executors import Cluster
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import InputError, StorageError
 
 ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
@@ -82,7 +82,7 @@ def test_a_worker_killed_in_the_middle_loses_nothing(tmp_path: Path, monkeypatch
 
 @QUIET
 def test_a_scheduler_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tactsim.dataset.cluster.CONNECTING", 0.3)
+    monkeypatch.setattr("tactsim.dataset.running.executors.CONNECTING", 0.3)
     with pytest.raises(StorageError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         Cluster(load_sweep(sweep_file(tmp_path)).text, "tcp://127.0.0.1:9")
     with pytest.raises(InputError, match="'nonsense' is no address; expected HOST:PORT"):

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from made_grasps import CLOSINGS, made_forces, made_store, plain_result, response, truths
+from made_grasps import CLOSINGS, made_forces, made_store, plain_result, response, sum_up, truths
 
 from tactsim.cli.entry import main
-from tactsim.dataset import confusion
-from tactsim.dataset.confusion import store_confusion
-from tactsim.dataset.confusion_report import as_text, record, verdict
-from tactsim.dataset.store import Store
-from tactsim.errors import InputError
-from tactsim.localization.confusion import ConfusionTable
+from tactsim.dataset.ranking import confusion
+from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, verdict
+from tactsim.dataset.ranking.samples import judged_samples
+from tactsim.dataset.store.opening import Store
+from tactsim.errors import InputError, StorageError
+from tactsim.experiments.localization.confusion import ConfusionTable
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 
 CLOSING = float(CLOSINGS[-1])
@@ -31,6 +32,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     told = tuple(replace(truth, closing=CLOSING) for truth in truths(40))
     group["closing"][...] = np.full(40, CLOSING)
     group["taxel_force"][...] = made_forces(told, response())[:, None].astype(group["taxel_force"].dtype)
+    sum_up(place)
     return place
 
 
@@ -71,6 +73,17 @@ def test_other_closings_than_the_reference_are_refused(store: Path, tmp_path: Pa
     other = plain_result(tmp_path / "other", CLOSINGS[:2])
     with pytest.raises(InputError, match="needed: the same"):
         store_confusion(store, other, HypothesesEstimator(), response=response())
+
+
+def test_a_changed_sample_is_not_counted(store: Path, plain: str, tmp_path: Path) -> None:
+    place = shutil.copytree(store, tmp_path / "changed.zarr")
+    forces = Store.open(place, writing=True).array("taxel_force")
+    forces[37] = 1.001 * forces[37]
+    with pytest.raises(StorageError, match=r"1 samples \(37\) is not what was written"):
+        store_confusion(place, plain, HypothesesEstimator(), response=response())
+    with pytest.raises(StorageError, match="is not what was written"):
+        judged_samples(place, [plain], source="taxel_force")
+    assert len(judged_samples(place, [plain], source="taxel_force", split="train").truths) == 30
 
 
 @pytest.mark.parametrize("extra", [["--reference", "y"], ["--readings", "read_force"], ["--learned", "x.npz"]])

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactsim.dataset.distributions import distribution
-from tactsim.dataset.places import filled, places_of
+from tactsim.dataset.sampling.distributions import distribution
+from tactsim.dataset.sampling.sweep import filled, places_of
 from tactsim.errors import InvalidQuantity
 
 SHARES = (np.arange(2000) + 0.5) / 2000

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 from sweeps import Inline, run_sweep, sweep_file
 
-from tactsim.dataset import journal, store_writing
-from tactsim.dataset.holes import JOURNAL
-from tactsim.dataset.running import opened_run
-from tactsim.dataset.sweep import load_sweep
-from tactsim.results.storage import sync
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store import blocks as journal
+from tactsim.dataset.store import writing as store_writing
+from tactsim.dataset.store.blocks import JOURNAL
+from tactsim.storage.files import sync
 
 Synced = list[tuple[str, bytes]]
 """Path within the store and content of every file that was synced, in order; of a folder its names."""

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 import zarr
 from sweeps import run_sweep, small_store, sweep_file
+from tactsim.dataset.store_writing import tell
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
-from tactsim.dataset.store import Store
-from tactsim.dataset.store_writing import tell
-from tactsim.dataset.sweep import load_sweep
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import StorageError
 
 

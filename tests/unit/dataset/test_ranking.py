@@ -11,9 +11,9 @@ from made_grasps import SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
 from tactsim.cli import main
-from tactsim.dataset.ranking import Outcome, binned, interval, measures, outcome, penalty, ranking, share
-from tactsim.dataset.ranking_report import against_baseline, as_text, record
-from tactsim.dataset.ranking_source import Truth
+from tactsim.dataset.ranking.measures import Outcome, binned, interval, measures, outcome, penalty, ranking, share
+from tactsim.dataset.ranking.report import against_baseline, as_text, record
+from tactsim.dataset.ranking.samples import Truth
 from tactsim.errors import InputError
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator

@@ -22,8 +22,8 @@ from made_grasps import (
 from sweeps import small_store
 
 from tactsim.cli import main
-from tactsim.dataset.ranking_reference import PlainGrasp
-from tactsim.dataset.ranking_source import judged_samples
+from tactsim.dataset.ranking.reference import PlainGrasp
+from tactsim.dataset.ranking.samples import judged_samples
 from tactsim.errors import InputError, StorageError
 
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactsim.dataset.block import decoded
-from tactsim.dataset.computing import computed
-from tactsim.dataset.drawing import drawn_specimen
-from tactsim.dataset.layout import layout_of, split_of
-from tactsim.dataset.settings import SweepSettings
-from tactsim.dataset.sweep import load_sweep
-from tactsim.dataset.variable import FAILED
+from tactsim.dataset.running.computing import computed
+from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.sampling.layout import layout_of, split_of
+from tactsim.dataset.sampling.settings import SweepSettings
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.arrays import FAILED
+from tactsim.dataset.store.blocks import decoded
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
 from tactsim.experiments.recording import Recorder, recorder_for

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from sweeps import TEXT, sweep_file
 
-from tactsim.dataset.block import decoded
-from tactsim.dataset.computing import computed
-from tactsim.dataset.designs import design_point
-from tactsim.dataset.drawing import drawn_specimen
-from tactsim.dataset.layout import layout_of
-from tactsim.dataset.sweep import Sweep, load_sweep, sweep_of_text
+from tactsim.dataset.running.computing import computed
+from tactsim.dataset.sampling.drawing import design_point, drawn_specimen
+from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
+from tactsim.dataset.store.blocks import decoded
 from tactsim.errors import CaseError
 
 CASES = Path(__file__).parents[3] / "cases"

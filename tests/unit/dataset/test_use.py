@@ -21,15 +21,15 @@ from sweeps import small_store, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
-from tactsim.dataset.block import checksum
-from tactsim.dataset.building import MARK
 from tactsim.dataset.checking import check
-from tactsim.dataset.layout import layout_of
-from tactsim.dataset.progress import Tally
-from tactsim.dataset.store import Store
-from tactsim.dataset.sweep import sweep_of_text
-from tactsim.dataset.variable import FAILED
+from tactsim.dataset.running.run import Tally
+from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.sweep import sweep_of_text
+from tactsim.dataset.store.arrays import FAILED
+from tactsim.dataset.store.blocks import checksum
+from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.storage.building import MARK
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_an_export_tells_what_failed(store: Path, tmp_path: Path) -> None:
 
 
 def test_shards_hold_the_same_with_an_index(kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tactsim.dataset.export.SHARD_SAMPLES", 10)
+    monkeypatch.setattr("tactsim.dataset.use.export.SHARD_SAMPLES", 10)
     assert main(["data", "export", str(kept), "--to", str(tmp_path / "shards")]) == 0
     index = pyarrow.parquet.read_table(tmp_path / "shards" / "index.parquet").to_pydict()
     data = load(kept)

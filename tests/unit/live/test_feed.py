@@ -13,8 +13,8 @@ import pytest
 from live_pages import description, frame_line, line
 
 from tactsim.errors import InputError, StorageError
-from tactsim.live.feed import Feed
-from tactsim.live.feed_sources import FeedPlace, feeding
+from tactsim.live.sources.feed import Feed
+from tactsim.live.sources.feed_sources import FeedPlace, feeding
 
 
 async def until(condition: Callable[[], bool], seconds: float = 10.0) -> None:
@@ -130,8 +130,8 @@ def test_a_missing_file_and_a_busy_port_are_told(tmp_path: Path) -> None:
 
 PIPE = """
 import asyncio, sys
-from tactsim.live.feed import Feed
-from tactsim.live.feed_sources import FeedPlace, feeding
+from tactsim.live.sources.feed import Feed
+from tactsim.live.sources.feed_sources import FeedPlace, feeding
 
 async def main():
     feed = Feed("pipe")

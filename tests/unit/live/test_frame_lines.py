@@ -9,8 +9,8 @@ import pytest
 from live_pages import description, frame_line, line, taxel_forces
 
 from tactsim.errors import InputError
-from tactsim.live.frame_lines import LineSplitter, read_line
-from tactsim.live.scene import Frame, PageScene
+from tactsim.live.sources.frame_lines import LineSplitter, read_line
+from tactsim.live.sources.scene import Frame, PageScene
 
 
 @pytest.fixture

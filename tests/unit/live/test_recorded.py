@@ -12,14 +12,14 @@ from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, mad
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
-from tactsim.live.choices import CHOICES, stored_choice
-from tactsim.live.content import opened_content
-from tactsim.live.estimating import estimated, frame_readings, shown_signal
-from tactsim.live.messages import Scales, frame_message
-from tactsim.live.recorded import result_recordings
-from tactsim.live.reference import Reference
-from tactsim.live.samples import Samples
-from tactsim.live.thinking import estimate_message
+from tactsim.live.session.choices import CHOICES, stored_choice
+from tactsim.live.session.content import opened_content
+from tactsim.live.session.estimating import estimated, frame_readings, shown_signal
+from tactsim.live.session.messages import Scales, frame_message
+from tactsim.live.session.thinking import estimate_message
+from tactsim.live.sources.recorded import result_recordings
+from tactsim.live.sources.reference import Reference
+from tactsim.live.sources.samples import Samples
 from tactsim.results import Quantity, write_result
 
 BY_NAME = {choice.name: choice for choice in CHOICES}

@@ -18,10 +18,10 @@ from aiohttp.test_utils import TestClient, TestServer
 from live_pages import TITLE, description, frame_line, grasp_folder, line, made_up_store, taxel_forces
 
 from tactsim.errors import InputError, StorageError
-from tactsim.live import session
-from tactsim.live.content import Content, opened_content
-from tactsim.live.feed import Feed
 from tactsim.live.server import Serving, application, serve
+from tactsim.live.session import session
+from tactsim.live.session.content import Content, opened_content
+from tactsim.live.sources.feed import Feed
 
 TOKEN = "a-token_1"
 Client = TestClient[Any, Any]

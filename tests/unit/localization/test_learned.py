@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, made_samples, response
 
-from tactsim.dataset import training
-from tactsim.dataset.ranking import measures, outcomes
+from tactsim.dataset.ranking import training
+from tactsim.dataset.ranking.measures import measures, outcomes
 from tactsim.errors import InputError, StorageError
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.learned import LearnedEstimator

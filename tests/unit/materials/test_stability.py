@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -139,15 +138,13 @@ def test_shipped_stable_sets_are_elliptic_over_half_to_double_and_printed_ones_a
     assert stability_range(named_material(name).material).strongly_elliptic == (name in STABLE)
 
 
-def test_twenty_thousand_points_are_judged_in_a_tenth_of_a_second():
+def test_twenty_thousand_points_are_judged_in_one_evaluation_of_the_energy(monkeypatch):
     F = np.eye(3)[:, :, None] + 0.2 * np.random.default_rng(6).normal(size=(3, 3, 20000))
-    material = named_material("icf_printed").material
-    times = []
-    for _ in range(5):
-        start = time.perf_counter()
-        strongly_elliptic(material, F)
-        times.append(time.perf_counter() - start)
-    assert min(times) < 0.1
+    material, asked = named_material("icf_printed").material, []
+    hessian = type(material).energy_hessian
+    monkeypatch.setattr(type(material), "energy_hessian", lambda self, *invariants: asked.append(1) or hessian(self, *invariants))
+    strongly_elliptic(material, F)
+    assert 1 <= len(asked) <= 3, asked
 
 
 def test_volume_and_rotation_do_not_matter_and_an_inverted_point_is_not_elliptic():

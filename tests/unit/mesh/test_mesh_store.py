@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,6 +22,10 @@ from tactsim.mesh.tetrahedra import mesh_key
 SETTINGS = BlockMeshSettings(inclusion_size=2.5e-3)
 
 
+made_block = cache(morphed_block)
+"""The same mesh for the same arguments."""
+
+
 class PretendedMesher:
     """Gives another mesh at every call, as the true one does."""
 
@@ -29,7 +34,7 @@ class PretendedMesher:
 
     def __call__(self, size, inclusions, settings):
         self.calls += 1
-        block = morphed_block(size, inclusions[0], settings)
+        block = made_block(size, inclusions[0], settings)
         facets = np.unique(np.concatenate([*block.facets.values()]))
         inner = np.setdiff1d(np.arange(block.mesh.corner_count), facets)
         nodes = block.mesh.nodes.copy()

@@ -16,7 +16,7 @@ from tactsim.validation.table import Bound, OutsideBy, Row
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
 NAMES = ("appendix_a", "section_6_3")
-TABLES = {name: load_tables(SHIPPED).tables[name] for name in NAMES}
+TABLES = load_tables(SHIPPED, NAMES).tables
 ROWS = [row for table in TABLES.values() for row in table.rows]
 
 

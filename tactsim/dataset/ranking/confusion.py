@@ -1,0 +1,135 @@
+"""The confusion table of an estimator on a data set of grasps: counted, and written as numbers and as a table to read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.dataset.use.loading import load
+from tactsim.errors import InputError
+from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
+from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
+from tactsim.localization.estimators.hypotheses import CLASSES
+from tactsim.localization.interface import ROUNDING_NOISE, Estimator
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = np.ndarray
+SCHEMA = "tactsim/confusion/1"
+
+
+def store_confusion(
+    store: str | Path,
+    reference: str,
+    estimator: Estimator,
+    *,
+    split: str | None = None,
+    noise: float = ROUNDING_NOISE,
+    seed: int = 1,
+    response: LumpResponse | None = None,
+) -> tuple[ConfusionTable, int]:
+    """Counts over the samples that are done, and the number of those left out because they belong to no class.
+
+    The forces of the solution are read with seeded Gaussian noise of the standard deviation ``noise`` in N; ``reference`` is the
+    folder of a grasp of plain tissue at the closing of all samples; its response is computed unless it is given.
+
+    Raises
+    ------
+    StorageError
+        If the store or the reference cannot be read, or a sample is not what was written.
+    InputError
+        If no sample is done, it has no inclusions, or another matrix or closing than the reference.
+    """
+    data = _grasps(store, split)
+    plain = readings_of(stored_grasp(reference), noise=noise)
+    forces = np.asarray(data["taxel_force"].values, dtype=float)[:, -1]
+    if forces.shape[1:] != plain.forces.shape:
+        raise InputError(f"the samples have (jaw, row, column) = {forces.shape[1:]}, the reference {plain.forces.shape}")
+    _check_closings(data["closing"].values, plain.closing)
+    if estimator.needs_response and response is None:
+        response = stored_response(reference)
+    table, others = ConfusionTable(), 0
+    for number, change, true in zip(data["sample"].values, forces, _true_classes(data), strict=True):
+        if true is None:
+            others += 1
+            continue
+        added = noise * np.random.default_rng([seed, int(number)]).standard_normal((2, *change.shape))
+        readings = replace(plain, forces=change + added[0], reference=plain.forces + added[1], response=response)
+        table.add(true, estimated_class(estimator.estimate(readings)))
+    return table, others
+
+
+def _grasps(store: str | Path, split: str | None) -> xarray.Dataset:
+    """The grasps of a store that are done, with all that is counted of them."""
+    data = load(store, split=split, verified=True)
+    if not data.sizes["sample"]:
+        raise InputError(f"{Path(store).name} has no sample that is done; run the sweep first")
+    missing = [name for name in ("taxel_force", "inclusion_kind", "inclusion_count", "closing") if name not in data]
+    if missing:
+        raise InputError(f"{Path(store).name} has no {missing[0]}; needed: a data set of grasps with taxels")
+    return data
+
+
+def _true_classes(data: xarray.Dataset) -> list[str | None]:
+    """Class of each sample by its inclusions, None if they are of no class."""
+    names = str(data["inclusion_kind"].attrs["flag_meanings"]).split()
+    kinds, counts = data["inclusion_kind"].values, data["inclusion_count"].values
+    return [class_of([names[int(kind)] for kind in row[: int(count)]]) for row, count in zip(kinds, counts, strict=True)]
+
+
+def _check_closings(closings: Array, reference: float | None) -> None:
+    """Refuse samples that close by more or less than the reference."""
+    if reference is None or not np.isfinite(closings).all():
+        raise InputError("the samples or the reference do not tell their closing; needed: a prescribed displacement of the jaws")
+    away = float(np.abs(closings - reference).max())
+    if away > SAME_CLOSING * reference:
+        raise InputError(
+            f"the samples close by {closings.min():g} to {closings.max():g} m, the reference by {reference:g} m; needed: the same"
+        )
+
+
+def record(table: ConfusionTable, others: int, about: Mapping[str, Any]) -> dict[str, Any]:
+    """All numbers of a table; ``about`` describes the run, with the ``noise`` in N; ``others`` samples belong to no class."""
+    return {
+        "schema": SCHEMA,
+        **about,
+        "classes": list(CLASSES),
+        "counts": table.counts.tolist(),
+        "samples": table.total,
+        "of_no_class": others,
+        "share_right": table.share_right,
+        "recalls": dict(zip(CLASSES, table.recalls, strict=True)),
+    }
+
+
+def verdict(content: Mapping[str, Any]) -> str:
+    """How many grasps were classified rightly, as a sentence."""
+    right = sum(row[k] for k, row in enumerate(content["counts"]))
+    return f"{right} of {content['samples']} grasps told right"
+
+
+def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
+    """The table in Markdown, true classes down and estimated ones across; a class that does not occur has no row."""
+    names = [name.replace("_", " ") for name in content["classes"]]
+    lines = [
+        "# Confusion table",
+        "",
+        f"{verdict(content)} by `{content['estimator']}`, noise of a reading {format_quantity(content['noise'], 'N')}; "
+        f"{content['of_no_class']} samples belong to no class.",
+        "",
+        f"| true, estimated across | {' | '.join(names)} | told right |",
+        "|" + " --- |" * (len(names) + 2),
+    ]
+    for name, shown, counts in zip(content["classes"], names, content["counts"], strict=True):
+        recall = content["recalls"][name]
+        if recall is not None:
+            lines.append(f"| {shown} | {' | '.join(map(str, counts))} | {recall:.0%} |")
+    return "\n".join([*lines, "", *(f"![{name}]({name})" for name in figures), ""])

@@ -1,0 +1,207 @@
+"""How well estimators find lumps: errors, coverage, misses and false alarms over the samples of a data set, and one score."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.stats import binomtest
+
+from tactsim.dataset.ranking.samples import JudgedSamples, Truth
+from tactsim.errors import InputError
+from tactsim.localization.interface import Estimate, Estimator
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.localization.region import LEVEL
+
+Array = np.ndarray
+NOISES = (1.0, 2.0, 4.0)
+"""Noise of a reading over the stated one."""
+DRAWN = 1000
+"""Bootstrap samples of an interval."""
+INTERVAL = 0.95
+"""Probability of an interval."""
+BINS = 4
+"""Parts into which a label is divided, with equally many lumps each."""
+LABELS = {"depth": "m", "radius": "m", "contrast": "1", "closing": "m"}
+"""Labels of the truth over which everything is binned, with units."""
+Statistic = Callable[..., Any]
+"""Of values along the ``axis`` that it is given."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One estimate against the truth; lengths in m, None where there is none.
+
+    ``lateral``, ``depth`` and ``radius`` are errors: distance in plan, estimated less true height, estimated less true radius.
+    ``covered`` tells whether the 90 % region holds the true centre; ``width`` and ``height`` are its sizes.
+    """
+
+    truth: Truth
+    found: bool
+    probability: float | None = None
+    center: tuple[float, float, float] | None = None
+    lateral: float | None = None
+    depth: float | None = None
+    radius: float | None = None
+    covered: bool | None = None
+    width: float | None = None
+    height: float | None = None
+
+
+def outcome(estimate: Estimate, truth: Truth) -> Outcome:
+    """The strongest inclusion of an estimate against the truth."""
+    if not estimate.inclusions:
+        return Outcome(truth, False, estimate.probability)
+    ball = estimate.inclusions[0]
+    against: dict[str, Any] = {"found": True, "probability": estimate.probability, "center": ball.center}
+    if ball.region is not None:
+        against["width"], against["height"] = ball.region.sizes(LEVEL)
+    if truth.center is not None and truth.radius is not None:
+        away = np.asarray(ball.center) - truth.center
+        against |= {"lateral": float(np.hypot(*away[:2])), "depth": float(away[2])}
+        against["radius"] = None if ball.radius is None else ball.radius - truth.radius
+        against["covered"] = None if ball.region is None else ball.region.contains(np.asarray(truth.center), LEVEL)
+    return Outcome(truth, **against)
+
+
+def outcomes(
+    estimator: Estimator, samples: JudgedSamples, response: LumpResponse | None, *, multiple: float = 1.0, seed: int = 1
+) -> list[Outcome]:
+    """One outcome for each sample.
+
+    Raises
+    ------
+    InputError
+        If the estimator needs what the samples lack.
+    """
+    own = response if estimator.needs_response else None
+    if estimator.needs_response and own is None:
+        raise InputError(f"the estimator {estimator.kind} needs the response of the tissue")
+    readings = samples.readings(own, multiple=multiple, seed=seed)
+    return [outcome(estimator.estimate(each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
+
+
+def measures(found: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
+    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
+
+    Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
+    by the bootstrap over the samples; None where no sample tells.
+    """
+    lumps = [one for one in found if one.truth.present]
+    plain = [one for one in found if not one.truth.present]
+    hits = [one for one in lumps if one.found]
+    covered = [one.covered for one in hits if one.covered is not None]
+    by_name: dict[str, Any] = {"samples": len(found), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
+    by_name["detection_rate"] = share([one.found for one in lumps])
+    by_name["false_alarm_rate"] = share([one.found for one in plain])
+    by_name["score"] = interval([penalty(one, block_size) for one in found], np.mean)
+    for name in ("lateral", "depth", "radius"):
+        errors = [abs(float(value)) for one in hits if (value := getattr(one, name)) is not None]
+        by_name[f"{name}_error"] = spread(errors)
+        by_name[f"{name}_error_with_misses"] = _with_misses(lumps, name, block_size)
+    by_name["depth_bias"] = interval([float(one.depth) for one in hits if one.depth is not None], np.median)
+    by_name["coverage"] = share(covered)
+    by_name["region_width"] = interval([one.width for one in hits if one.width is not None], np.median)
+    by_name["region_height"] = interval([one.height for one in hits if one.height is not None], np.median)
+    return by_name
+
+
+def penalty(one: Outcome, block_size: Array) -> float:
+    """Distance in m of the estimated from the true centre, at most half the block's plan and height together.
+
+    That much is also counted for a lump that is missed and for an alarm without a lump, so that hiding does not pay; nothing is
+    counted for rightly finding nothing.
+    """
+    most = float(np.hypot(np.min(block_size[:2]) / 2, block_size[2] / 2))
+    if one.lateral is not None and one.depth is not None:
+        return min(most, float(np.hypot(one.lateral, one.depth)))
+    return 0.0 if one.found == one.truth.present else most
+
+
+def _with_misses(lumps: Sequence[Outcome], name: str, block_size: Array) -> dict[str, float] | None:
+    """Median of an error in m over all lumps, a missed one counted as half the block's size; None for the radius."""
+    if name == "radius":
+        return None
+    most = float(np.min(block_size[:2]) / 2 if name == "lateral" else block_size[2] / 2)
+    errors = [abs(float(value)) if (value := getattr(one, name)) is not None else most for one in lumps]
+    return interval(errors, np.median)
+
+
+def spread(values: Sequence[float]) -> dict[str, Any] | None:
+    """Median, 90 % quantile and mean, each with its interval; None without values."""
+    if not values:
+        return None
+    named: dict[str, Statistic] = {"median": np.median, "quantile_90": partial(np.quantile, q=0.9), "mean": np.mean}
+    return {name: interval(values, statistic) for name, statistic in named.items()}
+
+
+def interval(values: Iterable[float | None], statistic: Statistic) -> dict[str, float] | None:
+    """Value of a statistic with its 95 % interval by the percentile bootstrap, seeded; None without values."""
+    given = np.asarray(list(values), dtype=float)
+    if not given.size:
+        return None
+    drawn = given[np.random.default_rng(1).integers(given.size, size=(DRAWN, given.size))]
+    low, high = np.quantile(statistic(drawn, axis=1), [(1 - INTERVAL) / 2, (1 + INTERVAL) / 2])
+    return {"value": float(statistic(given, axis=0)), "low": float(low), "high": float(high)}
+
+
+def share(given: Sequence[bool]) -> dict[str, float] | None:
+    """Part of the true ones with its 95 % interval (E. B. Wilson 1927, doi:10.1080/01621459.1927.10502953), which has a width at
+    0 and 1 too; None without values."""
+    if not given:
+        return None
+    low, high = binomtest(sum(map(bool, given)), len(given)).proportion_ci(INTERVAL, method="wilson")
+    return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
+
+
+def binned(found: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:
+    """For each label, the measures of lumps in parts of its range with equally many lumps."""
+    lumps = [one for one in found if one.truth.present]
+    by_label: dict[str, list[dict[str, Any]]] = {}
+    for label in LABELS:
+        values = np.array([getattr(one.truth, label) for one in lumps], dtype=float)
+        edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1))) if values.size else np.zeros(0)
+        edges = np.repeat(edges, 2) if len(edges) == 1 else edges
+        by_label[label] = []
+        for k, (low, high) in enumerate(pairwise(edges)):
+            inside = (values >= low) & ((values <= high) if k == len(edges) - 2 else (values < high))
+            own = [one for one, held in zip(lumps, inside, strict=True) if held]
+            by_label[label].append({"low": float(low), "high": float(high), **measures(own, block_size)})
+    return by_label
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked:
+    """An estimator, its outcomes at the stated noise, and its measures at several."""
+
+    name: str
+    outcomes: tuple[Outcome, ...]
+    noises: Mapping[float, dict[str, Any]]
+    bins: Mapping[str, list[dict[str, Any]]]
+
+    @property
+    def measures(self) -> dict[str, Any]:
+        """At the stated noise."""
+        return self.noises[1.0]
+
+    def record(self) -> dict[str, Any]:
+        """All numbers, in SI, with one row for each sample."""
+        rows = [asdict(one) for one in self.outcomes]
+        noises = [{"multiple": multiple, **measures} for multiple, measures in self.noises.items()]
+        return {"name": self.name, "measures": self.measures, "noise": noises, "bins": dict(self.bins), "samples": rows}
+
+
+def ranking(
+    estimators: Mapping[str, Estimator], samples: JudgedSamples, response: LumpResponse | None, *, seed: int = 1
+) -> list[Ranked]:
+    """Every estimator on every sample at every noise, the least score first."""
+    ranked = []
+    for name, estimator in estimators.items():
+        runs = {multiple: outcomes(estimator, samples, response, multiple=multiple, seed=seed) for multiple in NOISES}
+        noises = {multiple: measures(found, samples.block_size) for multiple, found in runs.items()}
+        ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
+    return sorted(ranked, key=lambda one: float(one.measures["score"]["value"]))

@@ -1,0 +1,113 @@
+"""The tissue without a lump that estimators compare with: what the taxels feel on it at any closing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from tactsim.errors import InputError
+from tactsim.experiments.localization.source import readings_of, stored_grasp
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.localization.interface import Readings
+from tactsim.results.result import Result
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+BEYOND = 1e-3
+"""Closing beyond that of the reference, as a share of the latter, that still counts as the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlainGrasp:
+    """The tissue without a lump, closed step by step: what the taxels feel at any closing, and what sensors make of it.
+
+    Attributes
+    ----------
+    closings : (n,) ascending in m, the first 0
+    forces : (n, jaw, row, column) in N
+    readings : of its last step, with layout, block and middle
+    """
+
+    closings: Array
+    forces: Array
+    readings: Readings
+
+    @classmethod
+    def of_results(cls, folders: Sequence[str]) -> PlainGrasp:
+        """From the folders of grasps without a lump: every step of one, or the last steps of several.
+
+        A result that was closed in the same steps as the samples shares their errors of friction; several of them are several
+        closings.
+
+        Raises
+        ------
+        StorageError
+            If there is no result.
+        InputError
+            If they differ in block or matrix, or do not close from step to step or result to result.
+        """
+        if not folders:
+            raise InputError("no reference; needed: the folder of a grasp of the tissue without a lump")
+        results = [stored_grasp(folder) for folder in folders]
+        readings = [readings_of(result, noise=0.0) for result in results]
+        histories = [_history(result) for result in results]
+        if len(folders) > 1:
+            histories = [(closings[-1:], forces[-1:]) for closings, forces in histories]
+            order = np.argsort([closings[-1] for closings, _ in histories])
+            histories, readings = [histories[k] for k in order], [readings[k] for k in order]
+        for other in readings[:-1]:
+            check_same(other.block_size, other.layout, readings[-1], "one reference")
+        closings, forces = (np.concatenate(parts) for parts in zip(*histories, strict=True))
+        if len(closings) < 2 or closings[0] <= 0 or not (np.diff(closings) > 0).all():
+            known = ", ".join(format_quantity(float(closing), "m") for closing in closings)
+            raise InputError(
+                f"the reference is known at closings of {known}; needed: two or more, rising: a plain grasp closed in "
+                "several steps (time: {steps: 12}), or several results"
+            )
+        begun = np.concatenate([[0.0], closings]), np.concatenate([np.zeros_like(forces[:1]), forces])
+        return cls(*begun, readings[-1])
+
+    def at(self, closing: Array | float) -> Array:
+        """Forces (..., jaw, row, column) in N at closings in m, by monotone cubic interpolation.
+
+        Raises
+        ------
+        InputError
+            If a closing lies beyond the last of the reference.
+        """
+        wanted, most = np.asarray(closing, dtype=float), float(self.closings[-1])
+        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + BEYOND):
+            asked = format_quantity(float(wanted.max()), "m")
+            raise InputError(
+                f"a sample closes by {asked}, the reference from 0 to {format_quantity(most, 'm')}; "
+                "needed: a reference that closes at least as far as every sample"
+            )
+        return PchipInterpolator(self.closings, self.forces, axis=0)(np.minimum(wanted, most))
+
+
+def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str) -> None:
+    """Refuse a reference of another block or matrix than ``whose``.
+
+    Raises
+    ------
+    InputError
+        Naming what differs.
+    """
+    if not np.allclose(size, reference.block_size, rtol=1e-9):
+        measured = [" x ".join(format_quantity(float(side), "m") for side in block) for block in (size, reference.block_size)]
+        raise InputError(f"the block of {whose} measures {measured[0]}, that of the reference {measured[1]}; needed: the same")
+    if layout != reference.layout:
+        raise InputError(f"the matrix of {whose} is {layout}, that of the reference {reference.layout}; needed: the same")
+
+
+def _history(result: Result) -> tuple[Array, Array]:
+    """Closings (n,) in m and forces (n, jaw, row, column) in N of the steps of a stored grasp."""
+    many = "_history" if len(result.steps) > 1 else ""
+    names = [f"taxel_force_{side}{many}" for side in JAWS]
+    sides = [np.asarray(result.quantities[name].value, dtype=float) for name in names]
+    closings = np.asarray(result.quantities[f"displacement{many}"].value, dtype=float)
+    forces = np.stack(sides, axis=-3)
+    return np.atleast_1d(closings), forces if many else forces[None]

@@ -1,0 +1,124 @@
+"""The ranking of estimators as files: all numbers, and a table to read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
+from tactsim.dataset.ranking.samples import JudgedSamples
+from tactsim.units import format_quantity
+
+SCHEMA = "tactsim/ranking/1"
+SCORE = (
+    "Mean over all samples of the distance in space between the estimated and the true centre, at most half the block's plan and "
+    "height together; a missed lump and a false alarm count that much."
+)
+BASELINE = "thesis"
+COLUMNS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("score [mm]", ("score",), "m"),
+    ("detected", ("detection_rate",), "1"),
+    ("false alarms", ("false_alarm_rate",), "1"),
+    ("lateral error, median [mm]", ("lateral_error", "median"), "m"),
+    ("90 % quantile [mm]", ("lateral_error", "quantile_90"), "m"),
+    ("depth error, median [mm]", ("depth_error", "median"), "m"),
+    ("90 % quantile [mm]", ("depth_error", "quantile_90"), "m"),
+    ("radius error, median [mm]", ("radius_error", "median"), "m"),
+    ("coverage of 90 % regions", ("coverage",), "1"),
+    ("their width, median [mm]", ("region_width",), "m"),
+    ("their height, median [mm]", ("region_height",), "m"),
+)
+"""Heading, place in the measures, unit; lengths are shown in mm."""
+BINNED = (COLUMNS[1], COLUMNS[3], COLUMNS[5], COLUMNS[7], COLUMNS[8])
+
+
+def record(ranked: Sequence[Ranked], samples: JudgedSamples, about: Mapping[str, Any]) -> dict[str, Any]:
+    """All numbers of a ranking, in SI; ``about`` describes the run: store, split, seed."""
+    return {
+        "schema": SCHEMA,
+        **about,
+        "score": SCORE,
+        "readings": samples.source,
+        "noise": {"value": samples.noise, "unit": "N"},
+        "block_size": {"value": samples.block_size.tolist(), "unit": "m"},
+        "samples": len(samples.truths),
+        "interval": {"probability": INTERVAL, "rates": "Wilson", "bootstrap_samples": DRAWN},
+        "labels": LABELS,
+        "estimators": [one.record() for one in ranked],
+        "against_baseline": against_baseline(ranked),
+    }
+
+
+def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
+    """For each estimator, its median lateral and depth error over that of the thesis's algorithm, misses counted in both."""
+    base = next((one for one in ranked if one.name == BASELINE), None)
+    ratios: dict[str, dict[str, float]] = {}
+    for one in ranked:
+        if base is None or one is base:
+            continue
+        ratios[one.name] = {}
+        for name in ("lateral_error_with_misses", "depth_error_with_misses"):
+            own, other = one.measures[name], base.measures[name]
+            if own is not None and other is not None and other["value"] > 0:
+                ratios[one.name][name] = own["value"] / other["value"]
+    return ratios
+
+
+def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str]) -> str:
+    """The table in Markdown."""
+    lumps = sum(truth.present for truth in samples.truths)
+    lines = [
+        "# Ranking of estimators",
+        "",
+        f"{len(samples.truths)} grasps, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
+        f"noise of a reading {format_quantity(samples.noise, 'N')}. {SCORE}",
+        f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap.",
+        "",
+        *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
+        "",
+    ]
+    ratios = against_baseline(ranked)
+    if ratios:
+        lines += [f"Median errors over those of `{BASELINE}`, a missed lump counted as half the block:", ""]
+        lines += [f"- {name}: {_ratios(found)}" for name, found in ratios.items()]
+        lines += [""]
+    for one in ranked:
+        lines += [f"## {one.name}", "", *_of_one(one)]
+    return "\n".join([*lines, *(f"![{name}]({name})" for name in figures), ""])
+
+
+def _ratios(found: Mapping[str, float]) -> str:
+    return ", ".join(f"{name.split('_')[0]} {value:.2f}" for name, value in found.items()) or "not known"
+
+
+def _of_one(one: Ranked) -> list[str]:
+    noises = [(f"{multiple:g} x", measures) for multiple, measures in one.noises.items()]
+    lines = [*_table("noise", noises, (COLUMNS[0], COLUMNS[2], *BINNED)), ""]
+    for label, bins in one.bins.items():
+        rows = [(f"{_shown(part['low'], LABELS[label])} to {_shown(part['high'], LABELS[label])}", part) for part in bins]
+        heading = f"{label} [mm]" if LABELS[label] == "m" else label
+        lines += [*_table(heading, rows, BINNED), ""]
+    return lines
+
+
+def _table(
+    first: str, rows: Sequence[tuple[str, Mapping[str, Any]]], columns: Sequence[tuple[str, tuple[str, ...], str]]
+) -> list[str]:
+    lines = [f"| {' | '.join([first, *(heading for heading, _, _ in columns)])} |", "|" + " --- |" * (len(columns) + 1)]
+    for name, measures in rows:
+        lines.append(f"| {' | '.join([name, *(_cell(measures, place, unit) for _, place, unit in columns)])} |")
+    return lines
+
+
+def _cell(measures: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
+    found: Any = measures
+    for key in place:
+        found = None if found is None else found[key]
+    if found is None:
+        return "-"
+    value, low, high = (_shown(found[name], unit) for name in ("value", "low", "high"))
+    return f"{value} [{low}, {high}]"
+
+
+def _shown(value: float, unit: str) -> str:
+    return f"{1e3 * value:.2f}" if unit == "m" else f"{value:.2f}"

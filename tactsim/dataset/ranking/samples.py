@@ -1,0 +1,222 @@
+"""What estimators are judged on: the samples of a store as readings with their truth, and the reference that belongs to each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tactsim.dataset.ranking.reference import PlainGrasp, check_same
+from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.sampling.layout import TRIED_SPECIMENS
+from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.use.loading import load
+from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.localization.source import Source
+from tactsim.localization.interface import ROUNDING_NOISE, Readings
+from tactsim.localization.lump_response import LumpResponse
+from tactsim.outside.text import one_line
+from tactsim.sensors.matrix_readout import MatrixReadout
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = np.ndarray
+SPHERE = 1
+"""Number of a ball among the kinds of inclusions of a store."""
+REPEATED = 16
+"""Readings of the same forces from which the noise of a sensor is estimated."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a sample was computed with; lengths in m, all but ``closing`` None without a lump.
+
+    ``depth`` is that of the centre below the upper face, ``contrast`` the shear modulus over that of the tissue.
+    """
+
+    sample: int
+    closing: float
+    center: tuple[float, float, float] | None = None
+    radius: float | None = None
+    depth: float | None = None
+    contrast: float | None = None
+
+    @property
+    def present(self) -> bool:
+        """Whether there is a lump."""
+        return self.center is not None
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedSamples:
+    """The samples of a store that are done, with at most one ball each, and the plain grasp that they are held against."""
+
+    truths: tuple[Truth, ...]
+    forces: Array
+    """(n, jaw, row, column) in N: as the solution has them, or as read."""
+    durations: Array
+    """(n,) in s, from first touch to the reading."""
+    experiment: Grasp
+    plain: PlainGrasp
+    source: Source
+    noise: float
+    """Standard deviation in N of a reading, as stated."""
+    own_noise: float = 0.0
+    """That of the forces as they are; the rest is added."""
+
+    @property
+    def block_size(self) -> Array:
+        """(3,) in m."""
+        return np.asarray(self.plain.readings.block_size)
+
+    @cached_property
+    def references(self) -> Array:
+        """What the plain tissue reads (n, jaw, row, column) at each sample's closing, in N; read with noise like the samples."""
+        closings = np.array([truth.closing for truth in self.truths])
+        if self.source == "taxel_force":
+            return self.plain.at(closings)
+        readout = _readout(self.experiment)
+        steps, area = self.experiment.time.steps, self.experiment.matrix.area
+        return np.stack(
+            [
+                _read(self.plain, readout, area, closing=c, duration=t, steps=steps, seed=truth.sample)
+                for c, t, truth in zip(closings, self.durations, self.truths, strict=True)
+            ]
+        )
+
+    def added(self, multiple: Array | float) -> Array:
+        """Standard deviation in N of what is added to forces and references, so that their noise is this often the stated one."""
+        return np.sqrt(np.maximum(0.0, (np.asarray(multiple) * self.noise) ** 2 - self.own_noise**2))
+
+    def readings(self, response: LumpResponse | None = None, *, multiple: float = 1.0, seed: int = 1) -> Iterator[Readings]:
+        """Readings of each sample with reference; noise is added until it is ``multiple`` times the stated one, by the seed."""
+        added = float(self.added(multiple))
+        for truth, forces, reference in zip(self.truths, self.forces, self.references, strict=True):
+            generator = np.random.default_rng([seed, truth.sample, round(1000 * multiple)])
+            noise = added * generator.standard_normal((2, *forces.shape))
+            yield replace(
+                self.plain.readings,
+                forces=forces + noise[0],
+                reference=reference + noise[1],
+                noise=multiple * self.noise,
+                closing=truth.closing,
+                response=response,
+            )
+
+
+def judged_samples(
+    store: str | Path,
+    reference: Sequence[str],
+    *,
+    split: str | Sequence[str] | None = None,
+    source: Source = "read_force",
+    noise: float | None = None,
+) -> JudgedSamples:
+    """The samples of a store, or of one of its parts, that estimators can be judged on.
+
+    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, found by repeated
+    readings of the reference; for ``taxel_force`` the default is what rounding to 0.1 N does (thesis 6.2).
+
+    Raises
+    ------
+    StorageError
+        If the folder is not a data set, or a sample is not what was written.
+    InputError
+        If it has no grasp that is done, other inclusions than one ball, no such readings, another block or matrix than the
+        reference, or closes further.
+    """
+    data, experiment = load(store, split=split, verified=True), stored_experiment(store)
+    _check_store(data, source, Path(store).name, split)
+    plain = PlainGrasp.of_results(reference)
+    check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")
+    forces = np.asarray(data[source].values[:, -1], dtype=float)
+    truths = _truths(data, float(experiment.block.size[2]))
+    plain.at(np.array([truth.closing for truth in truths]))
+    durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
+    own = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
+    given = noise if noise is not None else 0.0 if source == "read_force" else ROUNDING_NOISE
+    stated = float(np.hypot(own, given))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, own)
+
+
+def stored_experiment(store: str | Path) -> Grasp:
+    """The first possible grasp of a store, which tells block, matrix and readout.
+
+    Raises
+    ------
+    InputError
+        If it holds no grasps.
+    """
+    sweep = stored_sweep(Store.open(store))
+    try:
+        drawn = (drawn_specimen(sweep, specimen)[0] for specimen in range(TRIED_SPECIMENS))
+        case = next((one.case for one in drawn if one.case is not None), None)
+    except UNUSABLE as error:
+        raise StorageError(f"{Path(store).name}: the case in it cannot be read by this tactsim: {one_line(error)}") from None
+    if case is None or not isinstance(case.experiment, Grasp):
+        raise InputError(
+            f"{Path(store).name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml"
+        )
+    return case.experiment
+
+
+def _check_store(data: xarray.Dataset, source: Source, name: str, split: str | Sequence[str] | None) -> None:
+    part = f" in the split {split if isinstance(split, str) else ', '.join(split)}" if split else ""
+    if not data.sizes["sample"]:
+        raise InputError(f"{name} has no sample that is done{part}; run the sweep, or take another split")
+    if source not in data:
+        raise InputError(f"{name} has no {source}, its grasps have no readout; give --readings taxel_force")
+    if "inclusion_count" not in data or "inclusion_center" not in data:
+        raise InputError(f"{name} has no labels of inclusions; needed: grasps with a lump, as of cases/sweep_lumps.yaml")
+    count = data["inclusion_count"].values
+    if (count > 1).any() or ((count == 1) & (data["inclusion_kind"].values[:, 0] != SPHERE)).any():
+        raise InputError(f"{name} has samples with other than one ball; needed: one ball or none in every sample of the part")
+    if not np.isfinite(data["closing"].values).all():
+        raise InputError(f"{name} has grasps by a prescribed force; needed: a prescribed displacement of the jaws")
+
+
+def _truths(data: xarray.Dataset, height: float) -> tuple[Truth, ...]:
+    count, closing = data["inclusion_count"].values, data["closing"].values
+    center, radius = data["inclusion_center"].values[:, 0], data["inclusion_radius"].values[:, 0]
+    contrast, numbers = data["inclusion_contrast"].values[:, 0], data["sample"].values
+    found = []
+    for k, number in enumerate(numbers):
+        if not count[k]:
+            found.append(Truth(int(number), float(closing[k])))
+            continue
+        x, y, z = map(float, center[k])
+        found.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
+    return tuple(found)
+
+
+def _readout(experiment: Grasp) -> MatrixReadout:
+    pieces = experiment.loading.pieces
+    if experiment.readout is None or len(pieces) != 1 or pieces[0].kind != "ramp":
+        raise InputError("read forces need grasps with a readout that close in one ramp; give --readings taxel_force")
+    return experiment.readout
+
+
+def _read(
+    plain: PlainGrasp, readout: MatrixReadout, area: float, *, closing: float, duration: float, steps: int, seed: int
+) -> Array:
+    """What the sensors read (jaw, row, column) at the end of a ramp on plain tissue, solved in the same steps as the samples."""
+    part = np.arange(1, steps + 1) / steps
+    seeded = readout.model_copy(update={"seed": seed})
+    return np.asarray(seeded.read(part * duration, plain.at(part * closing), area).force[-1])
+
+
+def _read_noise(plain: PlainGrasp, experiment: Grasp, duration: float) -> float:
+    """Root mean square over the taxels of the standard deviation of repeated readings in N."""
+    readout, area = _readout(experiment), experiment.matrix.area
+    closing, steps = float(plain.closings[-1]), experiment.time.steps
+    repeated = [
+        _read(plain, readout, area, closing=closing, duration=duration, steps=steps, seed=seed) for seed in range(REPEATED)
+    ]
+    return float(np.sqrt(np.var(repeated, axis=0, ddof=1).mean()))

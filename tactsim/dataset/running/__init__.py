@@ -1,0 +1,1 @@
+"""How a sweep is computed: workers, what they compute, and going on where an earlier run stopped."""

@@ -1,0 +1,116 @@
+"""Computes samples: what a worker does, wherever it runs."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tactsim.dataset.sampling.drawing import Drawn, drawn_specimen, noise_generator, used_seed
+from tactsim.dataset.sampling.layout import Layout, layout_of, split_of
+from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
+from tactsim.dataset.store.arrays import DONE, FAILED
+from tactsim.dataset.store.blocks import checksum, encoded, stacked
+from tactsim.errors import CaseError, InvalidQuantity, TactsimError
+from tactsim.outside.library_warnings import collected_warnings
+from tactsim.results.result import Status
+
+Array = np.ndarray
+LONGEST_REASON = 500
+
+
+def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str | None = None) -> bytes:
+    """The samples of these numbers as bytes of a block.
+
+    Parameters
+    ----------
+    text : of the sweep
+    lost : the reason for which the samples are given up; nothing is run then
+    folder : of the sweep's file, in which the files that it names are looked for first
+    """
+    sweep = sweep_of_text(text, folder)
+    layout = layout_of(sweep)
+    done = []
+    for specimen, numbers in itertools.groupby(samples, key=lambda number: number // sweep.per_specimen):
+        drawn = drawn_specimen(sweep, specimen)
+        split = _split(sweep, layout, drawn[0])
+        done += [_sample(sweep, layout, drawn[number - drawn[0].sample], split, lost) for number in numbers]
+    return encoded(stacked(done, layout.variables))
+
+
+def _split(sweep: Sweep, layout: Layout, first: Drawn) -> int:
+    labels: dict[str, Array] = {}
+    if first.case is not None:
+        labels = layout.recorder.labels(first.case.experiment)
+        known = {variable.name: variable for variable in layout.variables}
+        return split_of(sweep, first.specimen, labels, known)
+    return 0
+
+
+def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -> dict[str, Array]:
+    begin = time.perf_counter()
+    found: dict[str, Any] = {
+        "sample": drawn.sample,
+        "specimen": drawn.specimen,
+        "split": split,
+        "seed": used_seed(sweep, drawn),
+        "redraws": drawn.redraws,
+        "code": 0,
+        "case_id": drawn.case.case_id if drawn.case else "",
+    }
+    found |= {place.variable: drawn.values.get(place.path, np.nan) for place in sweep.places}
+    status, reason = FAILED, lost or drawn.refusal
+    if drawn.case is not None:
+        found |= layout.recorder.labels(drawn.case.experiment)
+        if not lost:
+            with collected_warnings() as said:
+                status, reason, read = _run(sweep, layout, drawn)
+            reason = "; ".join([reason, *said.lines()])
+            found |= read
+    found |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
+    found |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
+    sample = _complete(found, layout)
+    return sample | {"checksum": checksum(sample, layout.variables)}
+
+
+def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str, Array]]:
+    """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
+    assert drawn.case is not None
+    try:
+        result = drawn.case.experiment.run(time_limit=sweep.settings.time_limit)
+        if result.status is not Status.CONVERGED:
+            return FAILED, f"{result.status}: {result.reason}", {}
+        readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
+        found = layout.recorder.numbers(result) | readings
+        _check(found, layout)
+    except CaseError:
+        raise  # what the sweep stores is wrong for every sample
+    except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
+        return FAILED, f"{type(error).__name__}: {error}", {}
+    return DONE, result.reason, found
+
+
+def _check(found: dict[str, Array], layout: Layout) -> None:
+    for name, value in found.items():
+        variable = layout.named(name)
+        if np.shape(value) != variable.sizes:
+            raise InvalidQuantity(f"{name} has the shape {np.shape(value)}; the store has {variable.sizes}: sizes must not vary")
+        if not (variable.optional or np.isfinite(value).all()):
+            raise InvalidQuantity(f"{name} is not finite")
+
+
+def _complete(found: dict[str, Any], layout: Layout) -> dict[str, Array]:
+    """Every variable with its type, those without a value filled."""
+    sample: dict[str, Any] = {"sample": found["sample"]}
+    for variable in layout.variables:
+        value = found.get(variable.name)
+        if value is None:
+            sample[variable.name] = variable.empty(1)[0]
+        elif variable.dtype == "str":
+            sample[variable.name] = str(value)
+        else:
+            sample[variable.name] = np.asarray(value, dtype=variable.dtype)
+    return sample

@@ -1,0 +1,148 @@
+"""A store opened for a sweep: made new, or put right and verified so that a run goes on where an earlier one stopped."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.code_identity import code_identity
+from tactsim.dataset.running.run import SweepRun, Tally
+from tactsim.dataset.sampling.layout import Layout, layout_of
+from tactsim.dataset.sampling.stored import attributes_of, check_same
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import META, earlier_words, wrong_arrays
+from tactsim.dataset.store.blocks import JOURNAL, Journal
+from tactsim.dataset.store.files import refuse_links, remove_torn
+from tactsim.dataset.store.opening import Store, consolidated_metadata
+from tactsim.dataset.store.verifying import damaged_samples, mark_pending
+from tactsim.dataset.store.writing import consolidate, create, resize, restore, set_attributes
+from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
+from tactsim.storage.building import refuse_taken, remove_leftover
+from tactsim.storage.files import naming
+from tactsim.storage.locking import only_one
+
+
+@contextmanager
+def opened_run(sweep: Sweep, path: str | Path, *, resume: bool = False, accept_changes: bool = False) -> Iterator[SweepRun]:
+    """A new store for a sweep, or the one that an earlier run left, owned until the block ends.
+
+    Parameters
+    ----------
+    resume
+        Whether to go on in an existing store.
+    accept_changes
+        Whether to go on although the code has changed since; samples are then marked with the code that computed them.
+
+    Raises
+    ------
+    StorageError
+        If the place is taken, in use, cannot be written, or holds another sweep or one of other code.
+    """
+    place = Path(path)
+    layout = layout_of(sweep)
+    with only_one(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another with --out"):
+        with naming(place):
+            remove_leftover(place)
+        if os.path.lexists(place / META):
+            run = _continued(sweep, layout, place, resume, accept_changes)
+        elif resume:
+            raise StorageError(f"there is no data set {one_line(place)} to resume; leave out --resume")
+        else:
+            run = _run(sweep, layout, _created(sweep, layout, place))
+        run.tally.before = run.store.samples - len(run.store.pending())
+        yield run
+
+
+def _run(sweep: Sweep, layout: Layout, store: Store) -> SweepRun:
+    last = len(store.attributes["codes"]) - 1
+    return SweepRun(sweep, layout, store, Journal(store.path / JOURNAL), Tally(store.samples), last)
+
+
+def _created(sweep: Sweep, layout: Layout, place: Path) -> Store:
+    try:
+        refuse_taken(place)
+    except StorageError:
+        taken = f"{one_line(place)} exists and is not a data set of tactsim; choose another with --out"
+        raise StorageError(taken) from None
+    return create(place, layout.variables, sweep.samples, attributes_of(sweep, layout))
+
+
+def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_changes: bool) -> SweepRun:
+    """The run in a store that an earlier one left: put right, its journal in the arrays, and every sample verified."""
+    store = Store.open(place, writing=True, damaged=resume)
+    if not resume:
+        raise StorageError(f"the data set {one_line(place)} exists; go on with it by --resume or choose another with --out")
+    check_same(sweep, store.attributes, place)
+    _check_code(store, accept_changes)
+    refuse_links(place)
+    Journal(place / JOURNAL).refuse_foreign()
+    store = _put_right(sweep, layout, store)
+    run = _run(sweep, layout, store)
+    run.recover()
+    _mark_damaged(run)
+    if code_identity() != store.attributes["codes"][-1]:
+        set_attributes(store, codes=[*store.attributes["codes"], code_identity()])
+        run.code += 1
+    return run
+
+
+def _check_code(store: Store, accept_changes: bool) -> None:
+    last = store.attributes["codes"][-1]
+    if last != code_identity() and not accept_changes:
+        raise StorageError(
+            f"the data set {one_line(store.path)} was computed by tactsim {one_line(last, 80)}, this is {code_identity()}; "
+            "mark what follows with --accept-changed-code, or begin anew with another --out"
+        )
+
+
+def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
+    """The store with all its arrays, of the sweep's length and described as one."""
+    _refuse_other_arrays(store, layout)
+    present = store.described.get("status") or next(iter(store.described.values()), None)
+    if present is None:
+        raise StorageError(f"{one_line(store.path)} has no array left; compute it anew with another --out, or bring back a copy")
+    if sweep.samples < present.shape[0]:
+        fewer = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
+        raise StorageError(f"the data set {one_line(store.path)} {fewer}")
+    remove_torn(store.path, store.described)
+    restored = restore(store, layout.variables)
+    lengths = {array.shape[0] for array in store.described.values()}
+    if restored or lengths != {sweep.samples}:
+        store = Store.open(store.path, writing=True)
+        resize(store, sweep.samples, layout.variables)
+    if store.attributes["sweep"] != sweep.text:
+        set_attributes(store, sweep=sweep.text)
+    elif restored or lengths != {sweep.samples} or not _is_gathered(store):
+        consolidate(store.path)
+    return Store.open(store.path, writing=True)
+
+
+def _refuse_other_arrays(store: Store, layout: Layout) -> None:
+    """Refuses to write into arrays that are not those of the sweep."""
+    remedy = "or remove it, and --resume makes it anew"
+    if never := store.never_stored(variable.name for variable in layout.variables):
+        raise StorageError(f"{one_line(store.path)}: {earlier_words(never)}; begin anew with another --out")
+    if store.faults:
+        raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
+    for name, words in wrong_arrays(store.described.values(), layout.variables):
+        raise StorageError(f"{one_line(store.path / name / META)}: {words}; bring back a copy of it, {remedy}")
+
+
+def _is_gathered(store: Store) -> bool:
+    gathered = consolidated_metadata(store.path)
+    return all(gathered.get(name) == array.metadata for name, array in store.described.items())
+
+
+def _mark_damaged(run: SweepRun) -> None:
+    """Marks every sample pending that counts as computed but is not what was written."""
+    found = damaged_samples(run.store, run.layout.variables)
+    if found:
+        numbers = np.unique(np.concatenate(list(found.values())))
+        mark_pending(run.store, numbers)
+        run.tally.again = len(numbers)
+        run.tally.damaged |= {reason: len(samples) for reason, samples in found.items()}

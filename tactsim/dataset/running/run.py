@@ -1,0 +1,194 @@
+"""One run of a sweep: hands out samples, keeps what comes back, counts, and folds what it kept into the store."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tactsim.dataset.running.computing import computed
+from tactsim.dataset.running.executors import Executor, Outcome
+from tactsim.dataset.sampling.layout import Layout
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import DONE, FAILED, kind_of
+from tactsim.dataset.store.blocks import Block, Journal, decoded, refuse_unfitting
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.writing import write
+from tactsim.errors import StorageError, TactsimError
+from tactsim.outside.text import one_line
+
+TASK_SECONDS = 0.5
+"""What a task should take: short samples are handed out many at a time."""
+MOST_IN_TASK = 256
+FOLD_SECONDS = 10.0
+FOLD_SAMPLES = 1024
+"""The journal is folded into the arrays after so many seconds or samples, whichever is first."""
+LOSSES_IN_A_ROW = 30
+"""Lost tasks without any that came back after which the workers themselves must be at fault."""
+MOST_LOSSES = 3
+"""Lost workers after which a sample is marked failed."""
+
+
+@dataclass
+class Tally:
+    """Counts of a sweep that goes on; ``before`` samples were computed by an earlier one."""
+
+    samples: int
+    before: int = 0
+    done: int = 0
+    failed: int = 0
+    reasons: Counter[str] = field(default_factory=Counter)
+    begin: float = field(default_factory=time.monotonic)
+    damaged: dict[str, int] = field(default_factory=dict)
+    """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
+    again: int = 0
+    """How many samples these are in all."""
+
+    def add(self, done: int, reasons: list[str]) -> None:
+        """Counts new samples: those that are done, and the reasons of those that failed."""
+        self.done += done
+        self.failed += len(reasons)
+        self.reasons.update(kind_of(reason) for reason in reasons)
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of this sweep."""
+        return (self.done + self.failed) / max(time.monotonic() - self.begin, 1e-9)
+
+    def line(self) -> str:
+        """One line of progress."""
+        now = self.before + self.done + self.failed
+        left = (self.samples - now) / self.rate if self.done + self.failed else None
+        so_far = f"{now} of {self.samples} samples, {self.failed} failed, {_per_time(self.rate)}"
+        return so_far if left is None else f"{so_far}, {_duration(left)} left"
+
+    def summary(self) -> list[str]:
+        """Lines at the end: counts, rate, and failures by reason."""
+        seconds = time.monotonic() - self.begin
+        lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
+        if self.before:
+            lines.append(f"{self.before} samples were there before")
+        if self.damaged:
+            lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
+            lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
+        return lines + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]
+
+
+def _per_time(rate: float) -> str:
+    return f"{rate:.3g} samples/s" if rate >= 1 else f"{3600 * rate:.3g} samples/h"
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
+
+
+@dataclass
+class SweepRun:
+    """A sweep into an open store, by one process."""
+
+    sweep: Sweep
+    layout: Layout
+    store: Store
+    journal: Journal
+    tally: Tally
+    code: int
+    """Which entry of the attribute codes computes now."""
+    blocks: list[Block] = field(default_factory=list)
+    folded: float = field(default_factory=time.monotonic)
+    losses: Counter[int] = field(default_factory=Counter)
+    lost_in_a_row: int = 0
+
+    def compute(self, executor: Executor, progress: Callable[[Tally], None]) -> None:
+        """Compute every pending sample; on any exception what is complete is kept."""
+        todo, alone = deque(tuple(group) for group in self._specimens()), deque[int]()
+        under_way, size = 0, 1
+        try:
+            while todo or alone or under_way:
+                while (todo or alone) and under_way < executor.slots:
+                    executor.submit((alone.popleft(),) if alone else _next_task(todo, size))
+                    under_way += 1
+                for outcome in executor.wait(1.0):
+                    under_way -= 1
+                    if outcome.block is None:
+                        alone.extend(self._lost(outcome))
+                        continue
+                    self.lost_in_a_row = 0
+                    block = decoded(outcome.block)
+                    self.keep(outcome.block, block)
+                    size = int(np.clip(TASK_SECONDS / max(float(block["wall_time"].mean()), 1e-6), 1, MOST_IN_TASK))
+                progress(self.tally)
+        finally:
+            self.fold()
+
+    def keep(self, content: bytes, block: Block) -> None:
+        """Puts a block into the journal, and the journal into the arrays when it is time."""
+        block["code"] = np.full_like(block["code"], self.code)
+        self.journal.append(content)
+        self.blocks.append(block)
+        failed = block["status"] == FAILED
+        self.tally.add(int((block["status"] == DONE).sum()), [str(reason) for reason in block["reason"][failed]])
+        waiting = sum(len(block["sample"]) for block in self.blocks)
+        if waiting >= FOLD_SAMPLES or time.monotonic() - self.folded > FOLD_SECONDS:
+            self.fold()
+
+    def fold(self) -> None:
+        """Writes what the journal holds into the arrays, then forgets it."""
+        if self.blocks:
+            whole = {name: np.concatenate([block[name] for block in self.blocks]) for name in self.blocks[0]}
+            write(self.store, whole, self.layout.variables)
+            self.journal.clear()
+        self.blocks, self.folded = [], time.monotonic()
+
+    def recover(self) -> None:
+        """Brings what a killed run left in its journal into the arrays."""
+        for content in self.journal.blocks():
+            try:
+                block = decoded(content)
+                refuse_unfitting(block, self.layout.variables, self.store.samples)
+            except StorageError as error:
+                self.tally.damaged["block of the journal passed over: " + str(error)] = 1
+                continue
+            block["code"] = np.full_like(block["code"], len(self.store.attributes["codes"]) - 1)
+            self.blocks.append(block)
+        self.fold()
+        self.journal.clear()
+
+    def _specimens(self) -> Iterator[list[int]]:
+        """Pending samples, those of a specimen together."""
+        pending = self.store.pending()
+        borders = np.flatnonzero(np.diff(pending // self.sweep.per_specimen)) + 1
+        for group in np.split(pending, borders) if pending.size else ():
+            yield [int(number) for number in group]
+
+    def _lost(self, outcome: Outcome) -> list[int]:
+        """The samples of a lost task that are tried again, each alone; the others are marked failed."""
+        self.lost_in_a_row += 1
+        if self.lost_in_a_row >= LOSSES_IN_A_ROW:
+            raise TactsimError(
+                f"{self.lost_in_a_row} tasks in a row were lost, the last because {outcome.reason}; nothing is marked"
+            )
+        again = []
+        for number in outcome.samples:
+            self.losses[number] += 1
+            if self.losses[number] < MOST_LOSSES or len(outcome.samples) > 1:
+                again.append(number)
+                continue
+            reason = f"lost {self.losses[number]} times: {outcome.reason}"
+            content = computed(self.sweep.text, [number], lost=reason, folder=self.sweep.folder)
+            self.keep(content, decoded(content))
+        return again
+
+
+def _next_task(todo: deque[tuple[int, ...]], size: int) -> tuple[int, ...]:
+    """Whole specimens of about ``size`` samples, or a part of a large one."""
+    task = list(todo.popleft())
+    while todo and len(task) + len(todo[0]) <= size:
+        task += todo.popleft()
+    if len(task) > max(size, 1):
+        todo.appendleft(tuple(task[max(size, 1) :]))
+    return tuple(task[: max(size, 1)])

@@ -1,0 +1,163 @@
+"""The cases of a specimen: points of the design, drawn values, checked like any case file and drawn again if one is refused."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from scipy.stats import qmc
+
+from tactsim.case.loading import validated_case
+from tactsim.case.model import Case
+from tactsim.case.yaml_reading import Path
+from tactsim.dataset.sampling.settings import DesignName
+from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
+from tactsim.errors import InputError
+from tactsim.experiments.recording import seed_place
+
+Array = np.ndarray
+SAME_REFUSALS = 4
+SPECIMENS, SAMPLES, NOISE = 0, 1, 2
+"""Streams of random numbers of a sweep."""
+BLOCK = 1024
+"""Sobol points that are made together; a power of two keeps their balance."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One sample: its number, its case (None if every draw was refused), and what was drawn in SI by place."""
+
+    sample: int
+    specimen: int
+    case: Case | None
+    values: dict[Path, float]
+    redraws: int
+    refusal: str = ""
+
+
+def drawn_specimen(sweep: Sweep, specimen: int) -> list[Drawn]:
+    """Every sample of a specimen, also those beyond the sweep's last; what is drawn depends on the seed and their numbers only.
+
+    A specimen is accepted as a whole: if the case of one of its samples is refused, all are drawn again. What results is the
+    design's distribution under the condition that the cases are possible.
+    """
+    first = specimen * sweep.per_specimen
+    numbers = range(first, first + sweep.per_specimen)
+    most = 0 if sweep.settings.design == "grid" else sweep.settings.redraws
+    refusal = ""
+    for attempt in range(most + 1):
+        try:
+            return [_accepted(sweep, specimen, number, attempt) for number in numbers]
+        except InputError as error:
+            refusal = str(error).replace("\n", "; ")
+    reason = f"no case was accepted in {most + 1} draws, the last because: {refusal}"
+    return [Drawn(number, specimen, None, {}, most, reason) for number in numbers]
+
+
+def fault_of(sweep: Sweep) -> str:
+    """Why no case is possible, if several draws of the first specimen are refused with the same words: a fault of the file."""
+    refusals = set()
+    for attempt in range(SAME_REFUSALS):
+        try:
+            _accepted(sweep, 0, 0, attempt)
+        except InputError as error:
+            refusals.add(str(error))
+        else:
+            return ""
+    return refusals.pop() if len(refusals) == 1 else ""
+
+
+def noise_generator(sweep: Sweep, sample: int) -> np.random.Generator:
+    """Random numbers for the noise of one sample."""
+    return np.random.default_rng(noise_seed(sweep, sample))
+
+
+def noise_seed(sweep: Sweep, sample: int) -> int:
+    """Seed of one sample's noise, 64 bits, from the seed of the sweep and the number of the sample."""
+    return int(np.random.SeedSequence([sweep.settings.seed, NOISE, sample]).generate_state(1, np.uint64)[0])
+
+
+def _accepted(sweep: Sweep, specimen: int, sample: int, attempt: int) -> Drawn:
+    within = sample - specimen * sweep.per_specimen if sweep.settings.design == "grid" else sample
+    drawn = _values(sweep, SPECIMENS, sweep.specimen_places, specimen, attempt)
+    drawn |= _values(sweep, SAMPLES, sweep.sample_places, within, attempt)
+    used: dict[Path, float] = {}
+    value = filled(sweep.document.value, (), drawn, used)
+    _seed_noise(value["experiment"], seed_place(sweep.kind), noise_seed(sweep, sample))
+    document = replace(sweep.document, value=value)
+    return Drawn(sample, specimen, validated_case(document, sweep.where), used, attempt)
+
+
+def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
+    """Gives the noise of an experiment a seed, if it has noise and its file names none: samples must not share their noise."""
+    for key in place[:-1]:
+        experiment = experiment.get(key) if isinstance(experiment, dict) else None
+    if place and isinstance(experiment, dict):
+        experiment.setdefault(place[-1], seed)
+
+
+def used_seed(sweep: Sweep, drawn: Drawn) -> int:
+    """The seed from which the noise of a sample was drawn."""
+    place = seed_place(sweep.kind)
+    found: Any = drawn.case.experiment if drawn.case and place else None
+    for key in place:
+        found = getattr(found, key, None)
+    return noise_seed(sweep, drawn.sample) if found is None else int(found)
+
+
+def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict[Path, tuple[Any, float]]:
+    settings = sweep.settings
+    seed = (settings.seed, stream)
+    if attempt:
+        point = redrawn_point(seed, number, attempt, len(places))
+    elif settings.design == "grid":
+        point = grid_point(sizes_of(places), number)
+    else:
+        specimens = -(-sweep.samples // sweep.per_specimen)
+        count = specimens * (1 if stream == SPECIMENS else sweep.per_specimen)
+        point = design_point(settings.design, seed, number, count=count, dimensions=len(places))
+    return {place.path: place.distribution.value(float(share)) for place, share in zip(places, point, strict=True)}
+
+
+def design_point(design: DesignName, seed: tuple[int, ...], number: int, *, count: int, dimensions: int) -> Array:
+    """Point (dimensions,) in [0, 1) of a sample.
+
+    Sobol points (scrambled) and random ones depend on the seed and the number alone; of a Latin hypercube, which is defined by
+    the number of its points, they depend on ``count`` as well. A grid has no points: see `grid_point`.
+    """
+    if dimensions == 0:
+        return np.zeros(0)
+    if design == "random":
+        return np.random.default_rng([*seed, number]).random(dimensions)
+    if design == "latin_hypercube":
+        return _latin_hypercube(seed, count, dimensions)[number]
+    return _sobol(seed, number // BLOCK, dimensions)[number % BLOCK]
+
+
+def redrawn_point(seed: tuple[int, ...], number: int, attempt: int, dimensions: int) -> Array:
+    """Point (dimensions,) of a sample whose case was refused ``attempt`` times before: random, whatever the design."""
+    return np.random.default_rng([*seed, number, attempt]).random(dimensions)
+
+
+def grid_point(sizes: tuple[int, ...], number: int) -> Array:
+    """Point (len(sizes),) in the middle of the cell of a number; the last place varies fastest."""
+    index = np.array(np.unravel_index(number, sizes) if sizes else (), dtype=float)
+    return (index + 0.5) / np.array(sizes, dtype=float)
+
+
+@lru_cache(maxsize=4)
+def _latin_hypercube(seed: tuple[int, ...], count: int, dimensions: int) -> Array:
+    return qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(count)
+
+
+@lru_cache(maxsize=8)
+def _sobol(seed: tuple[int, ...], block: int, dimensions: int) -> Array:
+    engine = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+    if block:
+        engine.fast_forward(block * BLOCK)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of balance, which whole blocks keep
+        return engine.random(BLOCK)

@@ -1,0 +1,141 @@
+"""The variables of a sweep's store, and the part of the data set that each specimen belongs to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from tactsim.case.model import Case, experiment_kinds
+from tactsim.dataset.sampling.distributions import Listed
+from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
+from tactsim.dataset.sampling.settings import Condition
+from tactsim.dataset.sampling.sweep import SECTION, Sweep, is_distribution
+from tactsim.dataset.store.arrays import index_variables
+from tactsim.errors import CaseError, suggestion
+from tactsim.experiments.recording import Recorder, Values, recorder_for
+from tactsim.interfaces.variable import Variable
+
+Array = np.ndarray
+SPLITTING = 3
+"""Stream of random numbers that deals specimens to splits."""
+TRIED_SPECIMENS, TRIED_OF_GRID = 3, 1000
+"""First specimens of which one must be possible; those of a grid are drawn once each."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Variables of a store in their order, and who fills them."""
+
+    recorder: Recorder
+    variables: tuple[Variable, ...]
+
+    def named(self, name: str) -> Variable:
+        """The variable of a name."""
+        return next(variable for variable in self.variables if variable.name == name)
+
+
+@lru_cache(maxsize=4)
+def layout_of(sweep: Sweep) -> Layout:
+    """The layout of a sweep, by its first possible case.
+
+    Raises
+    ------
+    CaseError
+        If no case is possible, nothing can be stored, or a split asks for a label that there is not.
+    """
+    known = experiment_kinds()
+    if sweep.kind not in known:
+        unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
+        raise sweep.error(("experiment", "kind"), unknown)
+    recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
+    index, own = index_variables(sweep.settings.splits.names), recorder.variables(first_case(sweep).experiment)
+    labels = [variable for variable in own if variable.role == "label"]
+    readings = [variable for variable in own if variable.role == "reading"]
+    variables = (*index, *varied_variables(sweep), *labels, *readings)
+    names = [variable.name for variable in variables]
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    if repeated:
+        raise CaseError(f"sweep: {', '.join(repeated)} would be stored twice; change sweep.quantities")
+    _check_splits(sweep, labels)
+    return Layout(recorder, variables)
+
+
+def first_case(sweep: Sweep) -> Case:
+    """The first possible case of a sweep.
+
+    Raises
+    ------
+    CaseError
+        If none of the first is possible.
+    """
+    fault, last = fault_of(sweep), None
+    if fault:
+        raise CaseError(fault)
+    tried = TRIED_OF_GRID if sweep.settings.design == "grid" else TRIED_SPECIMENS
+    for specimen in range(min(tried, -(-sweep.samples // sweep.per_specimen))):
+        last = drawn_specimen(sweep, specimen)[0]
+        if last.case is not None:
+            return last.case
+    raise CaseError(last.refusal if last else "the sweep has no samples")
+
+
+def varied_variables(sweep: Sweep) -> list[Variable]:
+    """One variable for each place: its number in SI, or the index of the option."""
+    variables = []
+    for place in sweep.places:
+        listed = place.distribution
+        by_index = isinstance(listed, Listed) and listed.numbers is None
+        words = f"{place.key}{' (number of the option)' if by_index else ''}"
+        variables.append(Variable(place.variable, place.distribution.unit or "1", words, "varied"))
+    return variables
+
+
+def most_inclusions(document: Any) -> int:
+    """Largest number of inclusions that a document can draw."""
+    experiment = document.get("experiment") if isinstance(document, dict) else None
+    inclusions = experiment.get("inclusions") if isinstance(experiment, dict) else None
+    if isinstance(inclusions, dict) and is_distribution(inclusions):
+        return max((len(option) for option in inclusions.get("choice", []) if isinstance(option, list)), default=0)
+    return len(inclusions) if isinstance(inclusions, list) else 0
+
+
+def split_of(sweep: Sweep, specimen: int, labels: Values, recorder_variables: dict[str, Variable]) -> int:
+    """Number of the part that a specimen belongs to, from the labels of its first sample."""
+    splits = sweep.settings.splits
+    for number, conditions in enumerate(splits.out_of_distribution.values(), 3):
+        if all(_holds(condition, labels, recorder_variables[name]) for name, condition in conditions.items()):
+            return number
+    share = np.random.default_rng([sweep.settings.seed, SPLITTING, specimen]).random()
+    return 0 if share < splits.train else 1 if share < splits.train + splits.validation else 2
+
+
+def _holds(condition: Condition, labels: Values, variable: Variable) -> bool:
+    values = np.atleast_1d(np.asarray(labels[variable.name], dtype=float))
+    if "inclusion" in variable.dimensions:
+        values = values[: int(labels["inclusion_count"])]
+    if not values.size:
+        return False
+    held = np.ones(values.shape, bool)
+    if condition.above is not None:
+        held &= values > condition.above
+    if condition.below is not None:
+        held &= values < condition.below
+    if condition.equal is not None:
+        wanted = variable.meanings.index(condition.equal) if isinstance(condition.equal, str) else condition.equal
+        held &= values == wanted
+    return bool(held.all() if condition.of == "all" else held.any())
+
+
+def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
+    known = {variable.name: variable for variable in labels}
+    for split, conditions in sweep.settings.splits.out_of_distribution.items():
+        for name, condition in conditions.items():
+            place = (SECTION, "splits", "out_of_distribution", split, name)
+            if name not in known:
+                raise sweep.error(place, f"unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
+            meanings = known[name].meanings
+            if isinstance(condition.equal, str) and condition.equal not in meanings:
+                raise sweep.error((*place, "equal"), f"{condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")

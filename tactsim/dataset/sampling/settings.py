@@ -1,0 +1,90 @@
+"""The section ``sweep`` of a sweep file: design, seed, specimens, splits, and what is stored."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tactsim.dataset.store.arrays import MOST_SAMPLES
+from tactsim.experiments.recording import RecordingSettings
+from tactsim.units import FrozenModel, Time
+
+SCHEMA = "tactsim/sweep/1"
+NO_SPLIT = "none"
+DesignName = Literal["sobol", "latin_hypercube", "random", "grid"]
+"""How the unit cube of what varies is covered."""
+
+
+class Condition(FrozenModel):
+    """What the label of a sample must satisfy; of an inclusion's label, all inclusions of the sample or any of them."""
+
+    above: float | None = None
+    """Greater than, in SI."""
+    below: float | None = None
+    """Less than, in SI."""
+    equal: float | str | None = None
+    """Equal to a number, or to a name such as tube."""
+    of: Literal["all", "any"] = "all"
+    """Inclusions that must satisfy it."""
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Self:
+        if self.above is None and self.below is None and self.equal is None:
+            raise ValueError("a condition needs above, below or equal")
+        return self
+
+
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class Splits(FrozenModel):
+    """To which part of the data set a specimen belongs; all samples of a specimen belong to the same."""
+
+    train: Share = 0.8
+    """Share of the specimens for training."""
+    validation: Share = 0.1
+    """Share for choosing between models; the rest is ``test``."""
+    out_of_distribution: dict[str, dict[str, Condition]] = {}
+    """Name -> conditions by label; a specimen that satisfies all of the first such name belongs to it and to no other part."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.train + self.validation > 1:
+            raise ValueError(f"train {self.train:g} and validation {self.validation:g} add up to more than 1")
+        for name in self.out_of_distribution:
+            if name in ("train", "validation", "test", NO_SPLIT) or not name.isidentifier():
+                raise ValueError(f"out_of_distribution.{name}: a split needs a name of letters, digits and _ that is not taken")
+            if not self.out_of_distribution[name]:
+                raise ValueError(f"out_of_distribution.{name}: no condition, so that every specimen would belong to it; name one")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all parts, in the order of their numbers."""
+        return ("train", "validation", "test", *self.out_of_distribution)
+
+
+class SweepSettings(RecordingSettings):
+    """How samples are drawn and what of them is stored."""
+
+    design: DesignName = "sobol"
+    """How the varied places are covered."""
+    samples: Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None = None
+    """Number of samples; of a grid it follows from the places."""
+    seed: Annotated[int, Field(ge=0)] = 1
+    """Sample k depends on the seed and on k only."""
+    samples_per_specimen: Annotated[int, Field(ge=1, le=10_000)] = 1
+    """Samples that share a specimen; of a grid it follows from the places."""
+    within_specimen: tuple[str, ...] = ()
+    """Key paths that are drawn anew for each sample of a specimen, such as experiment.loading.pieces.0.to."""
+    redraws: Annotated[int, Field(ge=0, le=100_000)] = 100
+    """How often a specimen is drawn again because its case was refused, before its samples are marked failed."""
+    time_limit: Annotated[Time, Field(gt=0)] | None = None
+    """Longest time that solving a sample may take, before it is marked failed; null allows any. It depends on the machine."""
+    splits: Splits = Splits()
+    """Parts of the data set."""
+    title: Annotated[str, Field(max_length=200)] = ""
+    """What the data set is, for its card."""
+    limits: Annotated[str, Field(max_length=2000)] = ""
+    """Known limits, for its card."""

@@ -1,0 +1,241 @@
+"""A sweep: a case in which places vary, read from a file or from the text that workers are given."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from pathlib import Path as FilePath
+from typing import Any
+
+from pydantic import ValidationError
+
+from tactsim.case.explaining import as_written, problems_of
+from tactsim.case.loading import Place as Where
+from tactsim.case.loading import case_error, read_document
+from tactsim.case.model import SCHEMA as CASE_SCHEMA
+from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
+from tactsim.dataset.sampling.distributions import READERS, Distribution, Listed, distribution
+from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
+from tactsim.dataset.store.arrays import MOST_SAMPLES
+from tactsim.errors import CaseError, InputError, suggestion
+
+SECTION = "sweep"
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """``document`` is the case without the section, with distributions in it."""
+
+    document: Document
+    where: Where
+    settings: SweepSettings
+    samples: int
+    per_specimen: int
+    specimen_places: tuple[Place, ...]
+    """Drawn once per specimen."""
+    sample_places: tuple[Place, ...]
+    """Drawn for each sample of a specimen."""
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """All places."""
+        return self.specimen_places + self.sample_places
+
+    @property
+    def kind(self) -> str:
+        """Kind of the experiment, empty if it is missing."""
+        experiment = self.document.value.get("experiment")
+        return str(experiment.get("kind", "")) if isinstance(experiment, dict) else ""
+
+    @cached_property
+    def text(self) -> str:
+        """The whole sweep as canonical JSON; `sweep_of_text` reads it."""
+        section = self.settings.model_dump(mode="json") | {"samples": self.samples}
+        return json.dumps({**self.document.value, "schema": SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
+
+    @property
+    def folder(self) -> str | None:
+        """Folder of the file, in which the files that it names are looked for first; no part of the identity."""
+        return None if self.document.folder is None else os.path.abspath(self.document.folder)
+
+    @property
+    def identity(self) -> str:
+        """Sixteen hexadecimal digits that say which data the sweep makes; of designs that go on, for any number of samples."""
+        content = json.loads(self.text)
+        if self.extendable:
+            content[SECTION].pop("samples")
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+    def error(self, path: Path, message: str) -> CaseError:
+        """An error at a key path of the file, with its line."""
+        return case_error([Problem(path, self.document.line(path), message)], self.where)
+
+    @property
+    def extendable(self) -> bool:
+        """Whether more samples leave those before as they are."""
+        return self.settings.design in ("sobol", "random")
+
+
+def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: int | None = None) -> Sweep:
+    """The sweep in a file, after the overrides ``path.to.key=value``; ``samples`` replaces that of the file.
+
+    Raises
+    ------
+    CaseError
+        With one line for every fault: the file, the line, the key path, the value, and what is allowed.
+    StorageError
+        If the file is missing or cannot be read.
+    """
+    document, where = read_document(path, overrides)
+    return _sweep(document, where, samples)
+
+
+@lru_cache(maxsize=4)
+def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
+    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first."""
+    document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
+    return _sweep(document, lambda problem: "the sweep", None, checked=True)
+
+
+def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:
+    value = dict(document.value)
+    try:
+        if value.get("schema") != SCHEMA:
+            found = as_written(value["schema"]) if "schema" in value else "missing"
+            raise YamlProblems(Problem(("schema",), 0, f"{found}; a sweep begins with 'schema: {SCHEMA}'"))
+        settings = _settings(document, value.pop(SECTION, None), units=not checked)
+        value["schema"] = CASE_SCHEMA
+        places = places_of(value, ())
+        plain = replace(document, value=value)
+        return _sized(plain, where, settings, samples, tuple(places))
+    except YamlProblems as error:
+        problems = [Problem(p.path, document.line(p.path), p.message) for p in error.problems]
+        raise case_error(problems, where) from None
+
+
+def _settings(document: Document, section: Any, units: bool) -> SweepSettings:
+    if not isinstance(section, dict):
+        raise YamlProblems(Problem((SECTION,), 0, "missing; expected a mapping, such as 'sweep: {samples: 1000}'"))
+    try:
+        context = {"units": "required"} if units else None
+        return SweepSettings.model_validate_json(json.dumps(section), strict=True, context=context)
+    except ValidationError as error:
+        problems = problems_of(error, Document(section), SweepSettings)
+        raise YamlProblems(*(Problem((SECTION, *p.path), 0, p.message) for p in problems)) from None
+
+
+def _sized(document: Document, where: Where, settings: SweepSettings, samples: int | None, places: tuple[Place, ...]) -> Sweep:
+    if not places:
+        hint = "nothing varies; write a distribution for a number: {uniform: [2 mm, 7 mm]}"
+        raise YamlProblems(Problem(("experiment",), 0, hint))
+    keys = {place.key for place in places}
+    for key in settings.within_specimen:
+        if key not in keys:
+            near = suggestion(key, keys)
+            raise _wrong("within_specimen", f"{key!r} is not a place that varies{near}; these vary: {', '.join(sorted(keys))}")
+    inner = tuple(place for place in places if place.key in settings.within_specimen)
+    outer = tuple(place for place in places if place.key not in settings.within_specimen)
+    wanted = samples or settings.samples
+    if settings.design == "grid":
+        return _grid(document, where, settings, wanted, (outer, inner))
+    if inner and settings.samples_per_specimen == 1:
+        raise _wrong("samples_per_specimen", "is 1, so that nothing varies within a specimen; take 2 or more")
+    if settings.samples_per_specimen > 1 and not inner:
+        raise _wrong("within_specimen", "names nothing, so that the samples of a specimen would be equal; name what varies")
+    if wanted is None:
+        raise _wrong("samples", f"missing; expected a number of samples up to {MOST_SAMPLES}, or --samples N")
+    return Sweep(document, where, settings, wanted, settings.samples_per_specimen, outer, inner)
+
+
+def _grid(
+    document: Document, where: Where, settings: SweepSettings, wanted: int | None, places: tuple[tuple[Place, ...], ...]
+) -> Sweep:
+    for place in (*places[0], *places[1]):
+        if place.distribution.options is None or "choice" in place.path:
+            raise YamlProblems(Problem(place.path, 0, "a grid takes lists: values, range or choice, and none within a choice"))
+    outer, inner = (math.prod(sizes_of(part)) for part in places)
+    if outer * inner > MOST_SAMPLES:
+        raise _wrong("design", f"the grid has {outer * inner} points; allowed: {MOST_SAMPLES}")
+    if wanted not in (None, outer * inner):
+        raise _wrong("samples", f"{wanted} asked for, but the grid has {outer * inner} points; leave it out")
+    return Sweep(document, where, settings, outer * inner, inner, *places)
+
+
+def sizes_of(places: tuple[Place, ...]) -> tuple[int, ...]:
+    """Number of options of each place of a grid."""
+    return tuple(len(place.distribution.options or ()) for place in places)
+
+
+def _wrong(key: str, message: str) -> YamlProblems:
+    return YamlProblems(Problem((SECTION, key), 0, message))
+
+
+@dataclass(frozen=True)
+class Place:
+    """A key path of a document with what stands there instead of one value."""
+
+    path: Path
+    distribution: Distribution
+
+    @property
+    def key(self) -> str:
+        """The key path as text."""
+        return ".".join(map(str, self.path))
+
+    @property
+    def variable(self) -> str:
+        """Name of the stored variable."""
+        return "varied_" + "_".join(map(str, self.path[1:] if self.path[:1] == ("experiment",) else self.path))
+
+
+def places_of(value: Any, path: Path) -> list[Place]:
+    """Every place in a value that stands at ``path``, by its keys, not their order in the text; those within options included.
+
+    Raises
+    ------
+    YamlProblems
+        If a distribution is written wrongly.
+    """
+    return list(_found(value, path))
+
+
+def _found(value: Any, path: Path) -> Iterator[Place]:
+    if is_distribution(value):
+        try:
+            read = distribution(value)
+        except InputError as error:
+            raise YamlProblems(Problem(path, 0, str(error))) from None
+        yield Place(path, read)
+        if isinstance(read, Listed) and read.numbers is None:
+            for index, option in enumerate(read.options):
+                yield from _found(option, (*path, "choice", index))
+    elif isinstance(value, dict):
+        for key, item in sorted(value.items()):
+            yield from _found(item, (*path, key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _found(item, (*path, index))
+
+
+def is_distribution(value: Any) -> bool:
+    """Whether a value of a document is meant as a distribution: a mapping to a list, by the name of one."""
+    return isinstance(value, dict) and any(name in value for name in READERS) and "kind" not in value
+
+
+def filled(value: Any, path: Path, drawn: Mapping[Path, tuple[Any, float]], used: dict[Path, float]) -> Any:
+    """The value with what was drawn for each place; the stored number of every place that counts is added to ``used``."""
+    if path in drawn:
+        chosen, number = drawn[path]
+        used[path] = number
+        inner = (*path, "choice", int(number))
+        return filled(chosen, inner, drawn, used) if isinstance(chosen, dict | list) else chosen
+    if isinstance(value, dict):
+        return {key: filled(item, (*path, key), drawn, used) for key, item in value.items()}
+    if isinstance(value, list):
+        return [filled(item, (*path, index), drawn, used) for index, item in enumerate(value)]
+    return value

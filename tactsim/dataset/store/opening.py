@@ -1,0 +1,283 @@
+"""The Zarr store of a data set as it is read: opened, checked against limits, and each array whole or refused by name.
+
+A Zarr group (format 3) with one array per variable; the first dimension is the sample. ``store_writing`` creates and fills it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import EllipsisType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, described, index_fault, read_json, refuse_link
+from tactsim.errors import StorageError
+from tactsim.outside.files import Unreadable, opened_folder
+from tactsim.outside.text import one_line
+
+if TYPE_CHECKING:
+    import zarr
+
+Array = np.ndarray
+STORE_SCHEMA = "tactsim/dataset/1"
+KINDS = {
+    "title": str,
+    "description": str,
+    "license": str,
+    "sweep": str,
+    "sweep_id": str,
+    "samples_per_specimen": int,
+    "seed": int,
+    "codes": list,
+    "versions": dict,
+    "limits": str,
+}
+"""Attributes without which a store is no data set, and their types."""
+ARRAYS = "arrays"
+"""Attribute: names of all arrays. A store that has it holds a file for every chunk with a sample that was computed, so that a
+missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
+SPARE = 20
+"""Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
+NAME = re.compile(r"\w[\w.-]{0,254}")
+"""Names of variables, which are names of folders."""
+DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
+"""What Zarr and its codecs raise on content that they cannot read."""
+
+
+@dataclass(frozen=True)
+class Store:
+    """A store, opened. A reader sees a sample by its ``status``, which is written after everything else of it."""
+
+    path: Path
+    group: zarr.Group
+    described: dict[str, ArrayDescription] = field(default_factory=dict)
+    """Arrays that are there and can be read."""
+    faults: dict[str, str] = field(default_factory=dict)
+    """Arrays that cannot be read, and why."""
+
+    @classmethod
+    def open(cls, path: str | Path, *, writing: bool = False, damaged: bool = False) -> Store:
+        """A store that a sweep wrote; ``damaged`` allows arrays that cannot be read.
+
+        Raises
+        ------
+        StorageError
+            If there is none, it is damaged, or it is of another version.
+        """
+        import zarr
+
+        from tactsim.dataset.store.files import GuardedFiles
+
+        folder = _folder(path)
+        _refuse_few_descriptors(folder)
+        attributes = read_attributes(folder)
+        found, faults = _arrays(folder, attributes)
+        if not damaged and faults:
+            raise StorageError(next(iter(faults.values())))
+        if "status" not in found and not damaged:
+            raise StorageError(_without(folder, "status"))
+        files = GuardedFiles(folder, found, read_only=not writing)
+        with reading(folder), zarr.config.set({"array.write_empty_chunks": True}):
+            group = zarr.open_group(files, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
+        return cls(folder, group, found, faults)
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """The attributes of the store."""
+        return dict(self.group.attrs)
+
+    def array(self, name: str) -> zarr.Array[Any]:
+        """The array of a variable.
+
+        Raises
+        ------
+        StorageError
+            If it is missing or its description is damaged.
+        """
+        import zarr
+
+        if name not in self.described:
+            raise StorageError(self.faults.get(name) or _without(self.path, name))
+        with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
+            found = self.group[name]
+            if not isinstance(found, zarr.Array):
+                raise TypeError("it is no array")
+            return found
+
+    def read(self, name: str, rows: slice | Array | EllipsisType = ...) -> Array:
+        """Values of a variable, of all samples or a slice or mask of them.
+
+        Raises
+        ------
+        StorageError
+            Naming the array and the chunk that cannot be read.
+        """
+        array = self.array(name)
+        with reading(self.path / name):
+            values = np.asarray(array.oindex[rows] if isinstance(rows, np.ndarray) else array[rows])
+        return values if values.dtype.kind in "fiub" else np.array([str(value) for value in values])
+
+    @property
+    def missing(self) -> list[str]:
+        """Names of arrays that the store had and that are gone."""
+        names = self.attributes.get(ARRAYS, sorted(consolidated_metadata(self.path)))
+        return [name for name in names if name not in self.described]
+
+    def never_stored(self, names: Iterable[str]) -> list[str]:
+        """Those of the names of arrays that the store never had, because an earlier version of tactsim began it."""
+        known = {*self.described, *self.faults, *self.missing}
+        return [name for name in names if name not in known] if self.attributes.get(ARRAYS) else []
+
+    @property
+    def samples(self) -> int:
+        """Number of samples, computed or not."""
+        return self.described["status"].shape[0]
+
+    @property
+    def keeps_all_chunks(self) -> bool:
+        """Whether a chunk that is no file can only be one whose samples are pending."""
+        return ARRAYS in self.attributes
+
+    def pending(self) -> Array:
+        """Numbers of the samples that are not computed."""
+        return np.flatnonzero(self.read("status") == PENDING)
+
+
+@contextmanager
+def reading(place: Path) -> Iterator[None]:
+    """Turns whatever Zarr raises on damaged content into an error that names the place.
+
+    Raises
+    ------
+    StorageError
+        If the block meets damaged content.
+    """
+    try:
+        yield
+    except StorageError:
+        raise
+    except DAMAGE as error:
+        raise StorageError(
+            f"{one_line(place)} is damaged or cannot be read: {type(error).__name__}: {one_line(error, 200)}; bring back a copy"
+        ) from error
+
+
+def read_attributes(folder: Path) -> dict[str, Any]:
+    """What a folder says of itself, if it is a data set that this version reads.
+
+    Raises
+    ------
+    StorageError
+        If it is none, is damaged, or is of another version.
+    """
+    metadata = _group(folder)
+    attributes = metadata.get("attributes", {})
+    schema = attributes.get("schema") if isinstance(attributes, dict) else None
+    if schema is None or metadata.get("node_type") != "group":
+        raise StorageError(
+            f"{one_line(folder)} is not a data set of tactsim: it is Zarr of another origin, without the schema {STORE_SCHEMA!r}"
+        )
+    codes = attributes.get("codes")
+    if schema != STORE_SCHEMA:
+        wrote = one_line(codes[-1] if isinstance(codes, list) and codes else "unknown", 80)
+        raise StorageError(
+            f"{one_line(folder)} has the schema {one_line(repr(schema), 80)}; this tactsim reads {STORE_SCHEMA!r}; use the "
+            f"version that wrote it: {wrote}"
+        )
+    missing = [name for name in KINDS if name not in attributes]
+    if missing:
+        raise StorageError(f"{one_line(folder)} is damaged: {META} does not tell {', '.join(missing)}; bring back a copy")
+    for name, kind in KINDS.items():
+        if not isinstance(attributes[name], kind):
+            raise StorageError(f"{one_line(folder)} is damaged: {name} in {META} is no {kind.__name__}; bring back a copy")
+    names = attributes.get(ARRAYS, [])
+    if not codes or not all(isinstance(code, str) for code in codes):
+        raise StorageError(f"{one_line(folder)} is damaged: codes in {META} are no texts; bring back a copy")
+    if not isinstance(names, list) or not all(isinstance(name, str) and NAME.fullmatch(name) for name in names):
+        raise StorageError(f"{one_line(folder)} is damaged: {ARRAYS} in {META} are no names of arrays; bring back a copy")
+    return attributes
+
+
+def _refuse_few_descriptors(folder: Path) -> None:
+    """Refuses to begin where Zarr, which reads several chunks at once, would break off within."""
+    if os.name == "nt":  # which has no such limit and opens no folders
+        return
+    spare: list[int] = []
+    try:
+        spare.append(os.open(folder, os.O_RDONLY))
+        spare.extend(os.dup(spare[0]) for _ in range(SPARE - 1))
+    except OSError as error:
+        reason = f"{error.strerror}; {SPARE} files must be free to be opened, raise the limit with: ulimit -n 256"
+        raise StorageError(f"cannot read {one_line(folder)}: {reason}") from None
+    finally:
+        for descriptor in spare:
+            os.close(descriptor)
+
+
+def _without(folder: Path, name: str) -> str:
+    remedy = "bring back a copy, or make it anew with: tactsim sweep CASE --out STORE --resume"
+    return f"{one_line(folder)} is damaged: it has no variable {one_line(name)}; {remedy}"
+
+
+def _folder(path: str | Path) -> Path:
+    try:
+        return opened_folder(path, "data set")[0]
+    except Unreadable as error:
+        reason = error.reason if os.path.lexists(path) else "there is nothing; name a folder that tactsim sweep wrote"
+        raise StorageError(f"{one_line(path)} is not a data set of tactsim: {reason}") from error
+
+
+def _group(folder: Path) -> dict[str, Any]:
+    if not os.path.lexists(folder / META):
+        older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
+        raise StorageError(f"{one_line(folder)} is not a data set of tactsim: it holds no {META}{older}")
+    try:
+        metadata = read_json(folder / META)
+    except StorageError as error:
+        raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: {error}") from None
+    if not isinstance(metadata, dict):
+        raise StorageError(f"{one_line(folder)} cannot be opened: {META} is damaged: it is no mapping; bring back a copy")
+    return metadata
+
+
+def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDescription], dict[str, str]]:
+    """Arrays that can be read, in the order of their names, and why others cannot; what else stands in the folder is passed
+    over."""
+    declared = attributes.get(ARRAYS, consolidated_metadata(folder))
+    found: dict[str, ArrayDescription] = {}
+    faults: dict[str, str] = {}
+    for name in sorted(set(declared) or _with_description(folder)):
+        if not os.path.lexists(folder / name / META):
+            continue
+        try:
+            found[name] = described(folder, name)
+        except StorageError as error:
+            faults[name] = str(error)
+    if "status" in found:
+        for name in sorted(found):
+            fault = index_fault(found[name], found["status"].shape[0], found["status"].chunks[0])
+            if fault:
+                faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"
+                del found[name]
+    return found, faults
+
+
+def consolidated_metadata(folder: Path) -> dict[str, Any]:
+    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them."""
+    gathered = _group(folder).get("consolidated_metadata")
+    metadata = gathered.get("metadata") if isinstance(gathered, dict) else None
+    return {name: one for name, one in metadata.items() if NAME.fullmatch(name)} if isinstance(metadata, dict) else {}
+
+
+def _with_description(folder: Path) -> set[str]:
+    """Names of the folders that describe an array, for a store without any word on them."""
+    refuse_link(folder / META)
+    with os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if NAME.fullmatch(entry.name) and entry.is_dir()]
+    return {name for name in names if os.path.lexists(folder / name / META)}

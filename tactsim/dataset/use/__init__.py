@@ -1,0 +1,1 @@
+"""What is made of a data set: its card, samples for training, files in the formats of others."""

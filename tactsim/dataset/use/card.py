@@ -1,0 +1,246 @@
+"""A data set in words: what ``tactsim data info`` prints, and the card, README.md in its folder, written anew after every run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.dataset.sampling.layout import Layout
+from tactsim.dataset.sampling.settings import Splits
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, kind_of
+from tactsim.dataset.store.files import CARD, FIGURES
+from tactsim.dataset.store.opening import Store
+from tactsim.outside.text import one_line
+from tactsim.storage.own_files import OWN_LIST, OwnFiles
+
+TAGS = "tags: [tactile, simulation, tactsim]"
+"""A line of the head by which a card is known that was written before tactsim listed its files."""
+SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`<[]"} | {"|": "/"})
+"""Characters that begin code, tags and links, escaped; a bar would end the cell of a table."""
+GENERAL_LIMITS = (
+    "Simulated, not measured: the sensor's film and electronics are models, and tissue is homogeneous but for what is named.",
+    "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
+    "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
+)
+Array = np.ndarray
+MOST_REASONS = 50
+"""Reasons of failures that are listed; the rest are counted."""
+
+
+def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
+    """Writes the card.
+
+    Raises
+    ------
+    ForeignFile
+        If another file stands in its place, which is kept.
+    """
+    OwnFiles(store.path).replace(CARD, card_text(store, sweep, layout).encode())
+
+
+def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
+    """Lists card and figures that an earlier tactsim wrote, which kept no list of its files."""
+    card, own = path / CARD, OwnFiles(path)
+    if (path / OWN_LIST).exists() or not card.is_file() or card.is_symlink():
+        return
+    with open(card, "rb") as file:
+        head = file.read(1000).decode("utf-8", "replace")
+    if TAGS in head.splitlines():
+        for name in (CARD, *(f"{FIGURES}/{figure}" for figure in figures)):
+            own.adopt(name)
+
+
+def plain(text: object) -> str:
+    """Text of others on one line that cannot break the Markdown around it."""
+    return one_line(text).translate(SPECIAL)
+
+
+def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
+    """The card in Markdown."""
+    attributes = store.attributes
+    title = plain(attributes["title"] or f"Data set {attributes['sweep_id']}")
+    head = ["---", f"license: {plain(attributes['license']).lower()}", TAGS, "---", f"# {title}", ""]
+    parts = [
+        layout.recorder.describe(),
+        "",
+        *_how(store, sweep),
+        *_counts(store, sweep),
+        *_figures(store.path),
+        *_use(layout),
+        *_limits(attributes["limits"]),
+    ]
+    tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
+    tables += _table("Variables", ("variable", "dimensions beside sample", "unit", "meaning"), variable_rows(store))
+    case = ["## The sweep", "```json", json.dumps(json.loads(attributes["sweep"]), indent=1), "```", ""]
+    return "\n".join([*head, *parts, *tables, *case])
+
+
+def _how(store: Store, sweep: Sweep) -> list[str]:
+    attributes, settings = store.attributes, sweep.settings
+    versions = plain(", ".join(f"{name} {number}" for name, number in attributes["versions"].items()))
+    shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
+    hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
+    specimens, draws = redrawn(store)
+    return [
+        "## How it was made",
+        f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
+        f"Sample k depends on the seed and on k only{hypercube}.",
+        f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
+        f"Computed by tactsim {plain(', '.join(attributes['codes']))}; {versions}.",
+        "",
+    ]
+
+
+def _counts(store: Store, sweep: Sweep) -> list[str]:
+    rows = [(name, str(count)) for name, count in status_counts(store).items()]
+    counts = split_counts(store)
+    splits = [(name, str(count)) for name, count in counts.items()]
+    lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
+    lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits)), ""]
+    failed = [(reason, str(count)) for reason, count in failures(store)]
+    return lines + (_table("Failures", ("reason", "samples"), failed) if failed else [])
+
+
+def empty_split_lines(names: Sequence[str]) -> list[str]:
+    """A sentence on parts of the data set without a sample, if there are any."""
+    if not names:
+        return []
+    which = f"the split {names[0]} has" if len(names) == 1 else f"the splits {', '.join(names)} have"
+    return [f"warning: {which} no sample that is done; take more samples, or other shares in sweep.splits."]
+
+
+def _figures(path: Path) -> list[str]:
+    own = OwnFiles(path)
+    drawn = sorted(name for name in own.sums() if name.startswith(f"{FIGURES}/") and own.written(name))
+    return ["## Figures", *(f"![{Path(name).stem}]({name})" for name in drawn), ""] if drawn else []
+
+
+def _use(layout: Layout) -> list[str]:
+    readings, labels = (_names(layout, role) for role in ("reading", "label"))
+    chosen = [name for name in ("read_force", "force") if name in readings] or readings[:1]
+    inputs, targets = json.dumps(chosen[:1]), json.dumps(labels[:1] or readings[-1:])
+    return [
+        "## Reading",
+        "With xarray alone:",
+        "```python",
+        "import xarray",
+        'data = xarray.open_zarr("STORE")',
+        "done = data.isel(sample=(data.status == 1).values)  # 0 pending, 1 done, 2 failed",
+        "```",
+        "In a notebook with tactsim, one part of the samples that are done:",
+        "```python",
+        "from tactsim.dataset import load",
+        'train, test = load("STORE", split="train"), load("STORE", split="test")',
+        "train",
+        "```",
+        "As PyTorch's loaders take it:",
+        "```python",
+        "from torch.utils.data import DataLoader",
+        "from tactsim.dataset import TorchSamples",
+        f'samples = TorchSamples("STORE", inputs={inputs}, targets={targets}, split="train")',
+        "loader = DataLoader(samples, batch_size=64, shuffle=True, num_workers=8)",
+        "```",
+        "Split by `split` (numbers: attribute flag_meanings), never by sample: samples may share a specimen.",
+        "The meanings of variables below say which have noise; `_clean` are the same readings without it.",
+        "",
+    ]
+
+
+def _names(layout: Layout, role: str) -> list[str]:
+    return [variable.name for variable in layout.variables if variable.role == role and variable.dtype != "str"]
+
+
+def _limits(own: str) -> list[str]:
+    return [
+        "## Known limits",
+        *(f"- {line}" for line in GENERAL_LIMITS),
+        *(f"- {plain(line)}" for line in own.splitlines() if line.strip()),
+        "",
+    ]
+
+
+def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
+    cells = [" | ".join(plain(cell) for cell in row) for row in rows]
+    return [f"## {title}", f"| {' | '.join(head)} |", "|" + " --- |" * len(head), *(f"| {row} |" for row in cells), ""]
+
+
+def description(path: str | Path) -> str:
+    """What ``tactsim data info`` prints."""
+    store = Store.open(path)
+    attributes = store.attributes
+    lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]
+    lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
+    lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
+    lines += [f"  {count} x {reason}" for reason, count in failures(store)]
+    lines += [f"  {row[0]:<36} {row[1]:<28} {row[2]:<6} {row[3]}" for row in variable_rows(store)]
+    return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check tells more" for name in store.missing)])
+
+
+def status_counts(store: Store) -> dict[str, int]:
+    """Samples by status."""
+    status = store.read("status")
+    return {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
+
+
+def split_counts(store: Store) -> dict[str, int]:
+    """Samples that are done by split."""
+    split, status = store.read("split"), store.read("status")
+    names = one_line(store.described["split"].attributes.get("flag_meanings", "")).split()
+    return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
+
+
+def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
+    """Parts of a data set that have a share, or conditions, and no sample that is done."""
+    shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
+    wanted = [name for name, share in shares.items() if share > 1e-9] + list(splits.out_of_distribution)  # round-off of the rest
+    return [name for name in wanted if not counts.get(name)]
+
+
+def redrawn(store: Store) -> tuple[int, int]:
+    """How many specimens were drawn again because a draw was refused, and the refused draws of all specimens."""
+    computed = store.read("status") != PENDING
+    _, first = np.unique(store.read("specimen")[computed], return_index=True)
+    draws = store.read("redraws")[computed][first].astype(int)
+    refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
+    return int((refused > 0).sum()), int(refused.sum())
+
+
+def failures(store: Store) -> list[tuple[str, int]]:
+    """Reasons of failed samples without their numbers, with counts, the most frequent first."""
+    failed = np.flatnonzero(store.read("status") == FAILED)
+    if not failed.size:
+        return []
+    kinds = [one_line(kind_of(str(reason))) for reason in store.read("reason", failed)]
+    reasons, counts = np.unique(kinds, return_counts=True)
+    pairs = sorted(zip(map(str, reasons), map(int, counts), strict=True), key=lambda pair: -pair[1])
+    rest = sum(count for _, count in pairs[MOST_REASONS:])
+    return pairs[:MOST_REASONS] + ([("other reasons", rest)] if rest else [])
+
+
+def variable_rows(store: Store) -> list[tuple[str, str, str, str]]:
+    """Name, dimensions, unit and meaning of every variable."""
+    rows = []
+    for name, array in store.described.items():
+        sizes = zip(array.dimensions[1:], array.shape[1:], strict=True)
+        shape = ", ".join(f"{one_line(dimension)} {size}" for dimension, size in sizes)
+        units, meaning = (one_line(array.attributes[key]) for key in ("units", "long_name"))
+        rows.append((name, shape, units, meaning))
+    return rows
+
+
+def ranges(store: Store) -> list[tuple[str, str, str, str]]:
+    """Name, unit, least and largest value of every varied number and label of the computed samples."""
+    computed = np.flatnonzero(store.read("status") != PENDING)
+    rows = []
+    for name, array in store.described.items():
+        if array.attributes["role"] not in ("varied", "label") or array.dtype == "str" or not computed.size:
+            continue
+        values = np.asarray(store.read(name, computed), dtype=float)
+        finite = values[np.isfinite(values)]
+        low, high = (f"{finite.min():.4g}", f"{finite.max():.4g}") if finite.size else ("-", "-")
+        rows.append((name, one_line(array.attributes["units"]), low, high))
+    return rows

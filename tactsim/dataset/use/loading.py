@@ -1,0 +1,187 @@
+"""Reading of a data set: its samples that are done, as an xarray data set or as PyTorch's loaders take them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.dataset.store.arrays import DONE, FAILED
+from tactsim.errors import InputError, StorageError, UnknownName
+
+if TYPE_CHECKING:
+    import xarray
+
+    from tactsim.dataset.store.opening import Store
+
+Array = np.ndarray
+
+
+def load(
+    store: str | Path,
+    *,
+    split: str | Iterable[str] | None = None,
+    failed: bool = False,
+    variables: Iterable[str] | None = None,
+    verified: bool = False,
+) -> xarray.Dataset:
+    """The samples of a data set, opened lazily.
+
+    Parameters
+    ----------
+    store : folder that ``tactsim sweep`` wrote
+    split : one part, such as ``"train"``, or several; by default all
+    failed : whether samples that failed, whose readings are NaN, are in it too; those that are pending never are
+    variables : names of the variables; by default all
+    verified : whether all that is stored of these samples is read and held against their checksums first
+
+    Raises
+    ------
+    UnknownName
+        If there is no such split or variable.
+    StorageError
+        If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
+        gone; if ``verified``, also if a sample is not what was written. Else a damaged chunk is refused when it is read.
+    """
+    from tactsim.dataset.store.opening import Store
+    from tactsim.dataset.store.verifying import refuse_changed, refuse_holes
+
+    place = Store.open(store)
+    whole = dataset_of(place)
+    names = [*map(str, whole.data_vars), *place.missing]
+    keep = names if variables is None else list(map(str, variables))
+    if unknown := [name for name in keep if name not in names]:
+        raise UnknownName("variable", unknown[0], names)
+    chosen = chosen_samples(whole, split, failed=failed)
+    refuse_holes(place, dict.fromkeys((*(names if verified else keep), "split")), chosen)
+    if verified:
+        refuse_changed(place, chosen)
+    return whole[keep].assign_coords(sample=np.arange(whole.sizes["sample"])).isel(sample=chosen)
+
+
+def opened(store: str | Path) -> xarray.Dataset:
+    """The whole store, lazily.
+
+    Raises
+    ------
+    StorageError
+        If the folder is not a data set, was written by another version, or has holes.
+    """
+    from tactsim.dataset.store.opening import Store
+    from tactsim.dataset.store.verifying import refuse_holes
+
+    place = Store.open(store)
+    whole = dataset_of(place)
+    refuse_holes(place, [*map(str, whole.data_vars), *place.missing], chosen_samples(whole, failed=True))
+    return whole
+
+
+def dataset_of(store: Store) -> xarray.Dataset:
+    """The store by xarray, without Dask.
+
+    Raises
+    ------
+    StorageError
+        If its arrays do not fit together.
+    """
+    import xarray
+
+    from tactsim.dataset.store.opening import reading
+
+    lengths = {name: array.shape[0] for name, array in store.described.items()}
+    if len(set(lengths.values())) > 1:
+        reason = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
+        raise StorageError(f"{store.path} cannot be opened: {reason}: a run was killed while it made room; go on with --resume")
+    with reading(store.path):
+        return xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
+
+
+def split_names(dataset: xarray.Dataset) -> list[str]:
+    """Names of the parts of a data set."""
+    return str(dataset["split"].attrs["flag_meanings"]).split()
+
+
+def chosen_samples(dataset: xarray.Dataset, split: str | Iterable[str] | None = None, *, failed: bool = False) -> Array:
+    """Numbers of the samples of a part that are done, or also of those that failed.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such split.
+    InputError
+        If the list of splits is empty.
+    StorageError
+        If status or split cannot be read.
+    """
+    status = dataset["status"].values
+    chosen = (status == DONE) | (status == FAILED) if failed else status == DONE
+    if split is not None:
+        known, wanted = split_names(dataset), [split] if isinstance(split, str) else list(split)
+        if not wanted:
+            raise InputError("split: an empty list; leave it out for all samples")
+        for name in wanted:
+            if name not in known:
+                raise UnknownName("split", name, known)
+        chosen &= np.isin(dataset["split"].values, [known.index(name) for name in wanted])
+    return np.flatnonzero(chosen)
+
+
+class TorchSamples:
+    """A map-style data set: ``(inputs, targets)`` of one sample, two mappings from variable to a tensor of 32-bit floats.
+
+    The store is opened in each process when its first sample is taken, so that any number of loader workers share nothing.
+    Whole numbers stay whole. NaN of padded inclusions stays NaN.
+    """
+
+    def __init__(
+        self,
+        store: str | Path,
+        *,
+        inputs: Sequence[str],
+        targets: Sequence[str] = (),
+        split: str | Iterable[str] | None = None,
+        transform: Callable[[dict[str, Any], dict[str, Any]], Any] | None = None,
+    ):
+        whole = load(store, split=split, variables=dict.fromkeys((*inputs, *targets, "status")))
+        for name in (*inputs, *targets):
+            if whole[name].dtype.kind not in "fiub":
+                raise InputError(f"{name} holds text, which a tensor cannot; take numbers")
+        self.store, self.inputs, self.targets, self.transform = str(store), tuple(inputs), tuple(targets), transform
+        self.numbers = whole["sample"].values
+        self._opened: tuple[int, dict[str, Any]] | None = None
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, index: int) -> Any:
+        return self.__getitems__([index])[0]
+
+    def __getitems__(self, indices: Sequence[int]) -> list[Any]:
+        """Several samples by one reading of each chunk, which PyTorch's loaders ask for."""
+        values = {name: self._tensors(name, self.numbers[list(indices)]) for name in (*self.inputs, *self.targets)}
+        samples = []
+        for row in range(len(indices)):
+            inputs, targets = ({name: values[name][row] for name in names} for names in (self.inputs, self.targets))
+            samples.append(self.transform(inputs, targets) if self.transform else (inputs, targets))
+        return samples
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_opened": None}
+
+    def _tensors(self, name: str, numbers: np.ndarray) -> Any:
+        import torch
+
+        values = np.asarray(self._arrays()[name].oindex[numbers])
+        return torch.from_numpy(np.array(values, dtype=np.float32 if values.dtype.kind == "f" else np.int64))
+
+    def _arrays(self) -> dict[str, Any]:
+        """The arrays of this process."""
+        if self._opened is None or self._opened[0] != os.getpid():
+            from tactsim.dataset.store.opening import Store
+
+            store = Store.open(self.store)
+            self._opened = os.getpid(), {name: store.array(name) for name in (*self.inputs, *self.targets)}
+        return self._opened[1]

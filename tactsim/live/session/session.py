@@ -1,0 +1,197 @@
+"""One open page: what it has chosen, and the frames that are pushed to it, never more than it can draw."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol, TypeVar
+
+from tactsim.errors import InputError, TactsimError
+from tactsim.live.defects import report
+from tactsim.live.session.commands import Choosing, Command, Drawn, Pause, Play, Show, read_command
+from tactsim.live.session.content import Content
+from tactsim.live.session.estimating import frame_readings
+from tactsim.live.session.messages import Scales, frame_message, plain_json, scene_message, shapes_message
+from tactsim.live.session.selection import Playback, Selection
+from tactsim.live.session.thinking import Thinking, Threads
+from tactsim.live.sources.scene import Frame, PageScene, Recording
+
+Made = TypeVar("Made")
+IN_FLIGHT = 2
+"""Frames that are sent before the page says that it has drawn one: the rest is skipped, so that nothing piles up."""
+PERIOD = 1 / 40
+"""Time in s between two pushed frames of a recording that plays."""
+TOLD = 0.25
+"""Time in s between two words about the feed."""
+MOST_WAITING = 2.0
+"""Time in s after which a frame is sent even if the page has not said that it drew the last, as when it is in the background."""
+
+
+class Socket(Protocol):
+    """What a session needs of a web socket."""
+
+    async def send_str(self, data: str) -> None:
+        """Sends text."""
+
+    async def send_bytes(self, data: bytes) -> None:
+        """Sends bytes."""
+
+
+class Session:
+    """Commands come in by `receive`; `run` sends until it is cancelled."""
+
+    def __init__(self, content: Content, socket: Socket, threads: Threads):
+        self._content, self._socket = content, socket
+        self._chosen = Selection(content)
+        self._playback = Playback()
+        self._changed, self._drawn = asyncio.Event(), asyncio.Event()
+        self._in_flight = 0
+        self._scales = Scales()
+        self._scene: PageScene | None = None
+        self._shown: Frame | None = None
+        self._thinking = Thinking(self._send_text, threads)
+
+    async def run(self) -> None:
+        """Sends the scene and then frames, until it is cancelled or the page is gone."""
+        feed = self._content.feed
+        if feed is not None:
+            feed.listen(self._changed)
+        self._changed.set()
+        words = asyncio.create_task(self._tell_feed())
+        try:
+            await self._send_text(plain_json(self._chosen.offered()))
+            while True:
+                await self._wait()
+                await self._push_or_tell()
+        finally:
+            words.cancel()
+            self._thinking.cancel()
+            if feed is not None:
+                feed.forget(self._changed)
+
+    async def _push_or_tell(self) -> None:
+        """What there is to send, or why it cannot be sent; what is chosen next may be."""
+        try:
+            await self._push()
+        except ConnectionError:
+            raise
+        except Exception as error:  # noqa: BLE001  whatever the data hold, the page goes on and tells it
+            self._playback.pause()
+            await self._tell_fault(str(error) if isinstance(error, TactsimError) else report(error))
+
+    async def receive(self, text: str | bytes) -> None:
+        """Takes a command of the page; one that cannot be used is answered by a fault."""
+        try:
+            if isinstance(text, bytes):
+                raise InputError("a command must be a text message")
+            self._do(read_command(text))
+        except TactsimError as error:
+            await self._tell_fault(str(error))
+        except Exception as error:  # noqa: BLE001  whatever a stored sample does, the page goes on and tells it
+            await self._tell_fault(report(error))
+
+    def _do(self, command: Command) -> None:
+        recording = self._chosen.recording
+        if isinstance(command, Drawn):
+            self._in_flight = max(0, self._in_flight - 1)
+            self._drawn.set()
+            return
+        if isinstance(command, Play):
+            if recording is not None:
+                self._playback.play(recording)
+        elif isinstance(command, Pause | Show):
+            self._playback.pause()
+            if recording is not None and isinstance(command, Show):
+                self._playback.go_to(recording, command.step)
+        else:
+            self._choose(command)
+        self._changed.set()
+
+    def _choose(self, command: Choosing) -> None:
+        """Another estimator, other forces, another sample or another filter."""
+        if self._chosen.take(command):
+            self._playback.begin_anew(self._chosen.recording)
+            self._scene = None
+        self._scales = Scales()
+
+    async def _wait(self) -> None:
+        """Until there is something to send and room for it."""
+        if self._playback.playing:
+            await asyncio.sleep(PERIOD)
+        else:
+            await self._changed.wait()
+        self._changed.clear()
+        while self._in_flight >= IN_FLIGHT:
+            self._drawn.clear()
+            try:
+                await asyncio.wait_for(self._drawn.wait(), MOST_WAITING)
+            except TimeoutError:
+                self._in_flight = 0
+
+    async def _push(self) -> None:
+        recording = self._chosen.recording
+        if self._chosen.live:
+            feed = self._content.feed
+            assert feed is not None
+            scene, frame = feed.scene, feed.frame
+        else:
+            scene, frame = (None, None) if recording is None else (recording.scene, self._playback.frame(recording))
+        if scene is not None and scene is not self._scene:
+            await self._introduce(scene, recording)
+        if scene is None:
+            await self._send_text(plain_json({"is": "state"} | self._chosen.state()))
+        elif frame is not None and (frame is not self._shown or not self._chosen.live or not self._scales.ends.any()):
+            await self._send_frame(scene, frame, recording)
+
+    async def _introduce(self, scene: PageScene, recording: Recording | None) -> None:
+        self._scene, self._scales = scene, Scales()
+        if not self._chosen.live and recording is not None:
+            self._playback.begin_anew(recording)
+        times = [] if self._chosen.live or recording is None else recording.times.tolist()
+        reference = self._content.reference
+        notes = [*scene.notes, *(() if reference is None else reference.notes)]
+        told = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
+        await self._send_text(scene_message(scene, **told))
+        self._thinking.shape(scene, shapes_message)
+
+    async def _send_frame(self, scene: PageScene, frame: Frame, recording: Recording | None) -> None:
+        choice, content = self._chosen.choice, self._content
+        if recording is not None and not self._chosen.live and not self._scales.ends.any():
+            self._scales.take_range(self._chosen.signals())
+        readings = readings_or_fault(lambda: frame_readings(scene, frame, choice, content.reference, content.noise))
+        step = 0 if recording is None or frame.time is None else recording.step_at(frame.time)
+        message = frame_message(scene, frame, readings, self._scales, step=step, playing=self._playback.playing)
+        self._shown = frame
+        self._in_flight += 1
+        await self._socket.send_bytes(message)
+        self._thinking.estimate(scene, readings, choice, content.reference)
+
+    async def _tell_feed(self) -> None:
+        """How the feed is doing, when that has changed."""
+        feed, before = self._content.feed, ""
+        while feed is not None:
+            counts = feed.counts
+            told = plain_json(
+                {"is": "feed", "name": feed.name, "state": feed.state, "frames": counts.frames, "malformed": counts.malformed}
+                | {"fault": counts.fault}
+            )
+            if told != before:
+                await self._send_text(told)
+                before = told
+            await asyncio.sleep(TOLD)
+
+    async def _tell_fault(self, words: str) -> None:
+        await self._send_text(plain_json({"is": "fault", "words": words}))
+
+    async def _send_text(self, text: str) -> None:
+        with suppress(ConnectionError):
+            await self._socket.send_str(text)
+
+
+def readings_or_fault(make: Callable[[], Made]) -> Made | TactsimError:
+    """What is made, or why it cannot be."""
+    try:
+        return make()
+    except TactsimError as error:
+        return error

@@ -1,0 +1,120 @@
+"""The recordings that a stored result holds: forces of the solution, and those read through sensors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.errors import InputError, StorageError, TactsimError, shown
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.experiments.localization.source import saturated_taxels
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
+from tactsim.localization.interface import ROUNDING_NOISE
+from tactsim.outside.text import one_line
+from tactsim.results.reading import read_result
+from tactsim.results.result import Result, Status
+from tactsim.results.scene import UnreadableScene
+
+Array = np.ndarray
+SOURCES = {"taxel_force": "forces of the solution", "read_force": "forces read through the sensors"}
+"""Name of the forces -> what they are, in words."""
+_TIMES = {"taxel_force": "time_history", "read_force": "readout_time"}
+DAMAGE = (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, MemoryError, TactsimError)
+"""What a result raises whose quantities no run writes: another type, a missing part, numbers that do not fit."""
+
+
+def result_recordings(folder: str | Path) -> dict[str, Recording]:
+    """The recordings of the result in a folder by the name of their forces, those of the solution first.
+
+    Raises
+    ------
+    InputError
+        If the result has no taxels.
+    StorageError
+        If there is no result, or it is damaged.
+    """
+    stored = read_result(folder, fields=False)
+    result = stored.result
+    if not isinstance(result.scene, GraspScene | UnreadableScene) or "taxel_force_upper" not in result.quantities:
+        raise InputError(
+            f"{folder} holds the result of {result.kind}, which has no forces of taxels to show; "
+            "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
+        )
+    case = stored.provenance.get("case")
+    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or result.kind)
+    incomplete = f"{one_line(folder)}/result.json is not a complete result of a grasp"
+    try:
+        grasp = result.scene_as(GraspScene)
+    except StorageError as error:
+        raise StorageError(f"{incomplete}: {one_line(error)}") from None
+    try:
+        scene = _scene(result, grasp, title)
+        return {name: _recording(result, scene, name) for name in SOURCES if f"{name}_upper" in result.quantities}
+    except DAMAGE as error:
+        raise StorageError(f"{incomplete}: {one_line(error)}; run the grasp again") from None
+
+
+def _scene(result: Result, grasp: GraspScene, title: str) -> PageScene:
+    check_extent(grasp.size)
+    displacement = result.quantities.get("displacement")
+    return PageScene(
+        title,
+        grasp,
+        closing=0.0 if displacement is None else float(displacement.value),
+        notes=_notes(result),
+        noise=grasp.noise if isinstance(grasp, LocalizedGrasp) and grasp.noise else ROUNDING_NOISE,
+    )
+
+
+def _notes(result: Result) -> tuple[str, ...]:
+    failed = () if result.status is Status.CONVERGED else (f"the run ended as {result.status.value}: {result.reason}",)
+    return failed + result.warnings
+
+
+def _recording(result: Result, scene: PageScene, name: str) -> Recording:
+    quantities = result.quantities
+    if f"{name}_upper_history" in quantities:
+        times = np.asarray(quantities[_TIMES[name]].value, dtype=float)
+        forces = np.stack([quantities[f"{name}_{side}_history"].array for side in JAWS], axis=1)
+    else:
+        times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
+        forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
+    valid = checked_validity(forces, times, scene, _saturated(result, name))
+    return Recording(scene, times, forces, valid, _closings(result, times), name)
+
+
+def checked_validity(forces: Array, times: Array, scene: PageScene, saturated: Array | None = None) -> Array:
+    """Which of forces (n, jaw, row, column) in N can be trusted: finite, no mistaken unit, and not ``saturated`` (n or 1, ...).
+
+    Raises
+    ------
+    InputError
+        If shapes do not agree.
+    """
+    needed = (len(times), len(JAWS), scene.layout.rows, scene.layout.columns)
+    if forces.shape != needed or not len(times):
+        raise InputError(f"the forces of the taxels have the shape {forces.shape}; needed: (step, jaw, row, column) = {needed}")
+    if not ((np.abs(times) <= LATEST).all() and (np.diff(times) > 0).all()):
+        raise InputError(f"the times {shown(times.tolist())} do not increase, or not all are within {LATEST:g} s")
+    valid = np.isfinite(forces) & (np.abs(np.nan_to_num(forces)) <= LARGEST_FORCE)
+    return valid if saturated is None else valid & ~saturated
+
+
+def _saturated(result: Result, name: str) -> Array | None:
+    if name != "read_force" or "saturated_upper" not in result.quantities:
+        return None
+    return saturated_taxels(result)
+
+
+def _closings(result: Result, times: Array) -> Array | None:
+    """Closing of each jaw at some times in m, None if the result does not tell it."""
+    quantities = result.quantities
+    if "displacement_history" in quantities:
+        known = quantities["time_history"].array
+        return np.interp(times, known, quantities["displacement_history"].array)
+    if "displacement" in quantities and len(times) == 1:
+        return np.array([float(quantities["displacement"].value)])
+    return None
