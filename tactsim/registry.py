@@ -6,18 +6,15 @@ import importlib
 import json
 import pkgutil
 import re
-from abc import ABC
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from inspect import isabstract
-from typing import Annotated, Any, ClassVar, Union
+from typing import Annotated, Any, Union
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from tactsim.errors import AmbiguousKind, UnknownName
-from tactsim.units import FrozenModel
 
 _registered: dict[type, dict[str, Any]] = {}
 """Extension point -> ``kind`` -> class; filled by `register`, which every concrete subclass calls as it is defined."""
@@ -40,22 +37,6 @@ def register(cls: Any) -> None:
             f"{other.__module__}.{other.__qualname__} and {cls.__module__}.{cls.__qualname__}; give one of them another kind"
         )
     known[kind] = cls
-
-
-class Kind(FrozenModel, ABC):
-    """A base of what is registered by its ``kind``."""
-
-    package: ClassVar[str]
-    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
-    modules: ClassVar[str] = ".*"
-    """Pattern of the names, within that package, of the modules that define kinds."""
-    kind: str
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        super().__pydantic_init_subclass__(**options)
-        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
-            register(cls)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tactsim.interfaces.run import Course, Progress, run_experiment
 from tactsim.interfaces.seeds import seeds_in
-from tactsim.registry import Kind as Kind
+from tactsim.kind import Kind as Kind
 from tactsim.registry import MarkedFunction, mark
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result

@@ -86,7 +86,15 @@ class Runnable(Protocol):
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
-    """What `Experiment.run` returns and raises."""
+    """The result that `Experiment.run` returns.
+
+    Raises
+    ------
+    InputError, Unfinished
+        As `Experiment.begin`.
+    OutOfMemory
+        If the memory does not suffice to begin, or to say what was found.
+    """
     started = time.perf_counter()
     try:
         with time_limit(seconds):

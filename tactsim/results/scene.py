@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 from pydantic import ValidationError
 
 from tactsim.errors import TactsimError
+from tactsim.kind import Kind
 from tactsim.outside.text import one_line
-from tactsim.registry import Kind, kind_class
+from tactsim.registry import kind_class
 from tactsim.units import FrozenModel
 
 EARLIER = "it was written by an earlier version of tactsim (schema_version 1), which described it in another form"

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 import zarr
 from sweeps import run_sweep, small_store, sweep_file
-from tactsim.dataset.store_writing import tell
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.writing import set_attributes
 from tactsim.errors import StorageError
 
 
@@ -88,7 +88,7 @@ def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_
     whole = load(place)
     left_out = "force"
     shutil.rmtree(place / left_out)
-    tell(Store.open(place, writing=True, damaged=True), arrays=sorted(set(map(str, whole.data_vars)) - {left_out}))
+    set_attributes(Store.open(place, writing=True, damaged=True), arrays=sorted(set(map(str, whole.data_vars)) - {left_out}))
     assert set(load(place).data_vars) == set(whole.data_vars) - {left_out}
     (finding,) = (finding for finding in check(place).findings if finding.kind == "form")
     assert f"which did not store {left_out}; it can be read" in finding.words
