@@ -13,8 +13,8 @@ from tactsim.dataset.running import opened_run
 from tactsim.dataset.store import Store
 from tactsim.dataset.sweep import load_sweep
 from tactsim.dataset.variable import DONE
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result

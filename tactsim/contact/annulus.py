@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
+from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -47,6 +48,11 @@ class Annulus(Revolved):
     def area(self) -> float:
         """Annular area in m^2 that the thesis divides the threshold force by."""
         return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The face, its hole and the rounding of both edges."""
+        return ContactShape(self.outer_radius, self.inner_radius, self.fillet)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

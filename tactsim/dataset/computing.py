@@ -16,6 +16,7 @@ from tactsim.dataset.sweep import Sweep, sweep_of_text
 from tactsim.dataset.variable import DONE, FAILED
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.experiments.collecting import run_within
+from tactsim.experiments.recording import numbers as numbers_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.results.result import Status
 
@@ -85,7 +86,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
-        found = layout.recorder.numbers(result) | readings
+        found = numbers_of(layout.recorder, result) | readings
         _check(found, layout)
     except CaseError:
         raise  # what the sweep stores is wrong for every sample

@@ -11,8 +11,9 @@ from tactsim.dataset.loading import load
 from tactsim.errors import InputError
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.localization.confusion import ConfusionTable, class_of, estimated_class
-from tactsim.localization.interface import ROUNDING_NOISE, Estimator
 from tactsim.localization.lump_response import LumpResponse
 
 Array = np.ndarray

@@ -1,1 +1,1 @@
-"""What a case can ask for: a folder for each family of kinds with all that belongs to it: fields, run, record, figures, recorder."""
+"""What a case can ask for: a folder for each family of kinds with all that belongs to it: fields, run, figures, recorder."""

@@ -1,23 +1,39 @@
-"""The extension points on one page: a concrete subclass is registered by its ``kind``, wherever it is defined."""
+"""All extension points on one page.
+
+To add a kind, subclass its point with a literal ``kind`` that has a default, in a new module of the point's ``package`` or
+anywhere else, such as a notebook. It is registered as it is defined; no list names it. `registry.kinds` lists the kinds of a
+point, `registry.forget` removes one, and two classes with one ``kind`` are an error that names both.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from inspect import isabstract
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
 
+from tactsim.interfaces.contact_shape import ContactShape
+from tactsim.interfaces.estimate import Estimate
+from tactsim.interfaces.readings import Readings
+from tactsim.interfaces.recording import Recording, Values
+from tactsim.interfaces.solid import Measures, Solid, check_bounds
+from tactsim.interfaces.variable import Variable
 from tactsim.registry import register
 from tactsim.relaxation import Relaxation
-from tactsim.units import FrozenModel
+from tactsim.units import Area, FrozenModel
 
 if TYPE_CHECKING:
-    from tactsim.results.result import Result, StepRecord
+    from tactsim.results.result import Quantity, Result, StepRecord
 
 Array = np.ndarray
 Progress = Callable[["StepRecord"], None]
+Drawing = Callable[[], bytes]
+"""Draws one figure and returns it as PNG."""
 
 
 class Kind(FrozenModel, ABC):
@@ -50,9 +66,15 @@ class Material(CaseKind):
 
     Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
     ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
+    A case file names it wherever it asks for a material. A body uses the stress and the tangent given here; only a law with a
+    compiled form is assembled by compiled loops, any other one by numpy, several times slower, of which the run warns.
     """
 
     package: ClassVar[str] = "tactsim.materials"
+    compiled_form: ClassVar[Literal["invariants", "small_strain"] | None] = None
+    """Compiled loops that equal the methods below: of an energy of the isochoric invariants, of linear elasticity, or none."""
+    small_strain: ClassVar[bool] = False
+    """Whether it holds for small strain and rotation only: stress per reference area, volumes that may turn over."""
     bulk_modulus: float | None
     relaxation: Relaxation | None = None
     """Relaxation of the isochoric stress; null means elastic."""
@@ -80,7 +102,10 @@ class Material(CaseKind):
 
 
 class RigidBody(CaseKind):
-    """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates."""
+    """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates.
+
+    A case file names it as ``body``.
+    """
 
     package: ClassVar[str] = "tactsim.contact"
 
@@ -94,9 +119,14 @@ class RigidBody(CaseKind):
         Shapes ``(n,)``, ``(d, n)`` and ``(d, d, n)``.
         """
 
+    @property
+    def contact_shape(self) -> ContactShape:
+        """What the specimen and its mesh must know of the part that touches; by default it reaches beyond any specimen."""
+        return ContactShape()
+
 
 class ContactLaw(CaseKind):
-    """Tangential traction between tissue and a rigid body."""
+    """Tangential traction between tissue and a rigid body; a case file names it as ``contact``."""
 
     package: ClassVar[str] = "tactsim.contact"
 
@@ -109,18 +139,114 @@ class ContactLaw(CaseKind):
         """Derivative of the limit with respect to the pressure, dimensionless."""
 
 
-class Sensor(CaseKind):
-    """Turns a history of forces into readings."""
+class Inclusion(CaseKind):
+    """A body in the block, or a hollow one; a case file names it as ``shape`` among the ``inclusions``."""
 
-    package: ClassVar[str] = "tactsim.sensors"
+    package: ClassVar[str] = "tactsim.mesh.inclusions"
+    data_set_number: ClassVar[int | None] = None
+    """Number that stands for the kind in data sets, never to be changed; None comes behind all numbers, by the alphabet."""
+    hollow: ClassVar[bool] = False
+    """Whether there is an empty space in it."""
 
     @abstractmethod
-    def read(self, time: Array, force: Array) -> Array:
-        """Readings at the times in s for forces in N of shape ``(time, ...)``."""
+    def solids(self, size: Array) -> tuple[Solid, ...]:
+        """The body in a block of size (3,) in m, and the empty space in it if it is hollow."""
+
+    def measures(self, size: Array) -> Measures:
+        """Centre, size and height in a block of size (3,) in m, as data sets label it."""
+        return self.solids(size)[0].measures()
+
+    def places(self, size: Array) -> Array:
+        """Points (n, 3) in m that stand for it where an estimate is judged."""
+        return self.measures(size).center[None]
+
+    def refine(self, wanted: float) -> float:
+        """Element size in m near the body if ``wanted`` is what a thick body gets."""
+        return wanted
+
+    def identity(self) -> str:
+        """Text that changes with the geometry."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+
+    def check_in_block(self, size: Array, gap: float, name: str) -> None:
+        """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m.
+
+        Raises
+        ------
+        InvalidQuantity
+            Naming the inclusion, the face and the distance.
+        """
+        check_bounds(self.solids(size)[0].bounds(), size, gap, name)
+
+
+class SensorFilm(CaseKind):
+    """What turns a force into an electrical quantity, its signal; a case file names it as ``film``."""
+
+    package: ClassVar[str] = "tactsim.sensors"
+    modules: ClassVar[str] = r"(\w+_)?film"
+    signal: ClassVar[Literal["conductance", "capacitance"]]
+    """What electronics measure of it, increasing with the force."""
+    unit: ClassVar[Literal["S", "F"]]
+    """Unit of the signal."""
+    active_area: Annotated[Area, Field(gt=0)] | None = None
+    """Area that carries the force; null is the area for which the film's numbers hold."""
+
+    @property
+    @abstractmethod
+    def largest_force(self) -> float:
+        """Force in N up to which the film was measured."""
+
+    @abstractmethod
+    def advance(self, state: Any, time: ArrayLike, force: ArrayLike) -> tuple[Array, Any]:
+        """Signal of the next samples, forces (n, ...) in N at times (n,) in s, and the state after them; None is a film at rest.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a force is negative, not finite or too large for the film.
+        """
+
+    @abstractmethod
+    def retreat(self, state: Any, time: ArrayLike, signal: ArrayLike) -> tuple[Array, Any]:
+        """Force in N of the next samples of the signal, and the state after them: the inverse of ``advance``.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a value is negative, not finite or beyond what the film can give.
+        """
+
+    @abstractmethod
+    def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Compressive strain, of the shape of ``force``."""
+
+    @abstractmethod
+    def sensitivity(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Immediate change of the signal with the force, in its unit per N, of the shape of ``force``."""
+
+    @abstractmethod
+    def quantities(self) -> dict[str, Quantity]:
+        """Derived numbers of the film, for the result."""
+
+    @abstractmethod
+    def assumptions(self) -> tuple[str, ...]:
+        """What is assumed of the film."""
+
+    @abstractmethod
+    def warnings(self, largest: float) -> tuple[str, ...]:
+        """What goes beyond the measurements when forces reach ``largest`` newton."""
+
+    def read(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Signal of a film that is at rest before the first sample; raises as ``advance`` does."""
+        return self.advance(None, time, force)[0]
+
+    def force(self, time: ArrayLike, signal: ArrayLike) -> Array:
+        """Force in N whose history gives this signal; raises as ``retreat`` does."""
+        return self.retreat(None, time, signal)[0]
 
 
 class Experiment(CaseKind):
-    """What a case can ask for: receives its parts, returns a result."""
+    """What a case can ask for, as ``experiment``: receives its parts, returns a result."""
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$)\w+"
@@ -134,3 +260,91 @@ class Experiment(CaseKind):
 
         A run that does not converge or is interrupted returns a result with that status, the reason, and what was accepted.
         """
+
+
+class Estimator(CaseKind):
+    """Finds inclusions from readings; a case file names it as ``estimator``, the page and the ranking offer its variants."""
+
+    package: ClassVar[str] = "tactsim.localization.estimators"
+    label: ClassVar[str] = ""
+    """Name in words; empty leaves the kind."""
+    needs_response: ClassVar[bool] = False
+    """Whether it needs the fast forward model of the tissue."""
+    tells_classes: ClassVar[bool] = False
+    """Whether it gives a probability for each class of what may be there."""
+
+    @property
+    def title(self) -> str:
+        """What the page calls it."""
+        return self.label or self.kind
+
+    @property
+    def needs_reference(self) -> bool:
+        """Whether it needs what the tissue reads without a lump."""
+        return self.needs_response
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """Name -> what is offered without settings of a user; empty if it needs what only a user has, such as a file."""
+        return {cls.example().kind: cls.example()}
+
+    @abstractmethod
+    def estimate(self, readings: Readings) -> Estimate:
+        """What is there, and where.
+
+        Raises
+        ------
+        InputError
+            If the readings lack what this estimator needs, such as a reference.
+        """
+
+
+class Recorder(Kind):
+    """The labels and readings that a data set keeps of a kind of experiment: its ``kind`` is that of the experiment."""
+
+    package: ClassVar[str] = "tactsim.experiments"
+    modules: ClassVar[str] = r"\w+\.recorder"
+    settings: Recording
+    most_inclusions: int = 0
+    """Largest number of inclusions that the sweep can draw."""
+    quantities: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """Name of a number of the result -> unit and description; stored as they are."""
+    optional: ClassVar[tuple[str, ...]] = ()
+    """Those of them that a result may lack."""
+    noise_seed: ClassVar[tuple[str, ...]] = ()
+    """Where such an experiment keeps the seed of its noise; one that keeps none is read with noise of the sweep's own."""
+    histories: ClassVar[bool] = False
+    """Whether `readings` are stored at several times."""
+    reads_force: ClassVar[bool] = False
+    """Whether a force is read through the sensor of the sweep."""
+
+    def labels_of(self, experiment: Any) -> list[Variable]:
+        """What is known before the experiment is run; sizes as those of this experiment."""
+        return []
+
+    def readings_of(self, experiment: Any) -> list[Variable]:
+        """What its result holds beside ``quantities``; sizes as those of this experiment."""
+        return []
+
+    def labels(self, experiment: Any) -> Values:
+        """Values of `labels_of`."""
+        return {}
+
+    def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
+        """Values of `readings_of`; the generator makes noise."""
+        return {}
+
+    @abstractmethod
+    def describe(self) -> str:
+        """What is simulated, for the card of the data set."""
+
+
+class ResultFigures(Kind):
+    """The figures of a kind of experiment, in a module ``figures`` of its folder: its ``kind`` is that of the experiment."""
+
+    package: ClassVar[str] = "tactsim.experiments"
+    modules: ClassVar[str] = r"\w+\.figures(\.\w+)?"
+
+    @abstractmethod
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """File name -> drawing, the main figure first; only what the result has the data for."""

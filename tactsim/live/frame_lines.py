@@ -26,9 +26,9 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from tactsim.errors import InputError, shown
+from tactsim.interfaces.readings import JAWS
 from tactsim.interfaces.taxel_layout import PositiveLength, TaxelLayout
 from tactsim.live.scene import LARGEST_FORCE, Frame, Scene, plain_scene
-from tactsim.localization.readings import JAWS
 from tactsim.outside.text import one_line
 from tactsim.units import FrozenModel
 

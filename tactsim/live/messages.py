@@ -13,11 +13,10 @@ from matplotlib import colormaps
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.localization.figures.views import COLOURS, ESTIMATE
+from tactsim.interfaces.readings import JAWS, Readings
 from tactsim.live.estimating import shown_signal
 from tactsim.live.scene import Frame, Scene
 from tactsim.live.shapes import drawn_inclusions
-from tactsim.localization.interface import Readings
-from tactsim.localization.readings import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.outside.text import one_line
 

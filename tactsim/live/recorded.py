@@ -11,9 +11,9 @@ from pydantic import ValidationError
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.localization.source import saturated_taxels, true_inclusions
+from tactsim.interfaces.readings import JAWS
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.live.scene import LARGEST_FORCE, LATEST, Recording, Scene, plain_scene
-from tactsim.localization.readings import JAWS
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status

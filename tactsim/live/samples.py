@@ -17,9 +17,9 @@ from tactsim.dataset.sweep import Sweep
 from tactsim.dataset.variable import DONE, PENDING, STATUS
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.readings import JAWS
 from tactsim.live.recorded import SOURCES, checked_validity
 from tactsim.live.scene import Recording, Scene
-from tactsim.localization.readings import JAWS
 
 Array = np.ndarray
 OTHER_CASE = (

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from tactsim.errors import TactsimError
+from tactsim.interfaces.readings import Readings
 from tactsim.live.choices import Choice
 from tactsim.live.defects import report
 from tactsim.live.estimating import estimated
@@ -15,7 +16,6 @@ from tactsim.live.messages import plain_json
 from tactsim.live.reference import Reference
 from tactsim.live.scene import Scene
 from tactsim.live.threads import Threads
-from tactsim.localization.interface import Readings
 from tactsim.outside.text import one_line
 
 Send = Callable[[str], Awaitable[None]]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.estimate import Estimate
 from tactsim.localization.estimators.hypotheses import CLASSES
-from tactsim.localization.interface import Estimate
 
 Array = np.ndarray
 TUBE = "tube"

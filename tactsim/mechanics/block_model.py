@@ -18,12 +18,12 @@ from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
+from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.mesh.solid import FACES
 
 Array = np.ndarray
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from tactsim.experiments.indentation.contact_setup import ContactSetup
 from tactsim.fem.body import PastStress
+from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.fem.memory import mean_stress
 from tactsim.interfaces import RigidBody
 from tactsim.materials.stability import principal_stretches
@@ -103,7 +104,7 @@ def contact_oddities(experiment: ContactSetup) -> list[str]:
     tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
     tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
     bodies = {f"body.{name}": getattr(body, name) for name in ("radius", "inner_radius", "outer_radius") if hasattr(body, name)}
-    return oddities(materials, tissue=tissue, bodies=bodies)
+    return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
 
 
 def contact_assumptions(experiment: ContactSetup) -> list[str]:

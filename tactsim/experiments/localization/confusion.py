@@ -20,10 +20,10 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
-from tactsim.localization.interface import ROUNDING_NOISE, Readings
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import Force, format_quantity

@@ -13,8 +13,8 @@ from tactsim.experiments.localization.detectability_statistics import false_alar
 from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
 from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.interface import ROUNDING_NOISE
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
 from tactsim.mechanics.loading import DisplacementLoading

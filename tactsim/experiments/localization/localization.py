@@ -20,15 +20,15 @@ from tactsim.experiments.localization.source import (
     reference_notes,
     stored_grasp,
     true_inclusions,
-    true_places,
     with_reference,
 )
 from tactsim.interfaces import Experiment, Progress
+from tactsim.interfaces.estimate import Estimate, told
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
-from tactsim.localization.readings import silent_taxels, silent_words
+from tactsim.localization.region import shadows
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 from tactsim.units import Force, format_quantity
@@ -85,7 +85,7 @@ class Localization(Experiment):
         estimate = self.estimator.estimate(readings)
         step = StepRecord(1, 0, 0.0, dict(zip(self.history_units, map(float, readings.filled.sum(axis=(1, 2))), strict=True)))
         progress(step)
-        true = [true_places(shape, readings.block_size) for shape in true_inclusions(stored.details)]
+        true = [shape.places(readings.block_size) for shape in true_inclusions(stored.details)]
         return Result(
             kind=self.kind,
             status=Status.CONVERGED,
@@ -104,7 +104,7 @@ class Localization(Experiment):
                         "center": list(found.center),
                         "radius": found.radius,
                         "line": found.line,
-                        "region": None if found.region is None else found.region.shadows(),
+                        "region": None if found.region is None else shadows(found.region),
                     }
                     for found in estimate.inclusions
                 ],

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.localization.networks import inputs, read_weights
 from tactsim.localization.region import GaussianRegion
 from tactsim.outside.input_path import InputPath
@@ -28,6 +30,7 @@ class LearnedEstimator(Estimator):
     Source: an ensemble of perceptrons after B. Lakshminarayanan, A. Pritzel & C. Blundell 2017, arXiv:1612.01474.
     """
 
+    label: ClassVar[str] = "Learned"
     kind: Literal["learned"] = "learned"
     weights: InputPath
     """File of the weights, beside the case or in the working folder."""
@@ -36,6 +39,16 @@ class LearnedEstimator(Estimator):
     def example(cls) -> Self:
         """Weights wherever they were written."""
         return cls(weights="results/lumps_estimator.npz")
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """None: it needs a file of weights."""
+        return {}
+
+    @property
+    def needs_reference(self) -> bool:
+        """Always: networks take changes."""
+        return True
 
     @classmethod
     def checked(cls, path: str | Path) -> Self:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.localization.bands import Form
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
 from tactsim.localization.section_image import depth_share
 from tactsim.units import format_quantity
 
@@ -30,6 +32,7 @@ class ThesisEstimator(Estimator):
     Source: thesis, 6.3.1 to 6.3.4 and Appendix .2, errata E13, E24, E25.
     """
 
+    label: ClassVar[str] = "Thesis"
     kind: Literal["thesis"] = "thesis"
     background: Literal["none", "reference"] = "none"
     """Whether the readings of tissue without a lump at the same closing are taken off."""
@@ -44,6 +47,21 @@ class ThesisEstimator(Estimator):
     def example(cls) -> Self:
         """The corrected algorithm on the bare forces."""
         return cls()
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """On the bare forces, and on what they differ from a reference."""
+        return {"thesis": cls(), "thesis with reference": cls(background="reference")}
+
+    @property
+    def title(self) -> str:
+        """Whether it takes off a reference too."""
+        return f"{self.label}, less a reference" if self.needs_reference else self.label
+
+    @property
+    def needs_reference(self) -> bool:
+        """Whether the reference is taken off."""
+        return self.background == "reference"
 
     def estimate(self, readings: Readings) -> Estimate:
         """At most one inclusion, without radius, contrast or covariance."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -75,6 +74,8 @@ def test_linear_elastic_paths(path, held):
     assert nominal_stress(material, path, np.array(1.001)) == pytest.approx(expected, rel=1e-10)  # 1.001 - 1 loses three digits
 
 
-def test_an_unknown_kind_is_refused():
-    with pytest.raises(InputError, match="'cosserat' are not known"):
-        nominal_stress(SimpleNamespace(kind="cosserat"), "uniaxial", STRETCH)
+@pytest.mark.parametrize("path", PATHS)
+def test_a_law_of_principal_stretches_has_the_states_of_neo_hooke_at_an_exponent_of_two(path):
+    expected = nominal_stress(NeoHookean(c10=500.0), path, STRETCH)
+    np.testing.assert_allclose(nominal_stress(PrincipalOgden(shear_modulus=1e3), path, STRETCH), expected, rtol=1e-10)
+    assert np.abs(nominal_stress(PrincipalOgden(shear_modulus=1e3, alpha=3.0), path, STRETCH) / expected - 1).max() > 0.1

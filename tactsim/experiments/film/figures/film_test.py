@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray
@@ -26,12 +27,16 @@ COEFFICIENTS = (
 
 
 class FilmTestFigures(ResultFigures):
-    """Four panels, and the surface of Fig. 2.10."""
+    """Four panels, and the surface of Fig. 2.10; for a capacitive film the capacitance and its strain."""
 
     kind: Literal["film_test"] = "film_test"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``film_test.png`` and, with at least two times, ``film_surface.png``."""
+        """``film_test.png`` and, with at least two times of a piezoresistive film, ``film_surface.png``."""
+        if "capacitance" in result.quantities:
+            return {"film_test.png": lambda: png(capacitive_test_figure(result))}
+        if "coefficients" not in result.details:
+            return {}
         found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result))}
         if len(result.quantities["times"].value) > 1:
             found["film_surface.png"] = lambda: png(film_surface_figure(result))

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, draw_curve, mark_failure
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
 

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 DARK = 0.6

@@ -11,12 +11,13 @@ from pydantic import TypeAdapter
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.parts import SIDES
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import AnyInclusion, shapes_unlike_tissue
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
-from tactsim.mesh.solid import Inclusion, Solid
 from tactsim.results import Result
 
 Array = np.ndarray
