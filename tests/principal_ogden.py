@@ -1,4 +1,4 @@
-"""Ogden's law in principal stretches as a user would write it: stress and tangent of a `Material`, no energy of the invariants."""
+"""Ogden's law in principal stretches as a user would write it: stress and tangent of a `Material`."""
 
 from __future__ import annotations
 
@@ -22,8 +22,12 @@ class PrincipalOgden(Material):
 
     kind: Literal["principal_ogden"] = "principal_ogden"
     bulk_modulus: float | None = None
-    shear_modulus: float = 1e3  # type: ignore[assignment]
+    modulus: float = 1e3
     alpha: float = 2.0
+
+    @property
+    def shear_modulus(self) -> float:
+        return self.modulus
 
     @classmethod
     def example(cls) -> Self:
@@ -72,7 +76,7 @@ class PrincipalOgden(Material):
     def _powers(self, squared: Array) -> tuple[Array, Array]:
         """Deviatoric Kirchhoff stress tau (..., 3), and 2 mu / alpha l_a^alpha without its mean taken off."""
         isochoric = squared / np.cbrt(squared.prod(axis=-1, keepdims=True))
-        powers = 2 * self.shear_modulus / self.alpha * isochoric ** (self.alpha / 2)
+        powers = 2 * self.modulus / self.alpha * isochoric ** (self.alpha / 2)
         return powers - powers.mean(axis=-1, keepdims=True), powers
 
     def _stress(self, squared: Array) -> Array:

@@ -52,7 +52,8 @@ class InterpretedPart:
             here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
             B, stress = self._operator(part), self.stress(here)
             change = self.material.volume_change(here.F) - self.compliance * here.pressure
-            forces = np.einsum("eq,ieq,ieqm->em", weights, stress.reshape(9, *weights.shape), B, optimize=True)
+            weighted = np.moveaxis(weights * stress.reshape(9, *weights.shape), 0, -1)
+            forces = np.einsum("ep,epm->em", weighted.reshape(len(B), -1), B)
             volumes = np.einsum("eq,eq,qv->ev", weights, change, N)
             out += np.bincount(self.unknowns[part].ravel(), np.hstack([forces, volumes]).ravel(), out.size)
 
@@ -60,11 +61,12 @@ class InterpretedPart:
         """Add the derivative of the residual to the entries ``data`` of a pattern."""
         for part in self._parts():
             here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
-            B, shape = self._operator(part), weights.shape
-            moduli = self.moduli(here).reshape(9, 9, *shape)
-            slope = self.material.volume_change_gradient(here.F).reshape(9, *shape)
-            K_uu = np.einsum("eq,ieqm,ijeq,jeqn->emn", weights, B, moduli, B, optimize=True)
-            K_up = np.einsum("eq,ieqm,ieq,qv->emv", weights, B, slope, N, optimize=True)
+            B, (count, points) = self._operator(part), weights.shape
+            moduli = np.moveaxis(weights * self.moduli(here).reshape(9, 9, count, points), (0, 1), (-2, -1))
+            slope = np.moveaxis(weights * self.material.volume_change_gradient(here.F).reshape(9, count, points), 0, -1)
+            across = B.transpose(0, 2, 1)
+            K_uu = across @ (moduli @ B.reshape(count, points, 9, -1)).reshape(B.shape)
+            K_up = across @ np.einsum("eqi,qv->eqiv", slope, N).reshape(count, 9 * points, -1)
             K_pp = -self.compliance * np.einsum("eq,qv,qx->evx", weights, N, N)
             blocks = np.block([[K_uu, K_up], [K_up.transpose(0, 2, 1), K_pp]])
             places = self._places(part, pattern)
@@ -96,15 +98,15 @@ class InterpretedPart:
         return self.points.weights[self.elements[part]]
 
     def _operator(self, part: slice) -> Array:
-        """B = dF/du at the points in 1/m, shape (9, E, Q, displacements of an element)."""
+        """B = dF/du at the points in 1/m, shape (E, 9 Q, displacements of an element)."""
         gradients, hoop = (values[self.elements[part]] for values in (self.points.gradients, self.points.hoop))
         dim = self.space.dim
-        B = np.zeros((3, 3, *hoop.shape, dim))
+        B = np.zeros((*hoop.shape[:2], 3, 3, hoop.shape[2], dim))
         for k in range(dim):
-            B[k, :dim, ..., k] = np.moveaxis(gradients, -1, 0)
+            B[:, :, k, :dim, :, k] = np.moveaxis(gradients, -1, -2)
         if dim == 2:
-            B[2, 2, ..., 0] = hoop
-        return B.reshape(9, *hoop.shape[:2], -1)
+            B[:, :, 2, 2, :, 0] = hoop
+        return B.reshape(len(B), 9 * hoop.shape[1], -1)
 
     def _places(self, part: slice, pattern: Pattern) -> Array:
         """Places (E, n, n) in the entries of the tangent of the blocks of each element."""

@@ -9,7 +9,7 @@ from tactsim.materials.homogeneous import diagonal
 
 DIRECTIONS = 100
 """Unit vectors on half a sphere, some 14 degrees apart: a loss of ellipticity in a narrower cone can be overlooked."""
-CHUNK = 4096
+CHUNK = 2048
 """Points judged at once."""
 LOGARITHMIC = np.array([[1, -1, 0], [1, 1, -2]]) / np.sqrt([[2], [6]])
 """Two unit directions of logarithmic strain of constant volume."""
@@ -31,15 +31,29 @@ def sampled_ellipticity_margin(material: Material, F: Array) -> Array:
 
 
 def _margin(material: Material, F: Array) -> Array:
-    """That at points of shape (3, 3, n), shape (n,)."""
-    moduli, slope = material.tangent(F, np.zeros(F.shape[2])), material.volume_change_gradient(F)
-    least = np.full(F.shape[2], np.inf)
-    for n in half_sphere(DIRECTIONS):
-        acoustic = np.einsum("J,iJkLn,L->nik", n, moduli, n)
-        first, second = _across(np.einsum("iJn,J->ni", slope, n))
-        plane = np.stack([first, second])
-        least = np.minimum(least, smaller_eigenvalue(np.einsum("ani,nik,bnk->abn", plane, acoustic, plane)))
-    return least
+    """That at points of shape (3, 3, n), shape (n,).
+
+    On the plane normal to a unit vector c, a symmetric Q has the eigenvalues of trace tr Q - c.Qc and product c.adj(Q)c.
+    """
+    count = F.shape[2]
+    normals = half_sphere(DIRECTIONS)
+    moduli = material.tangent(F, np.zeros(count)).transpose(4, 0, 2, 1, 3).reshape(count, 9, 9)
+    pairs = np.einsum("dJ,dL->JLd", normals, normals).reshape(9, -1)
+    Q = (moduli @ pairs).reshape(count, 3, 3, -1)
+    c = np.moveaxis(material.volume_change_gradient(F), -1, 0) @ normals.T
+    c = c / np.linalg.norm(c, axis=1, keepdims=True)
+    half = (np.einsum("niid->nd", Q) - np.einsum("nid,nikd,nkd->nd", c, Q, c)) / 2
+    product = sum(
+        c[:, i]
+        * c[:, k]
+        * (
+            Q[:, (k + 1) % 3, (i + 1) % 3] * Q[:, (k + 2) % 3, (i + 2) % 3]
+            - Q[:, (k + 1) % 3, (i + 2) % 3] * Q[:, (k + 2) % 3, (i + 1) % 3]
+        )
+        for i in range(3)
+        for k in range(3)
+    )
+    return (half - np.sqrt(np.maximum(half**2 - product, 0.0))).min(axis=1)
 
 
 def sampled_drucker_margin(material: Material, stretches: Array) -> Array:
@@ -77,12 +91,3 @@ def half_sphere(count: int) -> Array:
     height, angle = 1 - step / count, np.pi * (1 + np.sqrt(5)) * step
     radius = np.sqrt(1 - height**2)
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
-
-
-def _across(vectors: Array) -> tuple[Array, Array]:
-    """Two unit vectors (n, 3) each, normal to each other and to the vectors (n, 3)."""
-    smallest = np.eye(3)[np.abs(vectors).argmin(axis=1)]
-    first = np.cross(vectors, smallest)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
-    second = np.cross(vectors, first)
-    return first, second / np.linalg.norm(second, axis=1, keepdims=True)
