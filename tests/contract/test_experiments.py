@@ -80,7 +80,9 @@ def test_a_case_file_gives_it_back_and_passes_the_schema(kind: str, tmp_path: Pa
     experiment = KINDS[kind].example()
     told = experiment.model_dump(mode="json")
     fields = KINDS[kind].model_fields
-    defaults = {name for name, field in fields.items() if getattr(experiment, name) == field.get_default(call_default_factory=True)}
+    defaults = {
+        name for name, field in fields.items() if getattr(experiment, name) == field.get_default(call_default_factory=True)
+    }
     written = json.loads(experiment.model_dump_json(by_alias=True, exclude=defaults - {"kind"}))
     case = {"schema": "tactsim/case/1", "title": "example", "experiment": written}
     path = tmp_path / "case.yaml"
