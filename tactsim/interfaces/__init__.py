@@ -8,9 +8,8 @@ point, `registry.forget` removes one, and two classes with one ``kind`` are an e
 from __future__ import annotations
 
 import hashlib
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from inspect import isabstract
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -19,13 +18,13 @@ from pydantic import Field
 
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.interfaces.estimate import Estimate
+from tactsim.interfaces.kind import CaseKind, Kind
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.recording import Recording, Values
 from tactsim.interfaces.solid import Measures, Solid, check_bounds
 from tactsim.interfaces.variable import Variable
-from tactsim.registry import register
 from tactsim.relaxation import Relaxation
-from tactsim.units import Area, FrozenModel
+from tactsim.units import Area
 
 if TYPE_CHECKING:
     from tactsim.results.result import Quantity, Result, StepRecord
@@ -34,31 +33,6 @@ Array = np.ndarray
 Progress = Callable[["StepRecord"], None]
 Drawing = Callable[[], bytes]
 """Draws one figure and returns it as PNG."""
-
-
-class Kind(FrozenModel, ABC):
-    """A base of what is registered by its ``kind``."""
-
-    package: ClassVar[str]
-    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
-    modules: ClassVar[str] = ".*"
-    """Pattern of the names, within that package, of the modules that define kinds."""
-    kind: str
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        super().__pydantic_init_subclass__(**options)
-        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
-            register(cls)
-
-
-class CaseKind(Kind):
-    """What a case file names by its ``kind``."""
-
-    @classmethod
-    @abstractmethod
-    def example(cls) -> Self:
-        """A valid instance with values from its source; the contract tests start from it."""
 
 
 class Material(CaseKind):
@@ -169,18 +143,16 @@ class Inclusion(CaseKind):
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
 
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
-        """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m.
-
-        Raises
-        ------
-        InvalidQuantity
-            Naming the inclusion, the face and the distance.
-        """
+        """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m, by an InvalidQuantity that names both."""
         check_bounds(self.solids(size)[0].bounds(), size, gap, name)
 
 
 class SensorFilm(CaseKind):
-    """What turns a force into an electrical quantity, its signal; a case file names it as ``film``."""
+    """What turns a force into an electrical quantity, its signal; a case file names it as ``film``.
+
+    Methods that take samples raise InvalidQuantity if times do not increase, or a value is negative, not finite or beyond what
+    the film can bear or give. Forces and signals are arrays (n, ...) at times (n,) in s.
+    """
 
     package: ClassVar[str] = "tactsim.sensors"
     modules: ClassVar[str] = r"(\w+_)?film"
@@ -198,23 +170,11 @@ class SensorFilm(CaseKind):
 
     @abstractmethod
     def advance(self, state: Any, time: ArrayLike, force: ArrayLike) -> tuple[Array, Any]:
-        """Signal of the next samples, forces (n, ...) in N at times (n,) in s, and the state after them; None is a film at rest.
-
-        Raises
-        ------
-        InvalidQuantity
-            If times do not increase, or a force is negative, not finite or too large for the film.
-        """
+        """Signal of the next samples of force in N, and the state after them; None is a film at rest."""
 
     @abstractmethod
     def retreat(self, state: Any, time: ArrayLike, signal: ArrayLike) -> tuple[Array, Any]:
-        """Force in N of the next samples of the signal, and the state after them: the inverse of ``advance``.
-
-        Raises
-        ------
-        InvalidQuantity
-            If times do not increase, or a value is negative, not finite or beyond what the film can give.
-        """
+        """Force in N of the next samples of the signal, and the state after them: the inverse of ``advance``."""
 
     @abstractmethod
     def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
@@ -237,11 +197,11 @@ class SensorFilm(CaseKind):
         """What goes beyond the measurements when forces reach ``largest`` newton."""
 
     def read(self, time: ArrayLike, force: ArrayLike) -> Array:
-        """Signal of a film that is at rest before the first sample; raises as ``advance`` does."""
+        """Signal of a film that is at rest before the first sample."""
         return self.advance(None, time, force)[0]
 
     def force(self, time: ArrayLike, signal: ArrayLike) -> Array:
-        """Force in N whose history gives this signal; raises as ``retreat`` does."""
+        """Force in N whose history gives this signal."""
         return self.retreat(None, time, signal)[0]
 
 
@@ -266,8 +226,6 @@ class Estimator(CaseKind):
     """Finds inclusions from readings; a case file names it as ``estimator``, the page and the ranking offer its variants."""
 
     package: ClassVar[str] = "tactsim.localization.estimators"
-    label: ClassVar[str] = ""
-    """Name in words; empty leaves the kind."""
     needs_response: ClassVar[bool] = False
     """Whether it needs the fast forward model of the tissue."""
     tells_classes: ClassVar[bool] = False
@@ -276,7 +234,7 @@ class Estimator(CaseKind):
     @property
     def title(self) -> str:
         """What the page calls it."""
-        return self.label or self.kind
+        return self.kind
 
     @property
     def needs_reference(self) -> bool:

@@ -48,7 +48,6 @@ class HypothesesEstimator(Estimator):
 
     needs_response: ClassVar[bool] = True
     tells_classes: ClassVar[bool] = True
-    label: ClassVar[str] = "Model based: lumps or arteries"
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """What may be there."""
@@ -68,6 +67,11 @@ class HypothesesEstimator(Estimator):
     """Probability beforehand of a class of two over that of one: of a second one too weak to be felt nothing else tells."""
     seed: Annotated[int, Field(ge=0)] = 1
     """Of the draws by which pairs are averaged."""
+
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Model based: lumps or arteries"
 
     @classmethod
     def example(cls) -> Self:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 
@@ -30,10 +30,14 @@ class LearnedEstimator(Estimator):
     Source: an ensemble of perceptrons after B. Lakshminarayanan, A. Pritzel & C. Blundell 2017, arXiv:1612.01474.
     """
 
-    label: ClassVar[str] = "Learned"
     kind: Literal["learned"] = "learned"
     weights: InputPath
     """File of the weights, beside the case or in the working folder."""
+
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Learned"
 
     @classmethod
     def example(cls) -> Self:

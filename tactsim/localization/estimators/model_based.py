@@ -50,7 +50,6 @@ class ModelBasedEstimator(Estimator):
     """
 
     needs_response: ClassVar[bool] = True
-    label: ClassVar[str] = "Model based: one lump"
     kind: Literal["model_based"] = "model_based"
     radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
     """Least and largest radius."""
@@ -67,6 +66,11 @@ class ModelBasedEstimator(Estimator):
     """Error of the reference from taxel to taxel over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
+
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Model based: one lump"
 
     @classmethod
     def example(cls) -> Self:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -32,7 +32,6 @@ class ThesisEstimator(Estimator):
     Source: thesis, 6.3.1 to 6.3.4 and Appendix .2, errata E13, E24, E25.
     """
 
-    label: ClassVar[str] = "Thesis"
     kind: Literal["thesis"] = "thesis"
     background: Literal["none", "reference"] = "none"
     """Whether the readings of tissue without a lump at the same closing are taken off."""
@@ -56,7 +55,7 @@ class ThesisEstimator(Estimator):
     @property
     def title(self) -> str:
         """Whether it takes off a reference too."""
-        return f"{self.label}, less a reference" if self.needs_reference else self.label
+        return "Thesis, less a reference" if self.needs_reference else "Thesis"
 
     @property
     def needs_reference(self) -> bool:

@@ -1,0 +1,35 @@
+"""The bases of every extension point: what is registered by its ``kind``, and what a case file names."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from inspect import isabstract
+from typing import Any, ClassVar, Self
+
+from tactsim.registry import register
+from tactsim.units import FrozenModel
+
+
+class Kind(FrozenModel, ABC):
+    """A base of what is registered by its ``kind``."""
+
+    package: ClassVar[str]
+    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
+    modules: ClassVar[str] = ".*"
+    """Pattern of the names, within that package, of the modules that define kinds."""
+    kind: str
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
+            register(cls)
+
+
+class CaseKind(Kind):
+    """What a case file names by its ``kind``."""
+
+    @classmethod
+    @abstractmethod
+    def example(cls) -> Self:
+        """A valid instance with values from its source; the contract tests start from it."""
