@@ -34,7 +34,7 @@ class ElastomerRankingFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``elastomer_ranking.png``, unless no shape was finished."""
-        return {"elastomer_ranking.png": lambda: png(elastomer_ranking_figure(result))} if _finished(result) else {}
+        return {"elastomer_ranking.png": lambda: png(elastomer_ranking_figure(result))} if result.steps and _finished(result) else {}
 
 
 def elastomer_ranking_figure(result: Result) -> Figure:
