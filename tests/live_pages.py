@@ -9,15 +9,18 @@ from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
+from scenes import grasp_scene
 from sweeps import run_sweep
 
-from tactsim.contact.jaw import Jaw
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.arrays import PENDING
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
+from tactsim.experiments.grasp.scene import SimulatedGrasp, grasp_fields
+from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
+from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
@@ -73,14 +76,8 @@ def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title:
         quantities=quantities,
         steps=(StepRecord(1, 1, 0.0, {"displacement": CLOSING}),),
         units={"displacement": "m"},
-        details={
-            "title": title,
-            "block_size": list(SIZE),
-            "inclusions": [ball.model_dump(mode="json")] if lump else [],
-            "jaws": {side: Jaw(width=50e-3, depth=50e-3, side=side).model_dump(mode="json") for side in SIDES},
-            "jaw_places": {"upper": [20e-3, 20e-3, SIZE[2] - CLOSING], "lower": [20e-3, 20e-3, CLOSING]},
-            "matrix": layout.model_dump(mode="json"),
-        },
+        title=title,
+        scene=grasp_scene(SIZE, layout, [ball] if lump else [], closing=CLOSING),
     )
 
 
@@ -92,12 +89,13 @@ def grasp_folder(place: Path, forces: np.ndarray | None = None, **options: objec
 def localized_folder(place: Path) -> Path:
     """The folder of a localization that found a ball and a tube, how far off it may be told of the first."""
     grasp = made_up_grasp(taxel_forces(1))
-    tube = {"kind": "tube", "center": [0.02, 0.02, 0.01], "radius": 3e-3, "line": [[0, 0.02, 0.01], [0.04, 0.02, 0.01]]}
-    ball = {"kind": "sphere", "center": [0.023, 0.017, 0.012], "radius": 4e-3, "line": None, "region": None}
+    ball = EstimatedShape(kind="sphere", center=(0.023, 0.017, 0.012), radius=4e-3)
+    tube = EstimatedShape(kind="tube", center=(0.02, 0.02, 0.01), radius=3e-3, line=((0, 0.02, 0.01), (0.04, 0.02, 0.01)))
     deviations = {"center_deviation": [1e-3, 2e-3, 3e-3], "radius_deviation": 4e-4, "contrast_deviation": 0.1}
     quantities = grasp.quantities | {name: Quantity(value, "m", "") for name, value in deviations.items()}
-    details = grasp.details | {"estimates": [ball, tube], "estimator": "hypotheses"}
-    found = replace(grasp, kind="localization", reason="a ball and a tube", quantities=quantities, details=details)
+    known = grasp_fields(grasp.scene_as(SimulatedGrasp))
+    scene = LocalizedGrasp.model_validate({**known, "estimates": (ball, tube), "estimator": "hypotheses", "noise": 0.0})
+    found = replace(grasp, kind="localization", reason="a ball and a tube", quantities=quantities, scene=scene)
     return write_result(found, place, case_id="abc", provenance={})
 
 
@@ -106,7 +104,7 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
     file, place, numbers = folder / "sweep.yaml", folder / "lumps.zarr", itertools.count()
     file.write_text(SWEEP, encoding="utf-8")
 
-    def run(experiment: Grasp, progress: object) -> Result:
+    def begin(experiment: Grasp) -> Course:
         number = next(numbers)
         if number >= done:
             raise ConvergenceError("residual <i>1</i>")
@@ -116,9 +114,11 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
         numbers_of = {name: Quantity(0.0, unit, "") for name, (unit, _) in GraspRecorder.quantities.items()}
         units = {"time": "s", "displacement": "m", "reaction_force": "N"}
         quantities = found.quantities | beside | numbers_of
-        return replace(found, quantities=quantities, steps=(StepRecord(1, 1, 0.0, values),), units=units)
+        return Course.computed(
+            Findings("", (StepRecord(1, 1, 0.0, values),), quantities=quantities, units=units, scene=found.scene)
+        )
 
-    with patch.object(Grasp, "run", run):
+    with patch.object(Grasp, "begin", begin):
         run_sweep(load_sweep(file), place)
     group = Store.open(place, writing=True).group
     group["status"][5], group["reason"][5] = PENDING, ""

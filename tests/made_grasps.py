@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from scenes import grasp_scene
 
-from tactsim.contact.jaw import Jaw
 from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.dataset.ranking.samples import SPHERE, JudgedSamples, Truth
 from tactsim.dataset.running.resuming import opened_run
@@ -111,15 +111,9 @@ def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLay
         told[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
         if many:
             told[f"taxel_force_{side}_history"] = Quantity(own.tolist(), "N", "")
-    details = {
-        "block_size": size.tolist(),
-        "inclusions": [],
-        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
-        "jaw_places": {"upper": [20e-3, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
-        "matrix": layout.model_dump(mode="json"),
-    }
+    scene = grasp_scene(size, layout, width=40e-3, depth=40e-3)
     steps = tuple(StepRecord(k + 1, 3, 0.0, {"displacement": float(c)}) for k, c in enumerate(closings))
-    result = Result("grasp", Status.CONVERGED, "made up", told, steps=steps, units={"displacement": "m"}, details=details)
+    result = Result("grasp", Status.CONVERGED, "made up", told, steps=steps, units={"displacement": "m"}, scene=scene)
     write_result(result, folder, case_id="0" * 16, provenance={})
     return str(folder)
 

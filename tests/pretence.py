@@ -12,8 +12,16 @@ from pydantic import Field, model_validator
 from tactsim.errors import InvalidQuantity, Unfinished, UnknownName
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results import FieldFrame, Quantity, Result, Scene, Status, StepRecord
 from tactsim.units import FrozenModel, Length, Pressure, Time
+
+
+class PretendedScene(Scene):
+    """What figures of it would need."""
+
+    kind: Literal["pretence"] = "pretence"
+    profile: tuple[float, ...]
+    """Heights in m."""
 
 
 class Soft(FrozenModel):
@@ -113,7 +121,7 @@ class Pretence(Experiment):
             assumptions=result.assumptions,
             warnings=result.warnings,
             frames=result.frames,
-            details=result.details,
+            scene=result.scene,
             timing=result.timing,
         )
 
@@ -152,7 +160,7 @@ def pretended_result(status: Status, reason: str, records: tuple[StepRecord, ...
         steps=records,
         units={"displacement": "m", "reaction_force": "N"},
         frames=frames,
-        details={"profile": np.array([1.0, 2.0])},
+        scene=PretendedScene(profile=(1.0, 2.0)),
     )
 
 

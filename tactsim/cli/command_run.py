@@ -117,7 +117,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
     from tactsim.cli.figures.result_figures import rendered_figures
     from tactsim.cli.report import last_line, result_report
 
-    result = replace(result, details={**result.details, "title": case.title})
+    result = replace(result, title=case.title)
     figures, warnings = rendered_figures(result)
     result = replace(result, warnings=(*result.warnings, *warnings), frames=_chosen_frames(result, case))
     report = result_report(result, case.title)

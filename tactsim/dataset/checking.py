@@ -12,7 +12,7 @@ from tactsim.code_identity import code_identity
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.stored import attributes_of, stored_layout
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences, earlier_words
 from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
@@ -86,10 +86,13 @@ def check(path: str | Path) -> Checked:
 def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
     """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
     own = {variable.name for variable in variables}
+    never = store.never_stored(variable.name for variable in variables)
+    if never:
+        yield Finding("form", (), earlier_words(never))
     for name in sorted(store.faults.keys() & own):
         yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
     for variable in variables:
-        if variable.name in store.faults:
+        if variable.name in store.faults or variable.name in never:
             continue
         if variable.name not in store.described:
             yield Finding("missing", (), f"the variable {variable.name}; {RESUME}, or bring back a copy")

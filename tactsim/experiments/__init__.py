@@ -1,1 +1,1 @@
-"""What a case can ask for: a folder for each family of kinds with its fields, run, record, figures and recorder."""
+"""What a case can ask for: a folder for each family of kinds with all of it: fields, run, record, scene, figures, recorder."""

@@ -2,40 +2,21 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
-from inspect import isabstract
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, final
+from typing import Any, ClassVar, Self, TypeVar, final
 
 import numpy as np
 
+from tactsim.interfaces.run import Course, Progress, run_experiment
 from tactsim.interfaces.seeds import seeds_in
-from tactsim.registry import MarkedFunction, mark, register
+from tactsim.kind import Kind as Kind
+from tactsim.registry import MarkedFunction, mark
 from tactsim.relaxation import Relaxation
-from tactsim.units import FrozenModel
-
-if TYPE_CHECKING:
-    from tactsim.interfaces.run import Course, Progress
-    from tactsim.results.result import Result
+from tactsim.results.result import Result
 
 Array = np.ndarray
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-class Kind(FrozenModel, ABC):
-    """A base of what is registered by its ``kind``."""
-
-    package: ClassVar[str]
-    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
-    modules: ClassVar[str] = ".*"
-    """Pattern of the names, within that package, of the modules that define kinds."""
-    kind: str
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        super().__pydantic_init_subclass__(**options)
-        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
-            register(cls)
 
 
 class CaseKind(Kind):
@@ -139,7 +120,7 @@ class Experiment(CaseKind):
     """
 
     package: ClassVar[str] = "tactsim.experiments"
-    modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$)\w+"
+    modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$|scene$)\w+"
 
     history_units: ClassVar[dict[str, str]] = {}
     """Unit of every value that an accepted step records."""
@@ -174,8 +155,6 @@ class Experiment(CaseKind):
         Unfinished
             If it ended before its first step was begun: there is nothing to keep.
         """
-        from tactsim.interfaces.run import run_experiment
-
         return run_experiment(self, progress, time_limit)
 
 

@@ -11,11 +11,12 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar, Protocol, Self
+from typing import ClassVar, Protocol, Self
 
 from tactsim.deadline import check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.scene import Scene
 
 Progress = Callable[[StepRecord], None]
 
@@ -35,7 +36,7 @@ class Findings:
     assumptions: Iterable[str] = ()
     warnings: Iterable[str] = ()
     frames: Iterable[FieldFrame] = ()
-    details: dict[str, Any] = field(default_factory=dict)
+    scene: Scene | None = None
     status: Status = Status.CONVERGED
     """Of a run that came to its end: converged, or failed at what it was for, such as a threshold that was not reached."""
     timing: Mapping[str, float] = field(default_factory=dict)
@@ -85,7 +86,15 @@ class Runnable(Protocol):
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
-    """What `Experiment.run` returns and raises."""
+    """The result that `Experiment.run` returns.
+
+    Raises
+    ------
+    InputError, Unfinished
+        As `Experiment.begin`.
+    OutOfMemory
+        If the memory does not suffice to begin, or to say what was found.
+    """
     started = time.perf_counter()
     try:
         with time_limit(seconds):
@@ -135,7 +144,7 @@ def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] 
         steps=tuple(findings.steps),
         units=dict(experiment.history_units if findings.units is None else findings.units),
         frames=tuple(findings.frames),
-        details=findings.details,
+        scene=findings.scene,
     )
 
 

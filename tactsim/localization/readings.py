@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.taxel_layout import JAWS as JAWS
 
 Array = np.ndarray
 
-JAWS = ("upper", "lower")
-"""Order of the first axis of every array of readings."""
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
 
@@ -25,6 +24,22 @@ def silent_taxels(readings: Array) -> Array:
     padded = np.pad(np.asarray(readings, dtype=float), ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
     beside = (padded[:, :-2, 1:-1], padded[:, 2:, 1:-1], padded[:, 1:-1, :-2], padded[:, 1:-1, 2:])
     return (np.asarray(readings) == 0) & np.logical_and.reduce([part > 0 for part in beside]) & (np.prod(readings.shape[1:]) > 1)
+
+
+def rising(difference: Array) -> tuple[Array, bool]:
+    """A change of readings (jaw, row, column) in N, positive where it is strongest, and whether the strongest one is a loss.
+
+    The strongest change is that of the sum of both jaws; it is a loss over something softer than the tissue.
+    """
+    sums = difference.sum(axis=0)
+    softer = bool(-sums.min() > sums.max())
+    return (-difference if softer else difference), softer
+
+
+def shown_change(difference: Array) -> tuple[Array, str]:
+    """What views draw of the change from a reference, (jaw, row, column) in N, and what it is in words."""
+    signal, softer = rising(difference)
+    return signal, f"force {'below' if softer else 'above'} that of the reference"
 
 
 def named_taxels(chosen: Array) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from tactsim.mechanics.ellipticity import elliptic_in
 from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.success import judged
 from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
+from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -123,7 +124,7 @@ class ContactRecord(ABC, Generic[Model]):
             assumptions=self.assumptions(),
             warnings=self.warnings() if self.steps else (),
             frames=self._frames(),
-            details=self.details(),
+            scene=self.scene(),
         )
 
     @abstractmethod
@@ -168,12 +169,18 @@ class ContactRecord(ABC, Generic[Model]):
             for model, state in sorted(kept, key=lambda pair: pair[1].time)
         ]
 
-    def details(self) -> dict[str, Any]:
+    @abstractmethod
+    def scene(self) -> Scene:
         """What figures and other stages read beside the quantities."""
-        return {
-            "unknowns": self.model.space.size,
-            "elements": len(self.model.space.elements),
-            "linear_solver": self.model.problem.solver.name,
-            "rejected_steps": self.path.rejected,
-            "newton_iterations": sum(step.newton_iterations for step in self.steps),
-        }
+
+    def solver_report(self, *, mesh_adaptations: int = 0) -> SolverReport:
+        """What the solution took until now."""
+        space = self.model.space
+        return SolverReport(
+            unknowns=space.size,
+            elements=len(space.elements),
+            linear_solver=self.model.problem.solver.name,
+            rejected_steps=self.path.rejected,
+            newton_iterations=sum(step.newton_iterations for step in self.steps),
+            mesh_adaptations=mesh_adaptations,
+        )

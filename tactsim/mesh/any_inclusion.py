@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -25,13 +25,6 @@ SAMPLES_ACROSS = 40
 def inclusion_name(number: int, inclusion: Inclusion) -> str:
     """How messages and results call the inclusion of a number, counted from 1."""
     return f"{inclusion.kind} {number}"
-
-
-def shapes_unlike_tissue(details: Mapping[str, Any]) -> list[Any]:
-    """The inclusions in the details of a result as they are stored, but those that are nothing but tissue."""
-    shapes = details.get("inclusions") or []
-    other = details.get("unlike_tissue") or [True] * len(shapes)
-    return [shape for shape, there in zip(shapes, other, strict=True) if there]
 
 
 def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -> None:

@@ -2,6 +2,18 @@
 
 from tactsim.results.reading import StoredResult, read_result
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.scene import Scene, SolverReport
 from tactsim.results.writing import write_result
 
-__all__ = ["FieldFrame", "Quantity", "Result", "Status", "StepRecord", "StoredResult", "read_result", "write_result"]
+__all__ = [
+    "FieldFrame",
+    "Quantity",
+    "Result",
+    "Scene",
+    "SolverReport",
+    "Status",
+    "StepRecord",
+    "StoredResult",
+    "read_result",
+    "write_result",
+]

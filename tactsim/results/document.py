@@ -13,9 +13,12 @@ from tactsim.errors import StorageError, shown
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.scene import EARLIER, UnreadableScene, read_scene, written_scene
 from tactsim.units import is_unit
 
-SCHEMA_VERSION: Literal[1] = 1
+SCHEMA_VERSION: Literal[2] = 2
+EARLIER_VERSION: Literal[1] = 1
+"""Its numbers are read; its ``details`` are not."""
 
 
 class _Part(BaseModel):
@@ -77,9 +80,10 @@ class StepPart(_Part):
 class ResultDocument(_Part):
     """The whole file."""
 
-    schema_version: Literal[1] = SCHEMA_VERSION
+    schema_version: Literal[1, 2] = SCHEMA_VERSION
     case_id: str
     kind: str
+    title: str = ""
     status: Status
     reason: str
     quantities: dict[Name, QuantityPart]
@@ -88,11 +92,20 @@ class ResultDocument(_Part):
     timing: dict[Name, Number | None] = Field(default_factory=dict)
     units: dict[Name, Unit] = Field(default_factory=dict)
     steps: tuple[StepPart, ...] = ()
-    details: dict[str, Any] = Field(default_factory=dict)
+    scene: dict[str, Any] | None = None
+    """What later stages read; the model of the kind reads it."""
 
 
 def document_text(result: Result, case_id: str) -> str:
-    """The text of ``result.json``: strict JSON, a number that is not finite as null with a warning that names it."""
+    """The text of ``result.json``: strict JSON, a number that is not finite as null with a warning that names it.
+
+    Raises
+    ------
+    StorageError
+        If the scene of the result was read from a folder and cannot be read.
+    """
+    if isinstance(result.scene, UnreadableScene):
+        raise StorageError(f"a result whose scene cannot be read is not written: {result.scene.reason}")
     content = {
         "quantities": {
             name: {"value": quantity.value, "unit": quantity.unit, "description": quantity.description}
@@ -104,13 +117,14 @@ def document_text(result: Result, case_id: str) -> str:
             {"step": s.step, "newton_iterations": s.newton_iterations, "residual": s.residual, "values": s.values}
             for s in result.steps
         ],
-        "details": result.details,
+        "scene": None if result.scene is None else written_scene(result.scene),
     }
     lost: list[str] = []
     plain = {name: plain_json(value, (name,), lost) for name, value in content.items()}
     warnings = [*result.warnings, *(f"{place} is not finite and stored as null" for place in lost)]
-    head = {"schema_version": SCHEMA_VERSION, "case_id": case_id, "kind": result.kind, "status": str(result.status)}
-    whole = {**head, "reason": result.reason, "assumptions": list(result.assumptions), "warnings": warnings, **plain}
+    head = {"schema_version": SCHEMA_VERSION, "case_id": case_id, "kind": result.kind, "title": result.title}
+    ending = {"status": str(result.status), "reason": result.reason}
+    whole = {**head, **ending, "assumptions": list(result.assumptions), "warnings": warnings, **plain}
     order = ResultDocument.model_fields
     return json.dumps({name: whole[name] for name in order}, indent=1, allow_nan=False) + "\n"
 
@@ -149,7 +163,7 @@ def parse_document(text: str, name: str) -> ResultDocument:
     version = content.get("schema_version") if isinstance(content, dict) else None
     if not isinstance(version, int):
         raise StorageError(f"{one_line(name)} is not a result of tactsim: it has no schema_version")
-    if version != SCHEMA_VERSION:
+    if version not in (EARLIER_VERSION, SCHEMA_VERSION):
         raise StorageError(f"{one_line(name)} has schema_version {version}; this tactsim reads {SCHEMA_VERSION}, update tactsim")
     try:
         return ResultDocument.model_validate(content)
@@ -161,6 +175,7 @@ def parse_document(text: str, name: str) -> ResultDocument:
 
 def result_of(document: ResultDocument) -> Result:
     """The result in the document, without its fields."""
+    earlier = document.schema_version == EARLIER_VERSION
     return Result(
         kind=document.kind,
         status=document.status,
@@ -174,7 +189,8 @@ def result_of(document: ResultDocument) -> Result:
             for s in document.steps
         ),
         units=document.units,
-        details=document.details,
+        title=document.title,
+        scene=UnreadableScene(EARLIER) if earlier else read_scene(document.kind, document.scene),
     )
 
 

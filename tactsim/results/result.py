@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from tactsim.errors import INTERRUPTED, ConvergenceError
+from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, shown
+from tactsim.results.scene import Scene, UnreadableScene
+
+AnyScene = TypeVar("AnyScene", bound=Scene)
 
 
 class Status(StrEnum):
@@ -32,6 +35,11 @@ class Quantity:
     value: Any
     unit: str
     description: str
+
+    @property
+    def array(self) -> np.ndarray:
+        """The value as an array of floats, NaN where it has none."""
+        return np.asarray(self.value, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -68,7 +76,15 @@ class FieldFrame:
 
 @dataclass(frozen=True)
 class Result:
-    """What a run found; ``units`` gives the unit of every history value, ``kind`` the experiment's kind."""
+    """What a run found.
+
+    Attributes
+    ----------
+    kind : that of the experiment
+    units : unit of every history value
+    title : that of the case, empty without one
+    scene : what later stages read beside quantities and history; see `scene_as`
+    """
 
     kind: str
     status: Status
@@ -80,4 +96,25 @@ class Result:
     steps: tuple[StepRecord, ...] = ()
     units: dict[str, str] = field(default_factory=dict)
     frames: tuple[FieldFrame, ...] = ()
-    details: dict[str, Any] = field(default_factory=dict)
+    title: str = ""
+    scene: Scene | UnreadableScene | None = None
+
+    def history(self, name: str) -> np.ndarray:
+        """A history value at every accepted step, shape (steps,) in SI, NaN where a step has none."""
+        return np.array([step.values.get(name, np.nan) for step in self.steps], dtype=float)
+
+    def scene_as(self, model: type[AnyScene]) -> AnyScene:
+        """The scene as a kind of scene.
+
+        Raises
+        ------
+        StorageError
+            If the stored scene cannot be read.
+        InputError
+            If the result has no scene, or another one.
+        """
+        if isinstance(self.scene, model):
+            return self.scene
+        if isinstance(self.scene, UnreadableScene):
+            raise StorageError(f"the scene of the result cannot be read: {self.scene.reason}; run the case again")
+        raise InputError(f"the result of {shown(self.kind)} holds no {model.__name__}")

@@ -12,10 +12,13 @@ from pathlib import Path
 
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
+from tactsim.contact.annulus import Annulus
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
+from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.outside.files import opened
 from tactsim.outside.processes import requests
 from tactsim.outside.worker_pool import Answer, WorkerPool
+from tactsim.results import Result
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 from tactsim.validation.study import RunOutcome, Study
@@ -132,14 +135,15 @@ def simulated(task: Task) -> RunOutcome:
         reason=result.reason,
         quantities={key: float(value) for key, value in scalars.items() if math.isfinite(value)},
         history={key: tuple(step.values[key] for step in result.steps) for key in result.units if _recorded(result.steps, key)},
-        disc_share=_disc_share(result.details.get("body", {})),
+        disc_share=_disc_share(result),
         seconds=result.timing["total"],
     )
 
 
-def _disc_share(body: dict[str, float]) -> float:
+def _disc_share(result: Result) -> float:
     """Part of the disc that an annulus covers, 1 for any other body."""
-    return 1 - (body["inner_radius"] / body["outer_radius"]) ** 2 if "inner_radius" in body else 1.0
+    body = result.scene.body if isinstance(result.scene, PressedBodyScene) else None
+    return 1 - (body.inner_radius / body.outer_radius) ** 2 if isinstance(body, Annulus) else 1.0
 
 
 def _recorded(steps: Sequence, key: str) -> bool:

@@ -28,6 +28,7 @@ HUGE = 10**39
 BAD_DOCUMENTS: dict[str, tuple[str, str]] = {
     "a word for a number": ('"value": 0.001', '"value": "one"'),
     "a mapping for a number": ('"value": 0.001', '"value": {"a": 1}'),
+    "a list for a title": ('"title": "', '"title": ["x"], "other": "'),
     "lists that do not fit": ('"value": 0.001', '"value": [[1, 2], [3]]'),
     "a list beside a number": ('"value": 0.001', '"value": [1, [2]]'),
     "a word in a list": ('"value": 0.001', '"value": [1, "2"]'),
@@ -46,28 +47,32 @@ BAD_DOCUMENTS: dict[str, tuple[str, str]] = {
     "an unknown status": ('"status": "converged"', '"status": "fine"'),
     "a name without end": ('"time": {', f'"{"x" * 1000}": {{'),
     "steps that are no list": ('"steps": [', '"steps": 1, "other": ['),
-    "a version of another kind": ('"schema_version": 1', '"schema_version": "1"'),
-    "lists without end": ('"details": {', '"details": {"deep": ' + "[" * 500 + "]" * 500 + ","),
-    "lists beyond recursion": ('"details": {', '"details": {"deep": ' + "[" * 100_000 + "]" * 100_000 + ","),
+    "a version of another kind": ('"schema_version": 2', '"schema_version": "2"'),
+    "lists without end": ('"scene": {', '"scene": {"deep": ' + "[" * 500 + "]" * 500 + ","),
+    "lists beyond recursion": ('"scene": {', '"scene": {"deep": ' + "[" * 100_000 + "]" * 100_000 + ","),
 }
 Path_ = tuple[str, ...]
-BAD_DETAILS: list[tuple[Path_, Any]] = [
-    (("details", "matrix"), []),
-    (("details", "matrix", "rows"), 10**9),
-    (("details", "matrix", "pitch"), 1e300),
-    (("details", "matrix", "size"), "9 mm"),
-    (("details", "block_size"), [1e300, 1e300, 1e300]),
-    (("details", "block_size"), [0, -1, None]),
-    (("details", "block_size"), HUGE),
-    (("details", "jaws"), "x"),
-    (("details", "jaws", "upper"), None),
-    (("details", "jaw_places"), {"upper": [[1], 2, 3], "lower": {}}),
-    (("details", "jaw_places"), {"upper": [1e300, 0, 0], "lower": [0, 0, 0]}),
-    (("details", "inclusions"), {"a": 1}),
-    (("details", "inclusions"), [{"kind": "sphere", "center": [1e300] * 3, "radius": 1e300}]),
-    (("details", "inclusions"), [{"kind": "ellipsoid", "center": [0.02, 0.02, 0.01], "semi_axes": [1e-9, 5e-3, 5e-3]}]),
-    (("details", "noise"), "x"),
-    (("details", "title"), ["x"]),
+THIN = {"kind": "ellipsoid", "center": [0.02, 0.02, 0.01], "semi_axes": [1e-9, 5e-3, 5e-3]}
+BAD_SCENES: list[tuple[Path_, Any]] = [
+    (("scene", "matrix"), []),
+    (("scene", "matrix", "rows"), 10**9),
+    (("scene", "matrix", "pitch"), 1e300),
+    (("scene", "matrix", "size"), "9 mm"),
+    (("scene", "block_size"), [1e300, 1e300, 1e300]),
+    (("scene", "block_size"), [0, -1, None]),
+    (("scene", "block_size"), HUGE),
+    (("scene", "jaws"), "x"),
+    (("scene", "jaws", "upper"), None),
+    (("scene", "jaw_places"), {"upper": [[1], 2, 3], "lower": {}}),
+    (("scene", "jaw_places"), {"upper": [1e300, 0, 0], "lower": [0, 0, 0]}),
+    (("scene", "inclusions"), {"a": 1}),
+    (("scene", "inclusions"), [{"shape": {"kind": "sphere", "center": [1e300] * 3, "radius": 1e300}, "unlike_tissue": True}]),
+    (("scene", "inclusions"), [{"shape": THIN, "unlike_tissue": True}]),
+    (("scene", "noise"), "x"),
+    (("scene", "solver"), {"unknowns": "many"}),
+    (("scene",), {}),
+    (("scene",), None),
+    (("kind",), "film_test"),
     (("quantities", "time_history", "value"), [1e300, 1e301, 1e302, 1e303]),
     (("quantities", "taxel_force_upper_history", "value"), 3),
     (("quantities", "taxel_force_upper", "value"), [[1e300] * 3] * 3),
@@ -136,8 +141,8 @@ def test_a_result_that_no_run_writes_is_refused_in_words(tmp_path: Path, capsys:
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
-@pytest.mark.parametrize(("place", "value"), BAD_DETAILS)
-def test_details_that_do_not_fit_are_told_and_no_half_picture_is_left(
+@pytest.mark.parametrize(("place", "value"), BAD_SCENES)
+def test_scenes_that_do_not_fit_are_told_and_no_half_picture_is_left(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], place: Path_, value: Any
 ) -> None:
     folder = with_value(grasp_folder(tmp_path / "a"), place, value)
@@ -169,7 +174,7 @@ def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, v
 
     def change(text: str) -> str:
         content = json.loads(text)
-        content["details"]["estimates"][0][key] = value
+        content["scene"]["estimates"][0][key] = value
         return json.dumps(content)
 
     try:
@@ -183,7 +188,7 @@ def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, v
 def test_a_result_of_millions_of_values_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(json_text, "MOST_VALUES", 1000)
     folder = edited(
-        grasp_folder(tmp_path / "a"), lambda text: text.replace('"details": {', '"details": {"x": [' + "[]," * 1000 + "0],")
+        grasp_folder(tmp_path / "a"), lambda text: text.replace('"scene": {', '"scene": {"x": [' + "[]," * 1000 + "0],")
     )
     with pytest.raises(TactsimError, match="more than 1000 values"):
         read_result(folder, fields=False)
@@ -207,7 +212,7 @@ VALUES = st.recursive(
     ),
     max_leaves=6,
 )
-PLACES = [place for place, _ in BAD_DETAILS] + [
+PLACES = [place for place, _ in BAD_SCENES] + [
     ("quantities", "displacement"),
     ("quantities", "taxel_force_lower", "value"),
     ("steps",),
@@ -216,7 +221,7 @@ PLACES = [place for place, _ in BAD_DETAILS] + [
     ("warnings",),
     ("reason",),
     ("kind",),
-    ("details",),
+    ("scene",),
     ("quantities",),
 ]
 

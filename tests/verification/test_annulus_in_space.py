@@ -80,7 +80,7 @@ def quarter():
 def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
     section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run()
     assert quarter.status == section.status == "converged"
-    assert quarter.details["symmetry"] == "quarter"
+    assert quarter.scene.symmetry == "quarter"
     apart = differences(quarter, section)[-1]
     check_differences(apart)  # on elements as long as the fillet is wide, touched at other points than the section's
     assert_kills(check_differences, one_quarter=(with_force(apart, 1 / 4),), half=(with_force(apart, 1 / 2),))
@@ -103,7 +103,7 @@ def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
 @pytest.mark.slow
 def test_half_a_body_is_two_quarters(quarter):
     half = posed(Half).run()
-    assert half.details["unknowns"] > 1.7 * quarter.details["unknowns"]
+    assert half.scene.solver.unknowns > 1.7 * quarter.scene.solver.unknowns
     assert len(half.steps) == len(quarter.steps)
     np.testing.assert_allclose(histories(half), histories(quarter), rtol=1e-6)  # Newton's tolerance, and steps that add it up
     np.testing.assert_allclose(half.quantities["moment_vector"].value, 0.0, atol=1e-9 * half.quantities["reaction_force"].value)
@@ -135,7 +135,7 @@ def test_a_leaning_annulus_is_held_in_balance_by_the_base():
 @pytest.mark.slow
 def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
     half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run() for axis in ("tilt_y", "tilt_x"))
-    assert (half.details["symmetry"], whole.details["symmetry"]) == ("half", "whole")
+    assert (half.scene.symmetry, whole.scene.symmetry) == ("half", "whole")
     for name in ("force_vector", "moment_vector"):
         x, y, z = half.quantities[name].value
         size = np.abs(half.quantities[name].value).max()

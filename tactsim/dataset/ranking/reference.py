@@ -9,8 +9,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization.source import SIDES, readings_of, stored_grasp
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.experiments.localization.source import readings_of, stored_grasp
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.interface import Readings
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
@@ -106,7 +106,7 @@ def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str
 def _history(result: Result) -> tuple[Array, Array]:
     """Closings (n,) in m and forces (n, jaw, row, column) in N of the steps of a stored grasp."""
     many = "_history" if len(result.steps) > 1 else ""
-    names = [f"taxel_force_{side}{many}" for side in SIDES]
+    names = [f"taxel_force_{side}{many}" for side in JAWS]
     sides = [np.asarray(result.quantities[name].value, dtype=float) for name in names]
     closings = np.asarray(result.quantities[f"displacement{many}"].value, dtype=float)
     forces = np.stack(sides, axis=-3)

@@ -14,7 +14,7 @@ from tactsim.dataset.running.run import SweepRun, Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.stored import attributes_of, check_same
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import META, wrong_arrays
+from tactsim.dataset.store.arrays import META, earlier_words, wrong_arrays
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
 from tactsim.dataset.store.opening import Store, consolidated_metadata
@@ -125,6 +125,8 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
 def _refuse_other_arrays(store: Store, layout: Layout) -> None:
     """Refuses to write into arrays that are not those of the sweep."""
     remedy = "or remove it, and --resume makes it anew"
+    if never := store.never_stored(variable.name for variable in layout.variables):
+        raise StorageError(f"{one_line(store.path)}: {earlier_words(never)}; begin anew with another --out")
     if store.faults:
         raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
     for name, words in wrong_arrays(store.described.values(), layout.variables):

@@ -266,5 +266,13 @@ def wrong_arrays(arrays: Iterable[ArrayDescription], variables: Iterable[Variabl
                     yield array.name, words
 
 
+def earlier_words(names: Iterable[str]) -> str:
+    """What is told of a store that never had some arrays."""
+    return (
+        f"an earlier version of tactsim began this data set, which did not store {', '.join(names)}; it can be read, and the "
+        "long_name of each of its arrays says what that holds, but it can neither be gone on with nor checked by this version"
+    )
+
+
 def _shown(value: Any) -> str:
     return one_line(json.dumps(value), 160)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -128,6 +128,11 @@ class Store:
         """Names of arrays that the store had and that are gone."""
         names = self.attributes.get(ARRAYS, sorted(consolidated_metadata(self.path)))
         return [name for name in names if name not in self.described]
+
+    def never_stored(self, names: Iterable[str]) -> list[str]:
+        """Those of the names of arrays that the store never had, because an earlier version of tactsim began it."""
+        known = {*self.described, *self.faults, *self.missing}
+        return [name for name in names if name not in known] if self.attributes.get(ARRAYS) else []
 
     @property
     def samples(self) -> int:

@@ -9,21 +9,18 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.atrial import atrial_shear_compliance
-from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, PositiveForce, PositiveLength, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.units import Force, FrozenModel, Length, Time, check_increasing, format_quantity
+from tactsim.units import FrozenModel, Time, check_increasing, format_quantity
 
 Array = np.ndarray
 SMALL_DISPLACEMENT = 0.1
 """Displacement over the outer radius beyond which small-displacement theory is not to be trusted; a convention."""
 
-Ratio = Annotated[float, Field(gt=0, le=LARGEST_RATIO)]
-PositiveLength = Annotated[Length, Field(gt=0)]
-PositiveForce = Annotated[Force, Field(gt=0)]
 Formula = Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"]
 
 
@@ -39,19 +36,6 @@ class AtrialTissue(FrozenModel):
     def shear_compliance(self) -> GeneralizedKelvin:
         """1/G in 1/Pa."""
         return atrial_shear_compliance(self.times, self.compliance)
-
-
-class DesignPoint(FrozenModel):
-    """A sensor and how it is pressed; by default the optimum of thesis section 4.7."""
-
-    ratio: Ratio = 0.1
-    """Inner over outer radius."""
-    recess: PositiveLength = 0.7e-3
-    """Depth L of the small sensor."""
-    force: PositiveForce = 1.0
-    """Constant force."""
-    time: Annotated[Time, Field(gt=0)] = 0.5
-    """Time since the force began."""
 
 
 class AnnulusDesign(Experiment):
@@ -145,8 +129,12 @@ class AnnulusDesign(Experiment):
             quantities=quantities,
             assumptions=self._assumptions(),
             warnings=_warnings(quantities),
-            details={**self.model_dump(mode="json"), "small_displacement": SMALL_DISPLACEMENT},
+            scene=self._scene(),
         )
+
+    def _scene(self) -> AnnulusDesignScene:
+        shared = {name: getattr(self, name) for name in AnnulusDesignScene.model_fields if name in AnnulusDesign.model_fields}
+        return AnnulusDesignScene(**shared, small_displacement=SMALL_DISPLACEMENT)
 
     def _rows(self, annuli: list[ViscoelasticAnnulus]) -> Iterator[dict[str, float]]:
         """History values per ratio and recess; a time is absent where the tissue never touches."""

@@ -126,7 +126,6 @@ class ClosedForm(Experiment):
                 quantities=self._quantities(annulus, steps[-1].values, columns),
                 assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
                 warnings=self._warnings(times, force, displacement),
-                details={"body": {"kind": "annulus"}, "control": self.loading.control},
             )
         )
 

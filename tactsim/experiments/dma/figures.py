@@ -9,7 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
+from tactsim.experiments.dma.scene import DmaScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
@@ -17,7 +19,7 @@ Array = np.ndarray
 PARTS = ("elastic", "viscous")
 METHODS = {"least_squares": ("least squares", "#1f4e79", "-"), "genetic": ("genetic algorithm", "#b8540a", "--")}
 PER_MEGAPASCAL = 1e6
-DATA_COLOUR, TRUE_COLOUR, FAILED_COLOUR = "#000000", "#4d9221", "#b00020"
+DATA_COLOUR, TRUE_COLOUR = "#000000", "#4d9221"
 TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
 """Frequencies that are labelled, in Hz."""
 
@@ -44,8 +46,7 @@ def dma_identification_figure(result: Result) -> Figure:
         axes[0, 0].set_ylabel("compliance in 1/MPa")
         axes[1, 0].set_ylabel(f"relative to {METHODS[_first(result)][0]}, %")
         axes[0, 1].legend(loc="lower left", handlelength=2.6)
-        title = str(result.details.get("title") or "Generalized Kelvin model from dynamic mechanical analysis")
-        entitle(figure, title)
+        entitle(figure, result.title or "Generalized Kelvin model from dynamic mechanical analysis")
         _draw_foot(figure, result)
     return figure
 
@@ -62,20 +63,20 @@ def _made(result: Result) -> list[str]:
 
 def _draw_curves(axis: Axes, result: Result, part: str) -> None:
     """Data, fits, bands and, of synthetic data, the true curve, in logarithmic axes."""
-    frequency = _history(result, "frequency")
+    frequency = result.history("frequency")
     for order, method in enumerate(_made(result)):
         words, colour, line = METHODS[method]
         lower, centre, upper = (
-            PER_MEGAPASCAL * _history(result, f"{method}_{part}_compliance{end}") for end in ("_lower", "", "_upper")
+            PER_MEGAPASCAL * result.history(f"{method}_{part}_compliance{end}") for end in ("_lower", "", "_upper")
         )
         axis.fill_between(
             frequency, lower, upper, color=colour, alpha=0.22, linewidth=0, zorder=2 - order, label=_band(result, method)
         )
         axis.plot(frequency, centre, line, color=colour, zorder=4 + order, label=words)
-    true = _history(result, f"true_{part}_compliance")
+    true = result.history(f"true_{part}_compliance")
     if np.isfinite(true).any():
         axis.plot(frequency, PER_MEGAPASCAL * true, ":", color=TRUE_COLOUR, zorder=6, label="true model")
-    measured = PER_MEGAPASCAL * _history(result, f"measured_{part}_compliance")
+    measured = PER_MEGAPASCAL * result.history(f"measured_{part}_compliance")
     axis.plot(frequency, measured, "o", color=DATA_COLOUR, markersize=4, zorder=7, label="data")
     axis.set(xscale="log", yscale="log")
     axis.set_title(f"{part} compliance", loc="left")
@@ -93,18 +94,17 @@ def _ticks(frequency: Array) -> FixedLocator:
 
 def _band(result: Result, method: str) -> str:
     """The label of a band."""
-    told = result.details.get(method, {})
-    confidence = f"{100 * float(told.get('confidence', np.nan)):.3g} %"
-    return f"{confidence} band, {told.get('band', '')}"
+    fit = result.scene_as(DmaScene).fits[method]
+    return f"{100 * fit.confidence:.3g} % band, {fit.band}"
 
 
 def _draw_differences(axis: Axes, result: Result, part: str) -> None:
     """Relative differences in percent from the first fit, whose band is then symmetric about zero."""
-    frequency = _history(result, "frequency")
-    reference = _history(result, f"{_first(result)}_{part}_compliance")
+    frequency = result.history("frequency")
+    reference = result.history(f"{_first(result)}_{part}_compliance")
 
     def percent(name: str) -> Array:
-        return 100 * (_history(result, name) / reference - 1)
+        return 100 * (result.history(name) / reference - 1)
 
     for order, method in enumerate(_made(result)):
         _, colour, line = METHODS[method]
@@ -121,16 +121,9 @@ def _draw_differences(axis: Axes, result: Result, part: str) -> None:
 def _draw_foot(figure: Figure, result: Result) -> None:
     """How many constants the data tell, or why the run did not end well."""
     if result.status is not Status.CONVERGED:
-        figure.supxlabel(
-            f"{str(result.status).upper()}: {result.reason}"[:150], color=FAILED_COLOUR, fontsize=9.5, fontweight="bold"
-        )
-        figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+        mark_failure(figure, result)
         return
     told = result.quantities.get("determined_combinations")
     if told is not None:
         words = f"the data determine {told.value} {told.description.removesuffix(' that the data determine')}"
         figure.supxlabel(words, x=0.01, ha="left", fontsize=8.5)
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.experiments.dma.scene import DmaScene, KelvinFit
 from tactsim.identification.dma_bands import ComplianceBand
 from tactsim.identification.dma_data import PARTS, DmaData, parts_of
 from tactsim.identification.dma_determined import Determination
@@ -79,7 +79,7 @@ class DmaReport:
             assumptions=assumptions,
             warnings=self._warnings(quantities),
             timing=self.timing,
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
@@ -139,23 +139,23 @@ class DmaReport:
                 warnings.append(f"the genetic algorithm stopped at {times} the least of its objective: search longer")
         return warnings
 
-    def _details(self) -> dict[str, Any]:
-        found: dict[str, Any] = {"data_frequencies": self.data.frequencies}
-        for method, finding in self.fits.items():
-            told, band, fit = finding.determination, finding.band, finding.fit
-            found[method] = {
-                "evaluations": fit.evaluations,
-                "statement": told.statement(),
-                "constants": dict(zip(told.names, told.values, strict=True)),
-                "standard_errors_of_logarithms": dict(zip(told.names, told.relative_errors, strict=True)),
-                "told": dict(zip(told.names, told.determined.tolist(), strict=True)),
-                "singular_values": told.singular_values,
-                "confidence": band.confidence,
-                "band": "simultaneous" if band.simultaneous else "pointwise",
-            }
-            if fit.history:
-                shown = np.unique(np.geomspace(1, len(fit.history), SHOWN_GENERATIONS).round().astype(int))
-                found[method] |= {"generation": shown, "best_objective": np.array(fit.history)[shown - 1]}
-            if self.truth is not None:
-                found[method]["true_curves_inside_band"] = band.contains(self.truth)
-        return found
+    def _scene(self) -> DmaScene:
+        fits = {method: self._fit(finding) for method, finding in self.fits.items()}
+        return DmaScene(data_frequencies=self.data.frequencies.tolist(), fits=fits)
+
+    def _fit(self, finding: DmaFinding) -> KelvinFit:
+        told, band, history = finding.determination, finding.band, np.array(finding.fit.history or ())
+        shown = np.unique(np.geomspace(1, max(1, len(history)), SHOWN_GENERATIONS).round().astype(int))[: len(history)]
+        return KelvinFit(
+            evaluations=finding.fit.evaluations,
+            statement=told.statement(),
+            constants=dict(zip(told.names, told.values.tolist(), strict=True)),
+            standard_errors_of_logarithms=dict(zip(told.names, told.relative_errors.tolist(), strict=True)),
+            told=dict(zip(told.names, told.determined.tolist(), strict=True)),
+            singular_values=told.singular_values.tolist(),
+            confidence=band.confidence,
+            band="simultaneous" if band.simultaneous else "pointwise",
+            generation=shown.tolist(),
+            best_objective=history[shown - 1].tolist(),
+            true_curves_inside_band=None if self.truth is None else band.contains(self.truth),
+        )

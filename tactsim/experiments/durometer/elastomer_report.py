@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from scipy.optimize import brentq
@@ -15,6 +15,7 @@ from tactsim.analytic.durometer import DurometerScale, hertz_modulus, hertz_read
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.durometer.elastomers import Elastomer, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
+from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 
@@ -214,15 +215,15 @@ class RankingReport:
             quantities=self._quantities() if self._found else {},
             assumptions=assumptions,
             warnings=self._warnings(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
-    def _details(self) -> dict[str, Any]:
-        return {
-            "elastomers": [one.model_dump(mode="json") for one in self._elastomers],
-            "shapes": [one.shape.model_dump(mode="json") for one in self._found],
-            "threshold_displacement": [one.threshold_displacement for one in self._found],
-        }
+    def _scene(self) -> ElastomerRankingScene:
+        return ElastomerRankingScene(
+            elastomers=tuple(self._elastomers),
+            shapes=tuple(one.shape for one in self._found),
+            threshold_displacement=tuple(one.threshold_displacement for one in self._found),
+        )
 
 
 def _spearman(first: Sequence[float], second: Sequence[float]) -> float | None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
+from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.record import IndentationRecord, StartedPath, history_units
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
@@ -130,6 +131,6 @@ class DurometerRecord(IndentationRecord):
             warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")
         return warnings
 
-    def details(self) -> dict[str, Any]:
-        """Those of an indentation, with the scale."""
-        return super().details() | {"scale": self.scale.model_dump(mode="json"), "youngs_modulus": self.youngs_modulus}
+    def scene(self) -> DurometerScene:
+        """That of an indentation, with the scale."""
+        return DurometerScene(**self._pressed(), scale=self.scale, youngs_modulus=self.youngs_modulus)

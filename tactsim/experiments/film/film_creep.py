@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
+from tactsim.experiments.film.scene import CreepCurve, FilmCreepScene
 from tactsim.identification.film_creep import (
     COEFFICIENTS,
     CoefficientLine,
@@ -116,7 +117,7 @@ class FilmCreep(Experiment):
             quantities=_quantities(lines),
             assumptions=self._assumptions(),
             warnings=self._warnings(fits),
-            details={"tests": [_curve(test) for test in tests], "area": self.data.area},
+            scene=FilmCreepScene(tests=tuple(map(_curve, tests)), area=self.data.area),
         )
 
     def _assumptions(self) -> tuple[str, ...]:
@@ -152,7 +153,7 @@ def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
     return found
 
 
-def _curve(test: CreepTest, most: int = 400) -> dict[str, Any]:
+def _curve(test: CreepTest, most: int = 400) -> CreepCurve:
     """A test thinned for the figure."""
     kept = np.unique(np.linspace(0, len(test.time) - 1, most).astype(int))
-    return {"force": test.force, "time": test.time[kept].tolist(), "strain": test.strain[kept].tolist()}
+    return CreepCurve(force=test.force, time=test.time[kept].tolist(), strain=test.strain[kept].tolist())

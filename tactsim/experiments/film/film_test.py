@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
@@ -71,7 +72,7 @@ class FilmTest(Experiment):
                 quantities=film_quantities(self.film) | self._readings(times, conductance) | self._line(forces, read),
                 assumptions=film_assumptions(self.film),
                 warnings=film_warnings(self.film, float(forces.max())),
-                details=self._details(forces),
+                scene=self._scene(forces),
             )
         )
 
@@ -102,14 +103,14 @@ class FilmTest(Experiment):
             found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
         return found
 
-    def _details(self, forces: Array) -> dict[str, object]:
+    def _scene(self, forces: Array) -> FilmTestScene:
         composite = self.film.composite
         felt = forces * self.film.magnification
-        return {
-            "reading_time": self.reading_time,
-            "coefficients": {
+        return FilmTestScene(
+            reading_time=self.reading_time,
+            coefficients={
                 "instantaneous": composite.instantaneous.at(felt).tolist(),
                 "delayed": composite.delayed.at(felt).tolist(),
                 "viscosity": composite.viscosity.at(felt).tolist(),
             },
-        }
+        )

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
+from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
 from tactsim.interfaces import Array, Experiment
 from tactsim.interfaces.run import Course, Findings
@@ -75,7 +76,7 @@ class ForceCalibration(Experiment):
                 quantities=self._quantities(fit),
                 assumptions=self._assumptions(),
                 warnings=self._warnings(force, fit),
-                details={"full_scale": float(fit.full_scale.max()), "confidence": self.confidence, "sensors": fit.slope.size},
+                scene=CalibrationScene(full_scale=float(fit.full_scale.max()), confidence=self.confidence),
             )
         )
 

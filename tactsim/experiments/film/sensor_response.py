@@ -82,7 +82,6 @@ class SensorResponse(Experiment):
                 quantities=self._quantities(force, conductance, recording, {"read": read, "raw": raw, "model": model}),
                 assumptions=(*film_assumptions(self.film), "one straight line as calibration, without regard to history"),
                 warnings=self._warnings(force, recording),
-                details={"ranges": list(self.ranges), "seed": self.seed},
             )
         )
 

@@ -5,21 +5,19 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import ValidationError
 
-from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.taxel_voltages import JAWS, readout_assumptions, readout_quantities, readout_warnings
+from tactsim.errors import InputError, StorageError, TactsimError
+from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
+from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status, rows
 from tactsim.sensors.matrix_readout import MatrixReadout
 
 Array = np.ndarray
-KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
-"""Details of the grasp that figures of the readings need."""
 
 
 class MatrixReadoutRun(Experiment):
@@ -49,13 +47,9 @@ class MatrixReadoutRun(Experiment):
             If the stored result is damaged or not that of a grasp.
         """
         stored = read_result(self.grasp, fields=False).result
-        try:
-            times, forces = _history(stored, self.grasp)
-            area = TaxelLayout.model_validate(stored.details["matrix"]).area
-        except (KeyError, ValidationError) as error:
-            told = f"{self.grasp}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again"
-            raise StorageError(told) from None
-        reading = self.readout.read(times, forces, area)
+        times, forces = _history(stored, self.grasp)
+        scene = _scene(stored, self.grasp)
+        reading = self.readout.read(times, forces, scene.matrix.area)
         voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
         true = {name: stored.quantities[name] for side in JAWS for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
         return Course.computed(
@@ -63,11 +57,22 @@ class MatrixReadoutRun(Experiment):
                 "end of the grasp",
                 rows(self.history_units, (reading.time, *voltage.T, *force.T)),
                 quantities=readout_quantities(reading) | true,
-                assumptions=readout_assumptions(self.readout, area),
-                warnings=readout_warnings(self.readout, reading, area) + _unfinished(stored),
-                details={name: stored.details[name] for name in KEPT if name in stored.details},
+                assumptions=readout_assumptions(self.readout, scene.matrix.area),
+                warnings=readout_warnings(self.readout, reading, scene.matrix.area) + _unfinished(stored),
+                scene=ReadGrasp.of(scene),
             )
         )
+
+
+def _scene(stored: Result, folder: str) -> GraspScene:
+    try:
+        return stored.scene_as(GraspScene)
+    except TactsimError as error:
+        raise _incomplete(folder, error) from None
+
+
+def _incomplete(folder: str, error: Exception) -> StorageError:
+    return StorageError(f"{folder}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again")
 
 
 def _history(stored: Result, folder: str) -> tuple[Array, Array]:
@@ -75,12 +80,15 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
     names: Any = [f"taxel_force_{side}" for side in JAWS]
-    if len(stored.steps) > 1:
-        times = np.asarray(stored.quantities["time_history"].value, dtype=float)
-        forces = [np.asarray(stored.quantities[f"{name}_history"].value, dtype=float) for name in names]
-    else:
-        times = np.array([stored.quantities["time"].value], dtype=float)
-        forces = [np.asarray(stored.quantities[name].value, dtype=float)[None] for name in names]
+    try:
+        if len(stored.steps) > 1:
+            times = stored.quantities["time_history"].array
+            forces = [stored.quantities[f"{name}_history"].array for name in names]
+        else:
+            times = np.array([stored.quantities["time"].value], dtype=float)
+            forces = [stored.quantities[name].array[None] for name in names]
+    except KeyError as error:
+        raise _incomplete(folder, error) from None
     return times, np.stack(forces, axis=1)
 
 

@@ -13,6 +13,7 @@ from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.overhang import overhang_warnings
 from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
 from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
+from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
@@ -173,30 +174,31 @@ class GraspRecord(ContactRecord[GraspModel]):
         axes = mirror_axes(self.experiment)
         return mirror_asymmetry(self.readings[-1], axes) if axes and self.readings else None
 
-    def details(self) -> dict[str, Any]:
+    def scene(self) -> SimulatedGrasp:
         """The parts of the grasp and where they stand."""
         block, experiment = self._sourced.block, self.experiment
-        return super().details() | {
-            "mesh": {
-                "content": self._sourced.content,
-                "origin": self._sourced.origin,
-                "least_quality": block.quality.minimum,
-                "mean_quality": block.quality.mean,
-                "least_curvature": block.quality.curvature,
-                "straightened_edges": block.quality.straightened,
-                "volume_errors": block.volume_errors.tolist(),
-                "regions": list(block.region_names),
-            },
-            "block_size": list(experiment.block.size),
-            "inclusions": [shape.model_dump(mode="json") for shape in experiment.shapes],
-            "unlike_tissue": [one.unlike(experiment.block.tissue) for one in experiment.inclusions],
-            "jaws": {side: experiment.jaw(side).model_dump(mode="json") for side in JAWS},
-            "jaw_places": self._places(),
-            "matrix": experiment.matrix.model_dump(mode="json"),
-            "control": experiment.loading.control,
-        }
+        tissue = experiment.block.tissue
+        return SimulatedGrasp(
+            block_size=experiment.block.size,
+            inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in experiment.inclusions),
+            jaws={side: experiment.jaw(side) for side in JAWS},
+            jaw_places=self._places(),
+            matrix=experiment.matrix,
+            solver=self.solver_report(),
+            mesh=MeshReport(
+                content=self._sourced.content,
+                origin=self._sourced.origin,
+                least_quality=block.quality.minimum,
+                mean_quality=block.quality.mean,
+                least_curvature=block.quality.curvature,
+                straightened_edges=block.quality.straightened,
+                volume_errors=block.volume_errors.tolist(),
+                regions=block.region_names,
+            ),
+            control=experiment.loading.control,
+        )
 
-    def _places(self) -> dict[str, list[float]]:
+    def _places(self) -> dict[str, Any]:
         """Where the middle of each jaw's face stands in m at the last accepted step."""
         if "last" not in self._kept:
             return {side: self.model.touching_place(side).tolist() for side in JAWS}

@@ -35,6 +35,13 @@ TAXELS = {
     "taxel_force": ("N", "force pressing on each taxel, without noise"),
     "taxel_pressure": ("Pa", "force over area of each taxel, without noise"),
 }
+BESIDE = {
+    "gap_force": ("N", "force between the taxels of each jaw, at the end"),
+    "outside_force": (
+        "N",
+        "force beside the matrix of each jaw, at the end; taxels, gaps and outside add up to the force of the jaw",
+    ),
+}
 READ = read_variables("voltage of each taxel after the low pass", "force of each taxel by the calibration")
 MOTION = {"displacement": ("m", "closing of each jaw"), "reaction_force": ("N", "force pressing into the face of the upper jaw")}
 
@@ -100,7 +107,7 @@ class GraspRecorder(Recorder):
         sizes = {"time": times, "jaw": 2, "row": layout.rows, "column": layout.columns}
         taxels = TAXELS | (READ if experiment.readout is not None else {})
         told += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
-        return [*told, reading("outside_force", "N", "force beside and between the taxels of each jaw, at the end", jaw=2)]
+        return [*told, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
 
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
@@ -112,7 +119,7 @@ class GraspRecorder(Recorder):
         taxels = _interpolated(at, times, force)
         found = {"time_s": at, "taxel_force": taxels, "taxel_pressure": taxels / experiment.matrix.area}
         found |= {name: np.interp(at, times, columns[name]) for name in MOTION}
-        found["outside_force"] = np.array([_beside(result, side) for side in JAWS])
+        found |= {name: np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float) for name in BESIDE}
         if experiment.readout is not None:
             quantities = result.quantities
             sample = latest(np.asarray(quantities["readout_time"].value), at)
@@ -144,10 +151,6 @@ def _interpolated(at: Array, times: Array, values: Array) -> Array:
         return values[after]
     share = np.clip((at - times[after - 1]) / (times[after] - times[after - 1]), 0, 1).reshape(-1, *[1] * (values.ndim - 1))
     return (1 - share) * values[after - 1] + share * values[after]
-
-
-def _beside(result: Result, side: str) -> float:
-    return float(result.quantities[f"gap_force_{side}"].value) + float(result.quantities[f"outside_force_{side}"].value)
 
 
 def _geometry(shape: Any, size: Array) -> dict[str, Any]:

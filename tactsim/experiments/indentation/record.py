@@ -9,6 +9,12 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 
 from tactsim.experiments.indentation.comparison import Comparison
+from tactsim.experiments.indentation.scene import (
+    Indentation3dScene,
+    IndentationScene,
+    PressedBodyScene,
+    TimedIndentationScene,
+)
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
@@ -208,20 +214,23 @@ class IndentationRecord(ContactRecord[PressedModel]):
             told.append(f"the displacement reached {part:.2g} of the radius; the closed form is meant for up to {SMALL:g}")
         return told
 
-    def details(self) -> dict[str, Any]:
+    def scene(self) -> PressedBodyScene:
         """The body and where it touched first."""
-        found = super().details() | {
-            "starting_height": float(self._start.contacts[0].place[-1]),
-            "body": self._posed.body.model_dump(mode="json"),
-            "recess": self.setup.recess,
-        }
         if isinstance(self.model, SolidModel):
-            found |= {"symmetry": self.model.symmetry.name.lower(), "offset": self._posed.offset}
-        elif self._clock is not None:
-            found |= {"control": self._clock.loading.control, "compare": self._clock.compare}
-        else:
-            found["mesh_adaptations"] = self.adaptations
-        return found
+            symmetry = self.model.symmetry.name.lower()
+            return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self._posed.offset)
+        if self._clock is not None:
+            return TimedIndentationScene(**self._pressed(), control=self._clock.loading.control, compare=self._clock.compare)
+        return IndentationScene(**self._pressed())
+
+    def _pressed(self) -> dict[str, Any]:
+        """What every scene of a pressed body has, by name."""
+        return {
+            "body": self._posed.body,
+            "starting_height": float(self._start.contacts[0].place[-1]),
+            "recess": self.setup.recess,
+            "solver": self.solver_report(mesh_adaptations=self.adaptations),
+        }
 
 
 def history_units(*, clock: bool, space: bool) -> dict[str, str]:

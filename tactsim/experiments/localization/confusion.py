@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
 from tactsim.experiments.localization.source import (
     Source,
     folder_words,
     readings_of,
     stored_grasp,
-    true_inclusions,
     with_reference,
 )
 from tactsim.interfaces import Experiment
@@ -74,7 +75,7 @@ class Confusion(Experiment):
             for estimate in estimates:
                 for table in (counted.table, alone):
                     table.add(true, estimated_class(estimate))
-            counted.probabilities.append({"grasp": name, "true": true, "classes": [one.classes for one in estimates]})
+            counted.judged.append(JudgedGrasp(grasp=name, true=true, classes=tuple(one.classes for one in estimates)))
             counted.steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(alone.share_right or 0.0)}))
             yield counted.steps[-1]
 
@@ -85,7 +86,7 @@ class Confusion(Experiment):
             counted.steps,
             quantities=table_quantities(table),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation), seed {self.seed}",),
-            details={"classes": list(CLASSES), "grasps": counted.probabilities, "estimator": self.estimator.kind},
+            scene=ConfusionScene(classes=CLASSES, grasps=tuple(counted.judged), estimator=self.estimator.kind),
         )
 
     def _readings(self) -> list[tuple[str, str, Readings]]:
@@ -95,7 +96,7 @@ class Confusion(Experiment):
         found = []
         for folder in self.grasps:
             stored = stored_grasp(folder)
-            kinds = [shape.kind for shape in true_inclusions(stored.details)]
+            kinds = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
             true = class_of(kinds)
             if true is None:
                 raise InputError(
@@ -178,5 +179,4 @@ class _Counted:
 
     table: ConfusionTable = field(default_factory=ConfusionTable)
     steps: list[StepRecord] = field(default_factory=list)
-    probabilities: list[dict[str, Any]] = field(default_factory=list)
-    """Of each class, for every grasp and draw."""
+    judged: list[JudgedGrasp] = field(default_factory=list)

@@ -13,6 +13,7 @@ from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
 from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
+from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -116,7 +117,9 @@ class Detectability(Experiment):
             found.steps,
             quantities=self._quantities(found) if len(found.steps) == len(self.matrices) else {},
             assumptions=self._assumptions(),
-            details={"probability": self.probability, "false_alarms": self.false_alarms, "noise": self.noise, "side": self.side},
+            scene=DetectabilityScene(
+                probability=self.probability, false_alarms=self.false_alarms, noise=self.noise, side=self.side
+            ),
         )
 
     def layout(self, count: int) -> TaxelLayout:

@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.scene import GraspScene, grasp_fields
 from tactsim.experiments.localization.response_store import stored_response
+from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.experiments.localization.source import (
-    SIDES,
     Source,
     away_from_truth,
     folder_words,
     readings_of,
     reference_notes,
     stored_grasp,
-    true_inclusions,
     true_places,
     with_reference,
 )
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
@@ -34,8 +34,6 @@ from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
 
 Array = np.ndarray
-KEPT = ("inclusions", "unlike_tissue", "block_size", "jaws", "jaw_places", "matrix")
-"""Details of the grasp that the figures need."""
 Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 
@@ -82,7 +80,8 @@ class Localization(Experiment):
         plain = None if self.reference is None else stored_grasp(self.reference)
         readings = self._readings(stored, plain)
         estimate = self.estimator.estimate(readings)
-        true = [true_places(shape, readings.block_size) for shape in true_inclusions(stored.details)]
+        scene = stored.scene_as(GraspScene)
+        true = [true_places(shape, readings.block_size) for shape in scene.true_inclusions]
         return Course.computed(
             Findings(
                 estimate.reason,
@@ -90,30 +89,22 @@ class Localization(Experiment):
                 quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
                 assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
                 warnings=self._warnings(stored, plain, readings),
-                details=self._details(stored, readings, estimate),
+                scene=self._scene(scene, readings, estimate),
             )
         )
 
-    def _details(self, stored: Result, readings: Readings, estimate: Estimate) -> dict[str, Any]:
-        return {name: stored.details[name] for name in KEPT if name in stored.details} | {
-            "estimates": [
-                {
-                    "kind": found.kind,
-                    "center": list(found.center),
-                    "radius": found.radius,
-                    "line": found.line,
-                    "region": None if found.region is None else found.region.shadows(),
-                }
-                for found in estimate.inclusions
-            ],
-            "estimator": self.estimator.kind,
-            "noise": self.noise,
-            "valid": None if readings.valid is None else readings.valid.tolist(),
-            "words": [told(found) for found in estimate.inclusions],
-        }
+    def _scene(self, grasp: GraspScene, readings: Readings, estimate: Estimate) -> LocalizedGrasp:
+        return LocalizedGrasp(
+            **grasp_fields(grasp),
+            estimates=tuple(map(EstimatedShape.of, estimate.inclusions)),
+            estimator=self.estimator.kind,
+            noise=self.noise,
+            valid=None if readings.valid is None else readings.valid.tolist(),
+            words=tuple(map(told, estimate.inclusions)),
+        )
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:
-        dead = self._dead(TaxelLayout.model_validate(stored.details["matrix"]))
+        dead = self._dead(stored.scene_as(GraspScene).matrix)
         readings = readings_of(stored, self.readings, noise=self.noise, dead=dead)
         if self.reference is None or plain is None:
             return readings
@@ -121,13 +112,13 @@ class Localization(Experiment):
         return replace(readings, response=stored_response(self.reference)) if self.estimator.needs_response else readings
 
     def _dead(self, layout: TaxelLayout) -> Array:
-        dead = np.zeros((len(SIDES), layout.rows, layout.columns), bool)
+        dead = np.zeros((len(JAWS), layout.rows, layout.columns), bool)
         for side, row, column in self.dead:
             if row > layout.rows or column > layout.columns:
                 raise InputError(
                     f"dead: taxel {side}, {row}, {column} of a matrix of {layout.rows} rows and {layout.columns} columns"
                 )
-            dead[SIDES.index(side), row - 1, column - 1] = True
+            dead[JAWS.index(side), row - 1, column - 1] = True
         return dead
 
     def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
@@ -139,12 +130,12 @@ class Localization(Experiment):
         silent = silent_taxels(readings.filled)
         if silent.any():
             found.append(f"{silent_words(silent)}; name dead taxels by the key dead")
-        return found if plain is None else [*found, *reference_notes(true_inclusions(plain.details))]
+        return found if plain is None else [*found, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 
 def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:
     found = {}
-    for jaw, side in enumerate(SIDES):
+    for jaw, side in enumerate(JAWS):
         of = f"of the {side} jaw; [row][column], row 1 nearest the front, column 1 the smallest x"
         found[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
         if readings.difference is not None:

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from tactsim.errors import InputError
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.interface import Readings
-from tactsim.localization.readings import JAWS as SIDES
-from tactsim.mesh.any_inclusion import AnyInclusion, shapes_unlike_tissue
 from tactsim.mesh.inclusions.tube import Tube, extended
 from tactsim.mesh.solid import Inclusion
 from tactsim.results.reading import read_result
@@ -61,7 +59,8 @@ def readings_of(result: Result, source: Source = "taxel_force", *, noise: float,
     """
     if f"{source}_upper" not in result.quantities:
         raise InputError(f"the result has no {source}; give the grasp a readout, run matrix_readout on it, or take taxel_force")
-    layout = TaxelLayout.model_validate(result.details["matrix"])
+    scene = result.scene_as(GraspScene)
+    layout = scene.matrix
     valid = np.ones((2, layout.rows, layout.columns), bool) if dead is None else ~dead
     if source == "read_force":
         valid = valid & ~saturated_taxels(result)[-1]
@@ -69,10 +68,10 @@ def readings_of(result: Result, source: Source = "taxel_force", *, noise: float,
     return Readings(
         _taxels(result, source),
         layout,
-        np.asarray(result.details["block_size"], dtype=float),
+        scene.size,
         noise=noise,
         valid=None if valid.all() else valid,
-        middle=_middle(result.details, layout),
+        middle=_middle(scene),
         closing=None if closing is None else float(closing.value),
     )
 
@@ -99,16 +98,10 @@ def with_reference(readings: Readings, reference: Readings) -> Readings:
 
 def saturated_taxels(result: Result) -> Array:
     """Which readings (time or 1, jaw, row, column) of a result are saturated; one whose times are not told is so all the time."""
-    over_time = [f"saturated_{side}_history" for side in SIDES]
+    over_time = [f"saturated_{side}_history" for side in JAWS]
     if all(name in result.quantities for name in over_time):
-        return np.stack([np.asarray(result.quantities[name].value, dtype=float) for name in over_time], axis=1) > 0
+        return np.stack([result.quantities[name].array for name in over_time], axis=1) > 0
     return _taxels(result, "saturated")[None] > 0
-
-
-def true_inclusions(details: dict[str, Any]) -> tuple[Inclusion, ...]:
-    """The inclusions that a result was computed with, but those that are nothing but tissue."""
-    adapter = TypeAdapter(AnyInclusion)
-    return tuple(adapter.validate_python(shape) for shape in shapes_unlike_tissue(details))
 
 
 def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
@@ -141,26 +134,23 @@ def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:
 
 def _taxels(result: Result, name: str) -> Array:
     try:
-        return np.array([result.quantities[f"{name}_{side}"].value for side in SIDES], dtype=float)
+        return np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float)
     except (TypeError, ValueError):
         raise InputError(
             f"{name} of the two jaws of the result are not numbers in matrices of one shape; run the grasp again"
         ) from None
 
 
-def _middle(details: dict[str, Any], layout: TaxelLayout) -> Array | None:
-    """Middle (2,) of both matrices in m, None if the result does not tell."""
-    told = details.get("jaw_places")
-    if told is None:
-        return None
-    upper, lower = (np.asarray(told[side], dtype=float)[:2] for side in SIDES)
-    away = float(np.abs(upper - lower).max())
-    if away > layout.pitch / 2:
+def _middle(scene: GraspScene) -> Array:
+    """Middle (2,) of both matrices in m; refuses matrices that do not face each other."""
+    upper, lower = scene.places[:, :2]
+    away, pitch = float(np.abs(upper - lower).max()), scene.matrix.pitch
+    if away > pitch / 2:
         raise InputError(
             f"the matrices of both jaws are {format_quantity(away, 'm')} apart sideways; the views need taxels that face each "
-            f"other: at most half the pitch, {format_quantity(layout.pitch / 2, 'm')}"
+            f"other: at most half the pitch, {format_quantity(pitch / 2, 'm')}"
         )
-    return (upper + lower) / 2
+    return scene.middle
 
 
 def folder_words(folder: str) -> str:

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
+from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -33,14 +34,15 @@ class SwitchProbeFigures(ResultFigures):
             return {}
         drawn: dict[str, Drawing] = {"force_over_depth.png": lambda: png(force_over_depth_figure(result))}
         drawn["switch_panel.png"] = lambda: png(switch_panel_figure(result))
-        if len(result.details["tissues"]) > 1:
+        if len(result.scene_as(SwitchProbeScene).tissues) > 1:
             drawn["tissues_by_rate.png"] = lambda: png(tissues_by_rate_figure(result))
         return drawn
 
 
 def force_over_depth_figure(result: Result) -> Figure:
     """One panel per tissue, one curve per rate (Fig. 5.7); dots are what was read when switches closed."""
-    tissues, rates = result.details["tissues"], sorted({touch["rate"] for touch in result.details["touches"]})
+    scene = result.scene_as(SwitchProbeScene)
+    tissues, rates = scene.tissues, sorted({touch.rate for touch in scene.touches})
     with styled():
         figure = new_figure(max(6.4, 1.6 + 3.1 * len(tissues)), 3.8)
         for axis, tissue in zip(np.atleast_1d(figure.subplots(1, len(tissues), sharey=True)), tissues, strict=True):
@@ -53,7 +55,8 @@ def force_over_depth_figure(result: Result) -> Figure:
 
 def tissues_by_rate_figure(result: Result) -> Figure:
     """One panel per rate, one curve per tissue (Fig. 5.8)."""
-    tissues, rates = result.details["tissues"], result.details["rates"]
+    scene = result.scene_as(SwitchProbeScene)
+    tissues, rates = scene.tissues, scene.rates
     with styled():
         figure = new_figure(1.6 + 3.1 * len(rates), 3.8)
         for axis, rate in zip(np.atleast_1d(figure.subplots(1, len(rates), sharey=True)), rates, strict=True):
@@ -66,50 +69,51 @@ def tissues_by_rate_figure(result: Result) -> Figure:
 
 def switch_panel_figure(result: Result) -> Figure:
     """The display of the array (Fig. 5.5): each switch with its force and time, the force over time, and the mean rate."""
-    told = result.details["touches"][0]
+    scene = result.scene_as(SwitchProbeScene)
+    told = scene.touches[0]
     with styled():
         figure = new_figure(9.4, 4.2)
         probe, record = figure.subplots(1, 2, width_ratios=(1, 1.1))
-        _draw_probe(probe, result.details, told)
+        _draw_probe(probe, scene.switch_sides, told)
         _draw_record(record, result, told)
-        rate = told.get("mean_rate")
+        rate = told.mean_rate
         words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
-        _title(figure, result, f"{told['tissue']} at {1e3 * told['rate']:g} mm/s — {words}")
+        _title(figure, result, f"{told.tissue} at {1e3 * told.rate:g} mm/s — {words}")
     return figure
 
 
-def _draw_probe(axis: Axes, details: dict[str, Any], told: dict[str, Any]) -> None:
+def _draw_probe(axis: Axes, sides: tuple[str, ...], told: RecordedTouch) -> None:
     """The section of the probe with its switches, lit if they closed, and what was read then."""
     corners = [(-FACE, 0), (FACE, 0), (FACE + HEIGHT * LEAN, HEIGHT), (-FACE - HEIGHT * LEAN, HEIGHT)]
     axis.add_patch(Polygon(corners, closed=True, facecolor="#eceff1", edgecolor="#30363d"))
     axis.add_patch(Rectangle((-0.7 * FACE, -0.3), 1.4 * FACE, 0.25, facecolor="#1f4e79"))
     axis.text(0, -0.55, "force sensor", ha="center", va="top", color="#1f4e79", fontsize=8)
-    closed = {closing["switch"]: closing for closing in told["closings"]}
-    for number, side in enumerate(details["switch_sides"], 1):
+    closed = {closing.switch: closing for closing in told.closings}
+    for number, side in enumerate(sides, 1):
         sign, closing = (1 if side == "right" else -1), closed.get(number)
         place = sign * (FACE + number * LEAN)
         axis.plot(place, number, "o", markersize=13, color=OPEN if closing is None else CLOSED, markeredgecolor="#30363d")
         axis.text(place, number, str(number), ha="center", va="center", color="k" if closing is None else "w", fontsize=8)
-        words = "open" if closing is None else f"{closing['force']:.3f} N\n{closing['time'] - told['start']:.3f} s"
+        words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - (told.start or 0.0):.3f} s"
         axis.text(place + sign * 0.6, number, words, ha="left" if sign > 0 else "right", va="center", fontsize=8)
     axis.set(xlim=(-7, 7), ylim=(-1.3, HEIGHT + 0.3), aspect="equal")
     axis.set_axis_off()
     axis.set_title("switches: force and time since the touch", loc="left")
 
 
-def _draw_record(axis: Axes, result: Result, told: dict[str, Any]) -> None:
+def _draw_record(axis: Axes, result: Result, told: RecordedTouch) -> None:
     """The force of the first touch over time, with the moments at which switches closed."""
-    steps = [step.values for step in result.steps if _is(step.values, result, (told["tissue"], told["rate"]))]
+    steps = [step.values for step in result.steps if _is(step.values, result, (told.tissue, told.rate))]
     time, force = (np.array([values[name] for values in steps]) for name in ("time", "read_force"))
     axis.plot(time, force, color=COLOURS[0], label="force sensor")
-    for closing in told["closings"]:
-        axis.axvline(closing["time"], color=CLOSED, linewidth=0.8, linestyle=":")
-        axis.plot(closing["time"], closing["force"], "o", color=CLOSED, markersize=5)
-        axis.annotate(
-            str(closing["switch"]), (closing["time"], closing["force"]), (-9, 4), textcoords="offset points", fontsize=8
-        )
+    for closing in told.closings:
+        axis.axvline(closing.time, color=CLOSED, linewidth=0.8, linestyle=":")
+        axis.plot(closing.time, closing.force, "o", color=CLOSED, markersize=5)
+        axis.annotate(str(closing.switch), (closing.time, closing.force), (-9, 4), textcoords="offset points", fontsize=8)
     axis.set(xlabel="time in s", ylabel="force in N", ylim=(min(0.0, 1.05 * force.min()), 1.1 * max(force.max(), 1e-9)))
-    axis.set_title(f"threshold of the touch {format_quantity(result.details['touch_threshold'], 'N')}", loc="left")
+    axis.set_title(
+        f"threshold of the touch {format_quantity(result.scene_as(SwitchProbeScene).touch_threshold, 'N')}", loc="left"
+    )
     despined(axis)
 
 
@@ -118,15 +122,16 @@ def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: An
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
     way_in = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
     axis.plot(1e3 * depth[way_in], force[way_in], color=colour, label=label)
-    heights = 1e3 * np.asarray(result.details["heights"])
-    for touch in result.details["touches"]:
-        if (touch["tissue"], touch["rate"]) == which:
-            at = [heights[closing["switch"] - 1] for closing in touch["closings"]]
-            axis.plot(at, [closing["force"] for closing in touch["closings"]], "o", color=colour, markersize=4)
+    scene = result.scene_as(SwitchProbeScene)
+    heights = 1e3 * np.array(scene.heights)
+    for touch in scene.touches:
+        if (touch.tissue, touch.rate) == which:
+            at = [heights[closing.switch - 1] for closing in touch.closings]
+            axis.plot(at, [closing.force for closing in touch.closings], "o", color=colour, markersize=4)
 
 
 def _is(values: dict[str, float], result: Result, which: tuple[str, float]) -> bool:
-    return result.details["tissues"][int(values["tissue"]) - 1] == which[0] and values["rate"] == which[1]
+    return result.scene_as(SwitchProbeScene).tissues[int(values["tissue"]) - 1] == which[0] and values["rate"] == which[1]
 
 
 def _colours(count: int) -> list[str]:
@@ -134,7 +139,7 @@ def _colours(count: int) -> list[str]:
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:
-    axis.set(xlabel="depth in mm", xlim=(0, 1e3 * result.details["depth"] * 1.02), title=title)
+    axis.set(xlabel="depth in mm", xlim=(0, 1e3 * result.scene_as(SwitchProbeScene).depth * 1.02), title=title)
     axis.set_ylim(0, 1.08 * max(step.values["force"] for step in result.steps))
     axis.legend(fontsize=8, loc="upper left")
     if axis.get_subplotspec().is_first_col():  # type: ignore[union-attr]
@@ -143,5 +148,5 @@ def _finish(axis: Axes, result: Result, title: str) -> None:
 
 
 def _title(figure: Figure, result: Result, words: str) -> None:
-    title = str(result.details.get("title") or "")
+    title = result.title
     entitle(figure, f"{title}\n{words}" if title else words, size=10.5)

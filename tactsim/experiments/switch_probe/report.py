@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
+from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.experiments.switch_probe.setup import COUNT, SwitchProbeSetup
 from tactsim.interfaces.run import Findings
 from tactsim.mechanics.plausibility import oddities
@@ -30,7 +30,7 @@ HISTORY_UNITS = {
     **{f"read_switch_force_{number}": "N" for number in range(1, COUNT + 1)},
 }
 POINTS = 100
-"""Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the details hold every closing."""
+"""Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the scene holds every closing."""
 
 
 SUNK = 0.05
@@ -71,7 +71,7 @@ class SwitchProbeReport:
             quantities=self._quantities(),
             assumptions=self._assumptions(),
             warnings=self._warnings(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _quantities(self) -> dict[str, Quantity]:
@@ -153,24 +153,23 @@ class SwitchProbeReport:
         tissue = {"block.width": setup.block.width, "block.height": setup.block.height}
         return told + oddities(materials, tissue=tissue, bodies={"probe.face": setup.probe.face, "width": setup.width})
 
-    def _details(self) -> dict[str, Any]:
-        """What the figures draw."""
+    def _scene(self) -> SwitchProbeScene:
         setup = self._setup
         array = thresholds(setup)
-        return {
-            "model": setup.model,
-            "sides": setup.sides,
-            "tissues": [tissue.name for tissue in setup.tissues],
-            "rates": list(setup.rates),
-            "depth": setup.depth,
-            "heights": array.heights,
-            "switch_sides": list(array.sides),
-            "noise": force_noise(setup),
-            "touch_threshold": array.touch_threshold,
-            "switch_threshold": array.switch_threshold,
-            "formula": array.formula,
-            "touches": [_told(touch, setup) for touch in self._touches],
-        }
+        return SwitchProbeScene(
+            model=setup.model,
+            sides=setup.sides,
+            tissues=tuple(tissue.name for tissue in setup.tissues),
+            rates=setup.rates,
+            depth=setup.depth,
+            heights=array.heights.tolist(),
+            switch_sides=array.sides,
+            noise=force_noise(setup),
+            touch_threshold=array.touch_threshold,
+            switch_threshold=array.switch_threshold,
+            formula=array.formula,
+            touches=tuple(_recorded(touch, setup) for touch in self._touches),
+        )
 
 
 def _where(touch: ProbeTouch) -> str:
@@ -189,10 +188,10 @@ def _values(touch: ProbeTouch, number: int, sample: int) -> dict[str, float]:
     return dict(zip(HISTORY_UNITS, map(float, told), strict=True))
 
 
-def _told(touch: ProbeTouch, setup: SwitchProbeSetup) -> dict[str, Any]:
-    found = main_touch(touch)
-    told: dict[str, Any] = {"tissue": touch.tissue, "rate": touch.rate, "count": len(touch.touches), "closings": []}
-    if found is not None:
-        told |= {"start": found.start, "end": found.end, "mean_rate": found.mean_rate(setup.array)}
-        told["closings"] = [{"switch": c.switch, "time": c.time, "force": c.force} for c in found.closings]
-    return told
+def _recorded(touch: ProbeTouch, setup: SwitchProbeSetup) -> RecordedTouch:
+    found, known = main_touch(touch), {"tissue": touch.tissue, "rate": touch.rate, "count": len(touch.touches)}
+    if found is None:
+        return RecordedTouch.model_validate(known)
+    closings = [{"switch": c.switch, "time": c.time, "force": c.force} for c in found.closings]
+    times = {"start": found.start, "end": found.end, "mean_rate": found.mean_rate(setup.array)}
+    return RecordedTouch.model_validate({**known, **times, "closings": closings})

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
+from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.valve_tissue import SensorContact
 from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
@@ -116,7 +117,7 @@ class CatheterReport:
             quantities={**self._sensors(), **(self._hardest() if complete else {})},
             assumptions=self._assumptions(),
             warnings=self._warnings(),
-            details=self._details(),
+            scene=self._scene(),
         )
 
     def _sensors(self) -> dict[str, Quantity]:
@@ -170,16 +171,17 @@ class CatheterReport:
         elsewhere = answered & ~np.isin(tissue[found], tissue[right])
         return float(wrong.mean()), float(elsewhere.mean()), float((~answered).mean())
 
-    def _details(self) -> dict[str, Any]:
+    def _scene(self) -> CatheterTipScene:
         experiment = self._experiment
-        return {
-            **experiment.model_dump(
-                mode="json", include={"surface", "ring", "place", "tilt", "tilt_direction", "press", "speed"}
-            ),
-            "state": [reading.state for reading in self._readings],
-            "straddles": [bool(share.max() < 1) for share in self._shares],
-            "area": self._area,
-        }
+        return CatheterTipScene(
+            tissues=tuple(tissue.name for tissue in experiment.surface.tissues),
+            borders=experiment.surface.borders,
+            ring=experiment.ring,
+            place=experiment.place,
+            state=tuple(reading.state for reading in self._readings),
+            straddles=tuple(bool(share.max() < 1) for share in self._shares),
+            area=self._area,
+        )
 
     def _assumptions(self) -> Iterator[str]:
         told = (

@@ -11,7 +11,9 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
+from tactsim.contact.annulus import Annulus
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.results.result import Result, Status
 from tactsim.units import format_quantity
 
@@ -121,8 +123,10 @@ class ContactCurve:
         if result.kind != "indentation" or result.status is not Status.CONVERGED or reached is None:
             told = f"kind {result.kind}, {result.status}, {'no ' if reached is None else ''}threshold"
             raise InputError(f"the result is not usable ({told}); needed: a converged indentation by an annulus to its threshold")
-        body = result.details["body"]
-        shape = SensorShape(body["inner_radius"], body["outer_radius"], result.details["recess"])
+        scene = result.scene_as(IndentationScene)
+        if not isinstance(scene.body, Annulus) or scene.recess is None:
+            raise InputError(f"the body of the result is a {scene.body.kind}; needed: an annulus with an inner sensor")
+        shape = SensorShape(scene.body.inner_radius, scene.body.outer_radius, scene.recess)
         names = ("displacement", "reaction_force", "tissue_rise", "sensor_force")
         rows = np.array([[0.0] * 4] + [[step.values[name] for name in names] for step in result.steps])
         touch = int(np.argmin(np.abs(rows[:, 0] - reached.value)))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
+from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
@@ -66,7 +66,7 @@ class TrialReport:
         """Whether every combination was sampled."""
         self._approaches: list[Approach] = []
         self._cells: list[dict[str, float | None]] = []
-        self._capture: dict[str, Any] = {}
+        self._capture: ThresholdCapture | None = None
 
     def begin(self, approach: Approach) -> None:
         """A new speed."""
@@ -113,19 +113,19 @@ class TrialReport:
         fired = int(state.index[0]) + len(large) - len(armed) if state.triggered[0] else -1
         self.steps = tuple(_rows(columns, fired))
         threshold = approach.threshold_force
-        self._capture = {
-            "touch_time": touch,
-            "threshold_force": threshold,
-            "armed_time": float(armed[0]),
-            "trigger_level": float(trigger.rest + trigger.level),
-            "speed": approach.speed,
-            "noise": noise.white,
-            "cutoff": low_pass.cutoff,
-            "large_bears": sensor.large_bears,
-            "capture": sensor.capture,
-        }
-        if fired >= 0:
-            self._capture |= {"trigger_time": float(recording.time[fired]), "captured_force": float(state.force[0])}
+        self._capture = ThresholdCapture(
+            touch_time=touch,
+            threshold_force=threshold,
+            armed_time=float(armed[0]),
+            trigger_level=float(trigger.rest + trigger.level),
+            speed=approach.speed,
+            noise=noise.white,
+            cutoff=low_pass.cutoff,
+            large_bears=sensor.large_bears,
+            capture=sensor.capture,
+            trigger_time=float(recording.time[fired]) if fired >= 0 else None,
+            captured_force=float(state.force[0]) if fired >= 0 else None,
+        )
 
     def findings(self) -> Findings:
         """What everything that was sampled says."""
@@ -136,13 +136,13 @@ class TrialReport:
             assumptions=self._assumptions(),
             warnings=self._warnings(),
             units=SIGNAL_UNITS,
-            details={
-                "speeds": list(self._experiment.speeds),
-                "noises": list(self._experiment.noises),
-                "cutoffs": list(self._experiment.cutoffs),
-                "complete": self.complete,
-                "capture": self._capture,
-            },
+            scene=ThresholdTrialScene(
+                speeds=self._experiment.speeds,
+                noises=self._experiment.noises,
+                cutoffs=self._experiment.cutoffs,
+                complete=self.complete,
+                capture=self._capture,
+            ),
         )
 
     def _quantities(self) -> dict[str, Quantity]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from tactsim.errors import StorageError
+from tactsim.errors import StorageError, TactsimError
+from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.live.sources.recorded import DAMAGE
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.learned import LearnedEstimator
@@ -81,28 +82,27 @@ def stored_choice(folder: str | Path) -> Choice | None:
         If the result is damaged.
     """
     result = read_result(folder, fields=False).result
-    if "estimates" not in result.details:
+    if result.kind != LocalizedGrasp.model_fields["kind"].default:
         return None
     try:
-        inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(result.details["estimates"])]
+        scene = result.scene_as(LocalizedGrasp)
+    except TactsimError as error:
+        told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
+        raise StorageError(told) from None
+    try:
+        inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(scene.estimates)]
         found = Estimate(bool(inclusions), tuple(inclusions), result.reason)
     except DAMAGE as error:
         told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
         raise StorageError(f"{told}; run it again") from None
-    return Choice("stored", f"As stored: {result.details.get('estimator', 'estimate')}"[:60], StoredEstimate(found), False)
+    return Choice("stored", f"As stored: {scene.estimator}"[:60], StoredEstimate(found), False)
 
 
-def _inclusion(told: dict[str, Any], quantities: dict[str, Quantity]) -> EstimatedInclusion:
-    """An inclusion of the details; contrast and deviations are told of the first one, in the quantities."""
-    x, y, z = map(float, told["center"])
-    radius = None if told["radius"] is None else float(told["radius"])
+def _inclusion(found: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:
+    """An estimated inclusion; contrast and deviations are told of the first one, in the quantities."""
     contrast = float(quantities["estimated_contrast"].value) if "estimated_contrast" in quantities else None
-    line = None
-    if told.get("line"):
-        (x0, y0, z0), (x1, y1, z1) = (map(float, end) for end in told["line"])
-        line = ((x0, y0, z0), (x1, y1, z1))
     covariance = None
     if "center_deviation" in quantities:
         others = (quantities[f"{name}_deviation"].value for name in PARAMETERS[3:])
         covariance = np.diag(np.array([*quantities["center_deviation"].value, *others], dtype=float) ** 2)
-    return EstimatedInclusion(str(told["kind"]), (x, y, z), radius, contrast, covariance, line=line)
+    return EstimatedInclusion(found.kind, found.center, found.radius, contrast, covariance, line=found.line)

@@ -12,8 +12,9 @@ from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, true_places, with_reference
 from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
-from tactsim.live.sources.scene import Frame, Scene
+from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
+from tactsim.localization.readings import shown_change
 
 Array = np.ndarray
 DIGITS = 3
@@ -21,7 +22,7 @@ DIGITS = 3
 
 
 def frame_readings(
-    scene: Scene, frame: Frame, choice: Choice, reference: Reference | None, noise: float | None = None
+    scene: PageScene, frame: Frame, choice: Choice, reference: Reference | None, noise: float | None = None
 ) -> Readings:
     """Readings of a frame with what an estimator needs beside its model of the tissue; ``noise`` in N replaces the scene's.
 
@@ -42,12 +43,10 @@ def shown_signal(readings: Readings) -> tuple[Array, str]:
     """What the views draw, (jaw, row, column) in N, and what it is: the force, or its strongest change from the reference."""
     if readings.difference is None:
         return readings.filled, "force"
-    sums = readings.difference.sum(axis=0)
-    softer = bool(-sums.min() > sums.max())
-    return (-1 if softer else 1) * readings.difference, f"force {'below' if softer else 'above'} that of the reference"
+    return shown_change(readings.difference)
 
 
-def estimated(scene: Scene, readings: Readings, choice: Choice, reference: Reference | None) -> dict[str, Any]:
+def estimated(scene: PageScene, readings: Readings, choice: Choice, reference: Reference | None) -> dict[str, Any]:
     """What an estimator finds, as the page shows it.
 
     Raises
@@ -106,7 +105,7 @@ def _uncertainty(one: EstimatedInclusion) -> list[str]:
     return [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm{contrast} (one standard deviation)"]
 
 
-def _errors(scene: Scene, found: Estimate) -> list[str]:
+def _errors(scene: PageScene, found: Estimate) -> list[str]:
     """Errors of the strongest inclusion against the true one nearest to it in plan, where the truth is known."""
     if scene.inclusions is None:
         return []
@@ -121,7 +120,7 @@ def _errors(scene: Scene, found: Estimate) -> list[str]:
     return [f"Off by {1e3 * lateral:.1f} mm in plan and {round(1e3 * depth, 1) + 0.0:+.1f} mm in height{size}"]
 
 
-def _radius_error(scene: Scene, one: EstimatedInclusion) -> str:
+def _radius_error(scene: PageScene, one: EstimatedInclusion) -> str:
     true = getattr((scene.inclusions or (None,))[0], "radius", None)
     if one.radius is None or true is None or len(scene.inclusions or ()) != 1:
         return ""

@@ -12,11 +12,11 @@ import numpy as np
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.localization.figures.views import ESTIMATE, colour_table
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.session.estimating import shown_signal
 from tactsim.live.session.shapes import drawn_inclusions
-from tactsim.live.sources.scene import Frame, Scene
+from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.localization.interface import Readings
-from tactsim.localization.readings import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.outside.text import one_line
 
@@ -29,13 +29,13 @@ LONGEST_TEXT = 1000
 """Characters of a note or a reason on the page: more than any of this program's own has."""
 
 
-def scene_message(scene: Scene, **more: Any) -> str:
+def scene_message(scene: PageScene, **more: Any) -> str:
     """The scene without the shapes of its inclusions; lengths in mm."""
     layout, size = scene.layout, scene.size
-    middle = 1e3 * scene.places[:, :2].mean(axis=0)
+    middle = 1e3 * scene.grasp.middle
     jaws = [
         {"width": 1e3 * jaw.width, "depth": 1e3 * jaw.depth, "rotation": np.asarray(jaw.rotation).T.ravel().tolist()}
-        for jaw in (scene.jaws[side] for side in JAWS)
+        for jaw in (scene.grasp.jaws[side] for side in JAWS)
     ]
     content = {
         "is": "scene",
@@ -58,7 +58,7 @@ def scene_message(scene: Scene, **more: Any) -> str:
     return plain_json(content | more)
 
 
-def shapes_message(scene: Scene) -> str:
+def shapes_message(scene: PageScene) -> str:
     """The shapes of the true inclusions, which take up to a second or two for a curved artery."""
     return plain_json({"is": "shapes", "inclusions": drawn_inclusions(scene)})
 
@@ -98,7 +98,7 @@ class Scales:
             self.take([np.asarray(part) for part in sums], forces)
 
 
-def frame_message(scene: Scene, frame: Frame, readings: Readings | TactsimError, scales: Scales, **more: Any) -> bytes:
+def frame_message(scene: PageScene, frame: Frame, readings: Readings | TactsimError, scales: Scales, **more: Any) -> bytes:
     """A frame: length of the JSON, JSON, then all forces as float32 and the three pictures as bytes, 255 at the scale's end.
 
     The JSON is filled up with spaces so that what follows begins at a multiple of four. Without usable readings the pictures are

@@ -15,7 +15,7 @@ from tactsim.live.session.estimating import frame_readings
 from tactsim.live.session.messages import Scales, frame_message, plain_json, scene_message, shapes_message
 from tactsim.live.session.selection import Playback, Selection
 from tactsim.live.session.thinking import Thinking, Threads
-from tactsim.live.sources.scene import Frame, Recording, Scene
+from tactsim.live.sources.scene import Frame, PageScene, Recording
 
 Made = TypeVar("Made")
 IN_FLIGHT = 2
@@ -48,7 +48,7 @@ class Session:
         self._changed, self._drawn = asyncio.Event(), asyncio.Event()
         self._in_flight = 0
         self._scales = Scales()
-        self._scene: Scene | None = None
+        self._scene: PageScene | None = None
         self._shown: Frame | None = None
         self._thinking = Thinking(self._send_text, threads)
 
@@ -144,7 +144,7 @@ class Session:
         elif frame is not None and (frame is not self._shown or not self._chosen.live or not self._scales.ends.any()):
             await self._send_frame(scene, frame, recording)
 
-    async def _introduce(self, scene: Scene, recording: Recording | None) -> None:
+    async def _introduce(self, scene: PageScene, recording: Recording | None) -> None:
         self._scene, self._scales = scene, Scales()
         if not self._chosen.live and recording is not None:
             self._playback.begin_anew(recording)
@@ -155,7 +155,7 @@ class Session:
         await self._send_text(scene_message(scene, **told))
         self._thinking.shape(scene, shapes_message)
 
-    async def _send_frame(self, scene: Scene, frame: Frame, recording: Recording | None) -> None:
+    async def _send_frame(self, scene: PageScene, frame: Frame, recording: Recording | None) -> None:
         choice, content = self._chosen.choice, self._content
         if recording is not None and not self._chosen.live and not self._scales.ends.any():
             self._scales.take_range(self._chosen.signals())

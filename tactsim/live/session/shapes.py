@@ -9,7 +9,7 @@ from contourpy import contour_generator
 
 from tactsim.errors import InputError, TactsimError
 from tactsim.experiments.localization.figures.parts import outline
-from tactsim.live.sources.scene import Scene
+from tactsim.live.sources.scene import PageScene
 from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.solid import Solid
@@ -28,7 +28,7 @@ DIGITS = 4
 """Decimals in mm: a tenth of a micrometre, far below a pixel."""
 
 
-def drawn_inclusions(scene: Scene) -> list[dict[str, Any]]:
+def drawn_inclusions(scene: PageScene) -> list[dict[str, Any]]:
     """Name, triangles in mm and outlines by view of every true inclusion; one whose surface file is missing has no shape."""
     found = []
     for number, inclusion in enumerate(scene.inclusions or (), 1):

@@ -19,7 +19,7 @@ from tactsim.live.session.choices import Choice
 from tactsim.live.session.estimating import estimated
 from tactsim.live.session.messages import plain_json
 from tactsim.live.sources.reference import Reference
-from tactsim.live.sources.scene import Scene
+from tactsim.live.sources.scene import PageScene
 from tactsim.localization.interface import Readings
 from tactsim.outside.text import one_line
 
@@ -72,11 +72,11 @@ class Thinking:
         busy = plain_json({"is": "estimate", "busy": True})
         self._estimates, self._shapes = Latest(send, threads, waiting=busy), Latest(send, threads)
 
-    def estimate(self, scene: Scene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> None:
+    def estimate(self, scene: PageScene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> None:
         """Has an estimate made and sent."""
         self._estimates.want(lambda: estimate_message(scene, readings, choice, reference))
 
-    def shape(self, scene: Scene, make: Callable[[Scene], str]) -> None:
+    def shape(self, scene: PageScene, make: Callable[[PageScene], str]) -> None:
         """Has shapes made and sent."""
         self._shapes.want(lambda: make(scene))
 
@@ -97,7 +97,7 @@ def message_or_fault(make: Callable[[], str]) -> str:
     return plain_json({"is": "fault", "words": words})
 
 
-def estimate_message(scene: Scene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> str:
+def estimate_message(scene: PageScene, readings: Readings | TactsimError, choice: Choice, reference: Reference | None) -> str:
     """What the estimator finds, or why it cannot."""
     found: dict[str, Any] = {"present": None, "words": [], "errors": [], "inclusions": []}
     try:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from tactsim.errors import InputError
 from tactsim.live.sources.frame_lines import LONGEST_LINE, LineSplitter, read_line
-from tactsim.live.sources.scene import Frame, Scene
+from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.outside.text import one_line
 
 
@@ -26,7 +26,7 @@ class Feed:
 
     def __init__(self, name: str):
         self.name = name
-        self.scene: Scene | None = None
+        self.scene: PageScene | None = None
         self.frame: Frame | None = None
         self.state = "waiting"
         self._count: Counter[str] = Counter()
@@ -59,7 +59,7 @@ class Feed:
         except InputError as error:
             self.blame(f"line {number}: {error}")
             return False
-        if isinstance(found, Scene):
+        if isinstance(found, PageScene):
             self.scene, self.frame = found, None
         else:
             self.frame = found

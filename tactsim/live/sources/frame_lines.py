@@ -26,9 +26,8 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from tactsim.errors import InputError, shown
-from tactsim.interfaces.taxel_layout import PositiveLength, TaxelLayout
-from tactsim.live.sources.scene import LARGEST_FORCE, Frame, Scene, plain_scene
-from tactsim.localization.readings import JAWS
+from tactsim.interfaces.taxel_layout import JAWS, PositiveLength, TaxelLayout
+from tactsim.live.sources.scene import LARGEST_FORCE, Frame, PageScene, plain_scene
 from tactsim.outside.text import one_line
 from tactsim.units import FrozenModel
 
@@ -51,12 +50,12 @@ class Description(FrozenModel):
     title: Annotated[str, Field(max_length=200)] = "live"
     """What the page calls it."""
 
-    def scene(self) -> Scene:
+    def scene(self) -> PageScene:
         """What is drawn."""
         return plain_scene(one_line(self.title), np.array(self.block_size), self.matrix)
 
 
-def read_line(line: bytes, scene: Scene | None) -> Scene | Frame:
+def read_line(line: bytes, scene: PageScene | None) -> PageScene | Frame:
     """What a line says, after the description that is in force, None before the first.
 
     Raises
@@ -85,7 +84,7 @@ def _description(content: dict[str, Any]) -> Description:
         raise InputError(f"description: {'.'.join(map(str, first['loc']))}: {first['msg']}"[:300]) from None
 
 
-def _frame(content: dict[str, Any], scene: Scene) -> Frame:
+def _frame(content: dict[str, Any], scene: PageScene) -> Frame:
     unknown = [name for name in content if name not in KNOWN]
     if unknown:
         raise InputError(f"unknown key {shown(unknown[0])}; known: {', '.join(KNOWN)}")
@@ -111,7 +110,7 @@ def _number(content: dict[str, Any], name: str) -> float | None:
     return float(value)
 
 
-def _matrix(content: dict[str, Any], name: str, scene: Scene, *, missing: float | None = None) -> Array:
+def _matrix(content: dict[str, Any], name: str, scene: PageScene, *, missing: float | None = None) -> Array:
     """Numbers (row, column), NaN where there is none."""
     rows, columns = scene.layout.rows, scene.layout.columns
     if name not in content:

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, StorageError, TactsimError, shown
-from tactsim.experiments.localization.source import saturated_taxels, true_inclusions
-from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, Recording, Scene, plain_scene
-from tactsim.localization.readings import JAWS
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.experiments.localization.source import saturated_taxels
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
+from tactsim.localization.interface import ROUNDING_NOISE
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
+from tactsim.results.scene import UnreadableScene
 
 Array = np.ndarray
 SOURCES = {"taxel_force": "forces of the solution", "read_force": "forces read through the sensors"}
 """Name of the forces -> what they are, in words."""
 _TIMES = {"taxel_force": "time_history", "read_force": "readout_time"}
-DAMAGE = (ValidationError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, MemoryError, TactsimError)
-"""What a result raises whose details are not those that a run writes: another type, a missing part, numbers that do not fit."""
+DAMAGE = (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, MemoryError, TactsimError)
+"""What a result raises whose quantities no run writes: another type, a missing part, numbers that do not fit."""
 
 
 def result_recordings(folder: str | Path) -> dict[str, Recording]:
@@ -38,35 +38,35 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     """
     stored = read_result(folder, fields=False)
     result = stored.result
-    if not {"block_size", "matrix"} <= result.details.keys() or "taxel_force_upper" not in result.quantities:
+    if not isinstance(result.scene, GraspScene | UnreadableScene) or "taxel_force_upper" not in result.quantities:
         raise InputError(
             f"{folder} holds the result of {result.kind}, which has no forces of taxels to show; "
             "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
         )
     case = stored.provenance.get("case")
-    title = str(result.details.get("title") or (case.get("title") if isinstance(case, dict) else "") or result.kind)
+    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or result.kind)
+    incomplete = f"{one_line(folder)}/result.json is not a complete result of a grasp"
     try:
-        scene = _scene(result, title)
+        grasp = result.scene_as(GraspScene)
+    except StorageError as error:
+        raise StorageError(f"{incomplete}: {one_line(error)}") from None
+    try:
+        scene = _scene(result, grasp, title)
         return {name: _recording(result, scene, name) for name in SOURCES if f"{name}_upper" in result.quantities}
     except DAMAGE as error:
-        told = f"{one_line(folder)}/result.json is not a complete result of a grasp: {one_line(error)}"
-        raise StorageError(f"{told}; run the grasp again") from None
+        raise StorageError(f"{incomplete}: {one_line(error)}; run the grasp again") from None
 
 
-def _scene(result: Result, title: str) -> Scene:
-    details = result.details
-    size = np.asarray(details["block_size"], dtype=float)
-    layout = TaxelLayout.model_validate(details["matrix"])
-    known: dict[str, Any] = {"inclusions": true_inclusions(details), "notes": _notes(result)}
-    if details.get("noise"):
-        known["noise"] = float(details["noise"])
-    if "jaws" in details:
-        known["jaws"] = {side: Jaw.model_validate(details["jaws"][side]) for side in JAWS}
-    if details.get("jaw_places"):
-        known["places"] = np.array([details["jaw_places"][side] for side in JAWS], dtype=float)
-        displacement = result.quantities.get("displacement")
-        known["closing"] = 0.0 if displacement is None else float(displacement.value)
-    return plain_scene(title, size, layout, **known)
+def _scene(result: Result, grasp: GraspScene, title: str) -> PageScene:
+    check_extent(grasp.size)
+    displacement = result.quantities.get("displacement")
+    return PageScene(
+        title,
+        grasp,
+        closing=0.0 if displacement is None else float(displacement.value),
+        notes=_notes(result),
+        noise=grasp.noise if isinstance(grasp, LocalizedGrasp) and grasp.noise else ROUNDING_NOISE,
+    )
 
 
 def _notes(result: Result) -> tuple[str, ...]:
@@ -74,11 +74,11 @@ def _notes(result: Result) -> tuple[str, ...]:
     return failed + result.warnings
 
 
-def _recording(result: Result, scene: Scene, name: str) -> Recording:
+def _recording(result: Result, scene: PageScene, name: str) -> Recording:
     quantities = result.quantities
     if f"{name}_upper_history" in quantities:
         times = np.asarray(quantities[_TIMES[name]].value, dtype=float)
-        forces = np.stack([np.asarray(quantities[f"{name}_{side}_history"].value, dtype=float) for side in JAWS], axis=1)
+        forces = np.stack([quantities[f"{name}_{side}_history"].array for side in JAWS], axis=1)
     else:
         times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
         forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
@@ -86,7 +86,7 @@ def _recording(result: Result, scene: Scene, name: str) -> Recording:
     return Recording(scene, times, forces, valid, _closings(result, times), name)
 
 
-def checked_validity(forces: Array, times: Array, scene: Scene, saturated: Array | None = None) -> Array:
+def checked_validity(forces: Array, times: Array, scene: PageScene, saturated: Array | None = None) -> Array:
     """Which of forces (n, jaw, row, column) in N can be trusted: finite, no mistaken unit, and not ``saturated`` (n or 1, ...).
 
     Raises
@@ -113,8 +113,8 @@ def _closings(result: Result, times: Array) -> Array | None:
     """Closing of each jaw at some times in m, None if the result does not tell it."""
     quantities = result.quantities
     if "displacement_history" in quantities:
-        known = np.asarray(quantities["time_history"].value, dtype=float)
-        return np.interp(times, known, np.asarray(quantities["displacement_history"].value, dtype=float))
+        known = quantities["time_history"].array
+        return np.interp(times, known, quantities["displacement_history"].array)
     if "displacement" in quantities and len(times) == 1:
         return np.array([float(quantities["displacement"].value)])
     return None

@@ -14,7 +14,7 @@ from tactsim.errors import InputError
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
 from tactsim.live.sources.recorded import SOURCES, result_recordings
-from tactsim.live.sources.scene import Frame, Recording, Scene
+from tactsim.live.sources.scene import Frame, PageScene, Recording
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 
@@ -75,7 +75,7 @@ class Reference:
         return cls(tuple(results))
 
     @property
-    def scene(self) -> Scene:
+    def scene(self) -> PageScene:
         """Block and matrices."""
         return self.results[-1].any_recording.scene
 

@@ -17,9 +17,10 @@ from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.scene import EmbeddedShape, GraspScene
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import SOURCES, checked_validity
-from tactsim.live.sources.scene import Recording, Scene
-from tactsim.localization.readings import JAWS
+from tactsim.live.sources.scene import PageScene, Recording
 
 Array = np.ndarray
 OTHER_CASE = (
@@ -130,7 +131,7 @@ class Samples:
             found[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known, name)
         return found
 
-    def _scene(self, number: int, status: int) -> Scene:
+    def _scene(self, number: int, status: int) -> PageScene:
         told = self.told(number)
         title = f"{self.data.attrs.get('title') or self.place.name}: sample {number} ({told['split']})"
         notes: tuple[str, ...] = (
@@ -139,11 +140,7 @@ class Samples:
         experiment, same = self._experiment(number, status)
         if not same:
             notes += (OTHER_CASE,)
-        size, offsets = np.array(experiment.block.size), (experiment.upper.offset, experiment.lower.offset)
-        places = np.array([[*(size[:2] / 2 + offset), z] for offset, z in zip(offsets, (size[2], 0.0), strict=True)])
-        jaws = {side: experiment.jaw(side) for side in JAWS}
-        shapes = tuple(one.shape for one in experiment.unlike_tissue)
-        return Scene(title, size, experiment.matrix, shapes if same else None, jaws, places, notes=notes)
+        return PageScene(title, _untouched(experiment), truth_known=same, notes=notes)
 
     def _experiment(self, number: int, status: int) -> tuple[Grasp, bool]:
         """What was computed, drawn again: it depends on the sweep and the number only; and whether it is the same case still."""
@@ -153,3 +150,21 @@ class Samples:
             raise StorageError(f"sample {number} of {self.place.name} has no case of a grasp: {drawn.refusal or 'another kind'}")
         stored = str(self.data["case_id"].values[number])
         return drawn.case.experiment, status == PENDING or not stored or stored == drawn.case.case_id
+
+
+def _untouched(experiment: Grasp) -> GraspScene:
+    """The scene of a grasp whose jaws touch the block but do not press it."""
+    x, y, z = experiment.block.size
+    places = {}
+    for side, height in zip(JAWS, (z, 0.0), strict=True):
+        along, across = getattr(experiment, side).offset
+        places[side] = (x / 2 + along, y / 2 + across, height)
+    tissue = experiment.block.tissue
+    return GraspScene(
+        kind=experiment.kind,
+        block_size=experiment.block.size,
+        inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in experiment.inclusions),
+        jaws={side: experiment.jaw(side) for side in JAWS},
+        jaw_places=places,
+        matrix=experiment.matrix,
+    )

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError, shown
+from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.interface import ROUNDING_NOISE, Readings
-from tactsim.localization.readings import JAWS, named_taxels, silent_taxels, silent_words
+from tactsim.localization.readings import named_taxels, silent_taxels, silent_words
 from tactsim.mesh.solid import Inclusion
 
 Array = np.ndarray
@@ -29,17 +27,15 @@ LATEST = 1e12
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class PageScene:
     """What does not change from frame to frame.
 
     Attributes
     ----------
     title : in words, as the user or a sensor wrote it
-    size : (3,) of the undeformed block in m, which begins at the origin
-    layout : of the taxels on each jaw
-    inclusions : the true ones; None if they are not known, as with a real sensor
-    jaws : by side
-    places : (2, 3) in m of the middle of each jaw's face, the upper jaw first, at the closing ``closing`` in m of each jaw
+    grasp : block, inclusions, jaws and taxels; the places of the jaws are those at ``closing``
+    truth_known : whether the inclusions of ``grasp`` are known, as they are not with a real sensor
+    closing : of each jaw in m
     notes : what the user must know about these data
     noise : standard deviation of a reading in N
 
@@ -50,30 +46,39 @@ class Scene:
     """
 
     title: str
-    size: Array
-    layout: TaxelLayout
-    inclusions: tuple[Inclusion, ...] | None
-    jaws: Mapping[str, Jaw]
-    places: Array
+    grasp: GraspScene
+    truth_known: bool = True
     closing: float = 0.0
     notes: tuple[str, ...] = ()
     noise: float = ROUNDING_NOISE
 
+    @property
+    def size(self) -> Array:
+        """Size (3,) of the undeformed block in m, which begins at the origin."""
+        return self.grasp.size
+
+    @property
+    def layout(self) -> TaxelLayout:
+        """Taxels on each jaw."""
+        return self.grasp.matrix
+
+    @property
+    def inclusions(self) -> tuple[Inclusion, ...] | None:
+        """The true inclusions; None if they are not known."""
+        return self.grasp.true_inclusions if self.truth_known else None
+
     def __post_init__(self) -> None:
-        if np.shape(self.size) != (3,) or np.shape(self.places) != (len(JAWS), 3):
-            raise InputError(
-                f"a block of the extent {shown(self.size)} with jaws at {shown(self.places)}; needed: three lengths each"
-            )
         lengths = {"block_size": self.size, "matrix.pitch": self.layout.pitch, "matrix.size": self.layout.size}
         for name, value in lengths.items():
             if not np.all((np.asarray(value) >= SHORTEST_LENGTH) & (np.asarray(value) <= LONGEST_LENGTH)):
                 raise InputError(f"{name} is {shown(value)} m; allowed: {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m")
-        if not (np.abs([*self.places.ravel(), self.closing]) <= LONGEST_LENGTH).all():
-            raise InputError(f"a jaw is beyond {LONGEST_LENGTH:g} m or nowhere: {shown(self.places)} at {shown(self.closing)} m")
+        places = self.grasp.places
+        if not (np.abs([*places.ravel(), self.closing]) <= LONGEST_LENGTH).all():
+            raise InputError(f"a jaw is beyond {LONGEST_LENGTH:g} m or nowhere: {shown(places)} at {shown(self.closing)} m")
 
     def places_at(self, closing: float | None) -> Array:
         """Middle (2, 3) in m of both faces when each jaw has closed by ``closing`` in m; None leaves them where they are."""
-        places = self.places.copy()
+        places = self.grasp.places
         if closing is not None:
             places[:, 2] += np.array([1.0, -1.0]) * (self.closing - closing)
         return places
@@ -92,14 +97,21 @@ def check_extent(size: Array) -> None:
         raise InputError(f"block_size is {shown(np.asarray(size).tolist())} m; {told}")
 
 
-def plain_scene(title: str, size: Array, layout: TaxelLayout, **known: Any) -> Scene:
-    """A scene whose jaws, if nothing else is known, are a quarter wider than the block and touch it in its middle."""
+def plain_scene(title: str, size: Array, layout: TaxelLayout) -> PageScene:
+    """A scene of which no more is known: the jaws are a quarter wider than the block and touch it in its middle."""
     check_extent(size)
     settings = JawSettings()
     settings = settings.model_copy(update={"fillet": min(settings.fillet, FILLET * float(size.min()))})
-    jaws = {side: settings.jaw(side, size.tolist()) for side in JAWS}
-    places = np.array([[size[0] / 2, size[1] / 2, size[2]], [size[0] / 2, size[1] / 2, 0.0]])
-    return Scene(title, size, layout, **({"inclusions": None, "jaws": jaws, "places": places} | known))
+    x, y, z = map(float, size)
+    grasp = GraspScene(
+        kind="stream",
+        block_size=(x, y, z),
+        inclusions=(),
+        jaws={side: settings.jaw(side, size.tolist()) for side in JAWS},
+        jaw_places={"upper": (x / 2, y / 2, z), "lower": (x / 2, y / 2, 0.0)},
+        matrix=layout,
+    )
+    return PageScene(title, grasp, truth_known=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +148,7 @@ class Frame:
         """The forces as they are drawn and sent: NaN where the number is no force."""
         return np.where(np.abs(self.forces) <= LARGEST_FORCE, self.forces, np.nan)
 
-    def readings(self, scene: Scene) -> Readings:
+    def readings(self, scene: PageScene) -> Readings:
         """The frame as estimators take it.
 
         Raises
@@ -150,7 +162,7 @@ class Frame:
             scene.size,
             noise=scene.noise,
             valid=None if self.valid.all() else self.valid,
-            middle=scene.places[:, :2].mean(axis=0),
+            middle=scene.grasp.middle,
             closing=self.closing,
         )
 
@@ -167,7 +179,7 @@ class Recording:
     source : what the forces are, as in ``recorded.SOURCES``
     """
 
-    scene: Scene
+    scene: PageScene
     times: Array
     forces: Array
     valid: Array

@@ -10,6 +10,7 @@ from pydantic import Field
 from tactsim.errors import InputError
 from tactsim.localization.bands import Form
 from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.localization.readings import rising
 from tactsim.localization.section_image import depth_share
 from tactsim.units import format_quantity
 
@@ -71,9 +72,7 @@ class ThesisEstimator(Estimator):
             raise InputError(
                 "background: reference needs readings of the tissue without a lump; give a reference, or background: none"
             )
-        sums = readings.difference.sum(axis=0)
-        softer = bool(-sums.min() > sums.max())
-        return (-readings.difference if softer else readings.difference), softer
+        return rising(readings.difference)
 
     def _deviation(self, readings: Readings) -> float:
         """Standard deviation in N of the sum of both jaws at one place."""

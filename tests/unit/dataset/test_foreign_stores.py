@@ -9,11 +9,14 @@ from pathlib import Path
 
 import pytest
 import zarr
-from sweeps import small_store
+from sweeps import run_sweep, small_store, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.writing import set_attributes
 from tactsim.errors import StorageError
 
 
@@ -78,6 +81,19 @@ def test_what_is_no_data_set_is_told(kind: str, kept: Path, tmp_path: Path, caps
         with pytest.raises(StorageError, match=r"s\.zarr"):
             use(place)
     assert not (tmp_path / "x.h5").exists()
+
+
+def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_path: Path) -> None:
+    place = small_store(tmp_path)
+    whole = load(place)
+    left_out = "force"
+    shutil.rmtree(place / left_out)
+    set_attributes(Store.open(place, writing=True, damaged=True), arrays=sorted(set(map(str, whole.data_vars)) - {left_out}))
+    assert set(load(place).data_vars) == set(whole.data_vars) - {left_out}
+    (finding,) = (finding for finding in check(place).findings if finding.kind == "form")
+    assert f"which did not store {left_out}; it can be read" in finding.words
+    with pytest.raises(StorageError, match=f"did not store {left_out}; .*begin anew with another --out"):
+        run_sweep(load_sweep(sweep_file(tmp_path)), place, resume=True)
 
 
 def test_wrong_names_are_bad_input(kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

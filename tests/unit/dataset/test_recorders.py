@@ -81,7 +81,8 @@ def grasp_result(steps: int) -> tuple[Grasp, Result]:
         if steps > 1:
             history = [(factor * t * taxels).tolist() for t in times]
             quantities[f"taxel_force_{side}_history"] = Quantity(history, "N", "")
-        quantities |= {f"{part}_force_{side}": Quantity(0.25, "N", "") for part in ("gap", "outside")}
+        quantities[f"gap_force_{side}"] = Quantity(0.25 if side == "upper" else 0.125, "N", "")
+        quantities[f"outside_force_{side}"] = Quantity(0.5 if side == "upper" else 0.375, "N", "")
     return experiment, Result("grasp", Status.CONVERGED, "", quantities, steps=tuple(records), units=units)
 
 
@@ -95,7 +96,8 @@ def test_taxels_are_stored_at_even_times_whatever_the_steps(steps: int) -> None:
     np.testing.assert_allclose(found["taxel_force"], expected, rtol=1e-12)  # linear histories are met to round-off
     np.testing.assert_allclose(found["taxel_pressure"], expected / experiment.matrix.area, rtol=1e-12)
     np.testing.assert_allclose(found["displacement"], 1e-3 * found["time_s"], rtol=1e-12)
-    assert found["outside_force"].tolist() == [0.5, 0.5]
+    assert found["gap_force"].tolist() == [0.25, 0.125]
+    assert found["outside_force"].tolist() == [0.5, 0.375]
     sizes = {variable.name: variable.sizes for variable in recorder.readings_of(experiment)}
     assert {name: np.shape(value) for name, value in found.items()} == sizes
 
@@ -132,7 +134,7 @@ def test_a_grasp_is_stored_with_clean_and_noisy_readings() -> None:
     block = decoded(computed(load_sweep(CASES / "sweep_lumps.yaml", smaller).text, [0]))
     assert block["status"].tolist() == [1], block["reason"]
     assert block["taxel_force"].shape == (1, 1, 2, 2, 3)
-    total = block["taxel_force"][0, 0].sum(axis=(1, 2)) + block["outside_force"][0]
+    total = block["taxel_force"][0, 0].sum(axis=(1, 2)) + block["gap_force"][0] + block["outside_force"][0]
     np.testing.assert_allclose(total[0], block["reaction_force"][0, 0], rtol=1e-8)
     assert np.corrcoef(block["taxel_force"].ravel(), block["read_force"].ravel())[0, 1] > 0.95
     assert json.dumps(block["reason"].tolist()) == '["end of the history"]'

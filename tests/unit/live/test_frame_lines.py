@@ -10,17 +10,17 @@ from live_pages import description, frame_line, line, taxel_forces
 
 from tactsim.errors import InputError
 from tactsim.live.sources.frame_lines import LineSplitter, read_line
-from tactsim.live.sources.scene import Frame, Scene
+from tactsim.live.sources.scene import Frame, PageScene
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene() -> PageScene:
     found = read_line(line(description(title="hand")), None)
-    assert isinstance(found, Scene)
+    assert isinstance(found, PageScene)
     return found
 
 
-def test_a_description_and_a_frame_are_read(scene: Scene) -> None:
+def test_a_description_and_a_frame_are_read(scene: PageScene) -> None:
     assert (scene.title, scene.layout.rows, scene.size.tolist()) == ("hand", 3, [40e-3, 40e-3, 20e-3])
     found = read_line(line(frame_line(1.5, closing=1e-3)), scene)
     assert isinstance(found, Frame)
@@ -32,12 +32,12 @@ def test_a_description_and_a_frame_are_read(scene: Scene) -> None:
 def test_lengths_may_have_units() -> None:
     matrix = {"rows": 2, "columns": 3, "pitch": "10 mm", "size": "9 mm"}
     found = read_line(line({**description(), "matrix": matrix, "block_size": ["4 cm", "40 mm", 0.02]}), None)
-    assert isinstance(found, Scene)
+    assert isinstance(found, PageScene)
     assert (found.layout.pitch, found.size[0]) == (0.01, 0.04)
 
 
 @pytest.mark.parametrize("nothing", [None, "NaN", "nan", float("nan"), float("inf"), 10**400])
-def test_a_taxel_without_a_number_is_dead_and_told(scene: Scene, nothing: object) -> None:
+def test_a_taxel_without_a_number_is_dead_and_told(scene: PageScene, nothing: object) -> None:
     content = frame_line()
     content["taxel_force_lower"][1][2] = nothing
     found = read_line(json.dumps(content).encode(), scene)
@@ -47,7 +47,7 @@ def test_a_taxel_without_a_number_is_dead_and_told(scene: Scene, nothing: object
     assert np.isfinite(found.readings(scene).filled).all()
 
 
-def test_a_saturated_taxel_is_not_trusted(scene: Scene) -> None:
+def test_a_saturated_taxel_is_not_trusted(scene: PageScene) -> None:
     found = read_line(line(frame_line(saturated_upper=[[True, False, False], [False] * 3, [0, 0, 0]])), scene)
     assert isinstance(found, Frame)
     assert np.argwhere(~found.valid).tolist() == [[0, 0, 0]]
@@ -74,7 +74,7 @@ def test_a_saturated_taxel_is_not_trusted(scene: Scene) -> None:
         (line({**description(), "block_size": [0.04, -1, 0.02]}), "description: block_size.1"),
     ],
 )
-def test_a_malformed_line_says_what_and_where(scene: Scene, content: bytes, words: str) -> None:
+def test_a_malformed_line_says_what_and_where(scene: PageScene, content: bytes, words: str) -> None:
     with pytest.raises(InputError, match=r"^[^\n]+$") as caught:
         read_line(content, scene)
     assert words in str(caught.value)

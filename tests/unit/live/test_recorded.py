@@ -82,7 +82,7 @@ def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
 
 
 def test_an_inclusion_of_the_tissue_itself_is_no_inclusion(tmp_path: Path) -> None:
-    folder = change(grasp_folder(tmp_path / "a"), ("details", "unlike_tissue"), [False])
+    folder = change(grasp_folder(tmp_path / "a"), ("scene", "inclusions", 0, "unlike_tissue"), False)
     assert result_recordings(folder)["taxel_force"].scene.inclusions == ()
     assert Reference.open([str(folder)]).notes == ()
     (note,) = Reference.open([str(grasp_folder(tmp_path / "b"))]).notes
@@ -103,12 +103,12 @@ def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None
     ]
     assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm"]
     assert found["inclusions"][1]["line"] == [[0, 20, 10], [40, 20, 10]]
-    change(folder, ("details", "estimates"), [{"kind": "sphere"}])
+    change(folder, ("scene", "estimates"), [{"kind": "sphere"}])
     with pytest.raises(StorageError, match="not a complete result of a localization"):
         opened_content(folder)
 
 
-def change(folder: Path, place: tuple[str, ...], value: object) -> Path:
+def change(folder: Path, place: tuple[str | int, ...], value: object) -> Path:
     """Overwrites something in result.json."""
     path = folder / "result.json"
     content = json.loads(path.read_text())
@@ -127,13 +127,13 @@ def change(folder: Path, place: tuple[str, ...], value: object) -> Path:
         (("quantities", "taxel_force_upper_history", "value"), "x"),
         (("quantities", "time_history", "value"), [0.1, 0.2, 0.2, 0.3]),
         (("quantities", "time_history", "value"), [0.1]),
-        (("details", "matrix", "rows"), -1),
-        (("details", "matrix", "rows"), 4),
-        (("details", "block_size"), None),
-        (("details", "jaws"), {}),
+        (("scene", "matrix", "rows"), -1),
+        (("scene", "matrix", "rows"), 4),
+        (("scene", "block_size"), None),
+        (("scene", "jaws"), {}),
     ],
 )
-def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str, ...], value: object) -> None:
+def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str | int, ...], value: object) -> None:
     folder = change(grasp_folder(tmp_path / "a"), place, value)
     with pytest.raises(StorageError, match=r"is not a complete result of a grasp|value: .*nested list of numbers"):
         result_recordings(folder)
@@ -266,7 +266,7 @@ def test_samples_of_another_version_are_shown_without_inclusions(tmp_path: Path)
 
 def test_the_noise_is_that_of_the_result_unless_another_is_given(tmp_path: Path) -> None:
     rounded = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
-    folder = change(grasp_folder(tmp_path / "b"), ("details", "noise"), 1e-3)
+    folder = change(localized_folder(tmp_path / "b"), ("scene", "noise"), 1e-3)
     told = result_recordings(folder)["taxel_force"]
     thesis = BY_NAME["thesis"]
     assert frame_readings(rounded.scene, rounded.frame(0), thesis, None).noise == pytest.approx(0.1 / 12**0.5)

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pretence import pretended_result
+from pretence import PretendedScene, pretended_result
 
-from tactsim.errors import StorageError
+from tactsim.errors import InputError, StorageError
+from tactsim.registry import register
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.document import document_text, parse_document, plain_json, result_of
 
@@ -22,7 +23,7 @@ def test_the_outside_contract() -> None:
     assert {"schema_version", "case_id", "status", "reason", "quantities", "assumptions", "warnings", "timing", "steps"} <= set(
         content
     )
-    assert content["schema_version"] == 1
+    assert content["schema_version"] == 2
     assert content["status"] == "failed"
     assert content["quantities"]["displacement"] == {"value": 2e-4, "unit": "m", "description": "displacement of the annulus"}
     assert content["quantities"]["taxel_force_upper"]["value"] == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
@@ -30,10 +31,40 @@ def test_the_outside_contract() -> None:
 
 
 def test_a_result_comes_back_as_it_was() -> None:
-    result = pretended_result(Status.CONVERGED, "done", RECORDS)
+    register(PretendedScene)
+    result = replace(pretended_result(Status.CONVERGED, "done", RECORDS), title="A title")
     again = result_of(parse_document(document_text(result, "x"), "result.json"))
     plain = {name: Quantity(np.asarray(q.value).tolist(), q.unit, q.description) for name, q in result.quantities.items()}
-    assert again == replace(result, quantities=plain, frames=(), details={"profile": [1.0, 2.0]})
+    assert again == replace(result, quantities=plain, frames=())
+
+
+def test_a_scene_that_is_not_that_of_the_kind_is_told_when_it_is_asked_for() -> None:
+    register(PretendedScene)
+    result = pretended_result(Status.CONVERGED, "done", RECORDS)
+    content = json.loads(document_text(result, "x"))
+    assert content["scene"] == {"profile": [1.0, 2.0]}
+    for scene, words in (({"profile": "x"}, r"scene\.profile: .*tuple"), ({}, r"scene\.profile: Field required")):
+        again = result_of(parse_document(json.dumps(content | {"scene": scene}), "result.json"))
+        assert again.history("displacement").tolist() == [1e-4, 2e-4]
+        with pytest.raises(StorageError, match=f"{words}.*; run the case again"):
+            again.scene_as(PretendedScene)
+        with pytest.raises(StorageError, match="is not written"):
+            document_text(again, "x")
+    foreign = result_of(parse_document(json.dumps(content | {"kind": "unheard_of"}), "result.json"))
+    with pytest.raises(StorageError, match="unknown scene kind 'unheard_of'"):
+        foreign.scene_as(PretendedScene)
+    with pytest.raises(InputError, match="'pretence' holds no PretendedScene"):
+        replace(result, scene=None).scene_as(PretendedScene)
+
+
+def test_of_a_result_of_an_earlier_version_the_numbers_are_read() -> None:
+    content = json.loads(document_text(pretended_result(Status.CONVERGED, "done", RECORDS), "x"))
+    del content["scene"], content["title"]
+    earlier = content | {"schema_version": 1, "details": {"title": "A title", "profile": [1.0, 2.0]}}
+    result = result_of(parse_document(json.dumps(earlier), "result.json"))
+    assert result.quantities["displacement"].value == 2e-4
+    with pytest.raises(StorageError, match=r"earlier version of tactsim \(schema_version 1\).*run the case again"):
+        result.scene_as(PretendedScene)
 
 
 def test_numbers_that_are_not_finite_become_null_with_a_warning() -> None:
@@ -70,9 +101,9 @@ def test_numpy_values_are_written_as_numbers() -> None:
         ('{"schema_version": NaN}', "NaN is not a finite number of JSON"),
         ("[]", "not a result of tactsim"),
         ("{}", "not a result of tactsim"),
-        ('{"schema_version": 2}', "this tactsim reads 1, update tactsim"),
-        ('{"schema_version": 1}', "is damaged: case_id"),
-        ('{"schema_version": 1, "case_id": "x", "kind": "k", "status": "fine"}', "is damaged: status"),
+        ('{"schema_version": 3}', "this tactsim reads 2, update tactsim"),
+        ('{"schema_version": 2}', "is damaged: case_id"),
+        ('{"schema_version": 2, "case_id": "x", "kind": "k", "status": "fine"}', "is damaged: status"),
     ],
 )
 def test_what_is_no_result_is_told(text: str, words: str) -> None:

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from tactsim.experiments.annulus.scene import AnnulusDesignScene
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -38,7 +39,7 @@ class AnnulusDesignFigures(ResultFigures):
 
 def annulus_design_figure(result: Result) -> Figure:
     """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
-    times = result.details["times"]
+    times = result.scene_as(AnnulusDesignScene).times
     shown = list(range(len(times))) if len(times) <= PANELS else [0, len(times) // 2, len(times) - 1]
     force = np.array(result.quantities["force_to_touch"].value, dtype=float)
     largest = 10.0 ** np.ceil(np.log10(np.nanmax(force[:, :, shown])))
@@ -63,17 +64,18 @@ def annulus_design_figure(result: Result) -> Figure:
 
 
 def _title(result: Result) -> str:
-    return str(result.details.get("title") or "") or "Annular sensor: where the tissue touches"
+    return result.title or "Annular sensor: where the tissue touches"
 
 
 def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     """The coloured force (recess, ratio), the contours of its limits, and hatching outside small displacements."""
-    ratio, recess = np.array(result.details["ratios"]), 1e3 * np.array(result.details["recesses"])
+    scene = result.scene_as(AnnulusDesignScene)
+    ratio, recess = np.array(scene.ratios), 1e3 * np.array(scene.recesses)
     drawn = axis.pcolormesh(ratio, recess, force, norm=norm, cmap="viridis", shading="gouraud", rasterized=True)
     for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
         if force.min() < limit < force.max():
             axis.contour(ratio, recess, np.log(force), levels=[np.log(limit)], colors=[colour], linewidths=2)
-    relative, end = np.array(result.quantities["touch_displacement_over_radius"].value).T, result.details["small_displacement"]
+    relative, end = np.array(result.quantities["touch_displacement_over_radius"].value).T, scene.small_displacement
     if relative.max() > end:
         levels = [end, max(float(relative.max()), 2 * end) * 1.01]
         hatched = axis.contourf(ratio, recess, relative, levels=levels, colors="none", hatches=["///"])
@@ -89,14 +91,14 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
 
 def _draw_point(axis: Axes, result: Result, time: float) -> None:
     """The design point; with its own force to touch where the time is its own."""
-    point = result.details["design_point"]
-    axis.plot(point["ratio"], 1e3 * point["recess"], "*", color=POINT_COLOUR, markeredgecolor="white", markersize=13, zorder=5)
-    if time != point["time"]:
+    point = result.scene_as(AnnulusDesignScene).design_point
+    axis.plot(point.ratio, 1e3 * point.recess, "*", color=POINT_COLOUR, markeredgecolor="white", markersize=13, zorder=5)
+    if time != point.time:
         return
     needed, rise = (_three_digits(result, name) for name in ("point_force_to_touch", "point_rise"))
     axis.annotate(
-        f"touches at {needed};\n{format_quantity(point['force'], 'N')} lifts it by {rise}",
-        (point["ratio"], 1e3 * point["recess"]),
+        f"touches at {needed};\n{format_quantity(point.force, 'N')} lifts it by {rise}",
+        (point.ratio, 1e3 * point.recess),
         (12, 0),
         textcoords="offset points",
         va="center",
@@ -112,7 +114,8 @@ def _three_digits(result: Result, name: str) -> str:
 
 
 def _limits(result: Result) -> tuple[float, float]:
-    return result.details["recommended_force"], result.details["largest_force"]
+    scene = result.scene_as(AnnulusDesignScene)
+    return scene.recommended_force, scene.largest_force
 
 
 def _legend(result: Result) -> list[Any]:
@@ -121,8 +124,9 @@ def _legend(result: Result) -> list[Any]:
         Line2D([], [], color=colour, linewidth=2, label=f"{name}, {format_quantity(limit, 'N')}: touched below the line")
         for name, limit, colour in zip(names, _limits(result), LIMIT_COLOURS, strict=True)
     ]
-    point = result.details["design_point"]
-    where = f"ri/ro = {point['ratio']:g}, L = {format_quantity(point['recess'], 'm')}"
+    scene = result.scene_as(AnnulusDesignScene)
+    point = scene.design_point
+    where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
-    words = f"displacement at touch beyond {result.details['small_displacement']:g} ro: outside small-displacement theory"
+    words = f"displacement at touch beyond {scene.small_displacement:g} ro: outside small-displacement theory"
     return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=words)]

@@ -27,13 +27,13 @@ class ClosedFormFigures(ResultFigures):
 
 def closed_form_figure(result: Result) -> Figure:
     """Histories of a closed form, shaded where the force pulls."""
-    time = np.array([step.values["time"] for step in result.steps])
-    pulls = np.array([step.values["force"] for step in result.steps]) < 0
+    time = result.history("time")
+    pulls = result.history("force") < 0
     with styled():
         figure = new_figure(6.4, 5.2)
         axes = figure.subplots(len(HISTORIES), 1, sharex=True)
         for axis, (name, words, unit) in zip(axes, HISTORIES, strict=True):
-            values = np.array([step.values[name] for step in result.steps])
+            values = result.history(name)
             factor, prefixed = scale_of(float(np.abs(values).max()), unit)
             axis.plot(time, factor * values, color=COLOUR)
             axis.axhline(0.0, color="0.6", linewidth=0.6)
@@ -46,6 +46,5 @@ def closed_form_figure(result: Result) -> Figure:
         if pulls.any():
             axes[0].legend(fontsize=8, loc="upper left")
         axes[-1].set(xlabel="time in s", xlim=(0, time[-1]))
-        title = str(result.details.get("title") or "") or "Annulus on viscoelastic tissue, closed form"
-        entitle(figure, title)
+        entitle(figure, result.title or "Annulus on viscoelastic tissue, closed form")
     return figure

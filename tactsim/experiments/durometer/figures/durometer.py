@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.figures.indentation import section_beside
 from tactsim.plotting.canvas import png, scale_of
 from tactsim.plotting.result_figures import Drawing, ResultFigures
@@ -31,15 +32,15 @@ class DurometerFigures(ResultFigures):
 
 def durometer_figure(result: Result) -> Figure:
     """Section (if the result has fields) and forces over the depth."""
-    return section_beside(result, _draw_balance, str(result.details.get("title") or "") or "Durometer")
+    return section_beside(result, _draw_balance, result.title or "Durometer")
 
 
 def _draw_balance(axis: Axes, result: Result) -> None:
     """Forces of tissue, spring and Hertz over the depth, and the readings along the top."""
-    depth, tissue, hertz = (_history(result, name) for name in ("displacement", "reaction_force", "hertz_force"))
-    scale = result.details["scale"]
-    whole = np.array([0.0, scale["travel"]])
-    spring = scale["force_at_zero"] + scale["force_per_unit"] * 100 * (1 - whole / scale["travel"])
+    depth, tissue, hertz = (result.history(name) for name in ("displacement", "reaction_force", "hertz_force"))
+    scale = result.scene_as(DurometerScene).scale
+    whole = np.array([0.0, scale.travel])
+    spring = scale.force_at_zero + scale.force_per_unit * 100 * (1 - whole / scale.travel)
     top = ROOM * max(spring.max(), min(float(tissue.max()), 2 * spring.max()))
     factor, unit = scale_of(top, "N")
     axis.plot(1e3 * depth, factor * tissue, ".-", color=TISSUE_COLOUR, markersize=4, label="tissue, simulated")
@@ -71,7 +72,3 @@ def _mark_reading(axis: Axes, result: Result, factor: float) -> None:
     )
     axis.plot(1e3 * depth, factor * force, "o", color=TISSUE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
     axis.set_title(f"reading {reading:.1f} ({low:.1f} to {high:.1f})", loc="left")
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -10,12 +10,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.stats import rankdata
 
+from tactsim.experiments.durometer.elastomers import Elastomer
+from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 
 Array = np.ndarray
-FAILED_COLOUR, LINE_COLOUR = "#b00020", "0.6"
+LINE_COLOUR = "0.6"
 MARKERS = "os^Dv<>P"
 KILO = 1e3
 NEAR = 4.0
@@ -43,18 +46,14 @@ def elastomer_ranking_figure(result: Result) -> Figure:
         _draw_readings(axes[0], result, colours)
         _draw_moduli(axes[1], result, colours)
         _draw_ranks(axes[2], result, colours)
-        title = str(result.details.get("title") or "") or "Elastomers by durometer, hand and sensor"
-        entitle(figure, title)
-        if result.status is not Status.CONVERGED:
-            words = f"{str(result.status).upper()}: {result.reason}"[:150]
-            figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
-            figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+        entitle(figure, result.title or "Elastomers by durometer, hand and sensor")
+        mark_failure(figure, result)
     return figure
 
 
 def _draw_readings(axis: Axes, result: Result, colours: Array) -> None:
     """One marker per shape and elastomer; on the line the durometer would have read what the sensor foretells."""
-    printed = np.array([one["durometer"] for one in _elastomers(result)])
+    printed = np.array([one.durometer for one in _elastomers(result)])
     readings = _by_shape(result, "predicted_reading")
     best = np.nan_to_num(np.fmax.reduce(readings, axis=0))
     top = 1.12 * max(printed.max(), best.max())
@@ -93,9 +92,9 @@ def _draw_ranks(axis: Axes, result: Result, colours: Array) -> None:
     """Ranks by each test, ties at their mean, joined from test to test."""
     elastomers = _elastomers(result)
     columns = {
-        "durometer": np.array([one["durometer"] for one in elastomers]),
-        "hand": np.array([one["hand"] for one in elastomers]),
-        "sensor": np.array([one["threshold_pressure"] for one in elastomers]),
+        "durometer": np.array([one.durometer for one in elastomers]),
+        "hand": np.array([one.hand for one in elastomers]),
+        "sensor": np.array([one.threshold_pressure for one in elastomers]),
     }
     for name, values in zip(_shapes(result), _by_shape(result, "predicted_reading"), strict=True):
         columns["predicted,\n" + name.replace(" ", "\n")] = values
@@ -121,22 +120,22 @@ def _mark_ties(axis: Axes, ranks: Array) -> None:
                 axis.text(column + BESIDE, rank - 0.3, f"{count} tied", fontsize=7.5, color=FAILED_COLOUR)
 
 
-def _elastomers(result: Result) -> list[dict[str, Any]]:
-    return list(result.details["elastomers"])
+def _elastomers(result: Result) -> tuple[Elastomer, ...]:
+    return result.scene_as(ElastomerRankingScene).elastomers
 
 
 def _names(result: Result) -> list[str]:
-    return [str(one["name"]) for one in _elastomers(result)]
+    return [one.name for one in _elastomers(result)]
 
 
 def _shapes(result: Result) -> list[str]:
     """Names of the shapes of which every elastomer has its step."""
-    return [str(one["name"]) for one in result.details["shapes"]][: _finished(result)]
+    return [one.name for one in result.scene_as(ElastomerRankingScene).shapes][: _finished(result)]
 
 
 def _finished(result: Result) -> int:
     """Number of shapes of which every elastomer has its step."""
-    return len(result.steps) // max(1, len(result.details.get("elastomers", ())))
+    return len(result.steps) // max(1, len(_elastomers(result)))
 
 
 def _by_shape(result: Result, name: str) -> Array:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.experiments.film.figures.film_test import COEFFICIENTS
+from tactsim.experiments.film.scene import FilmCreepScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -37,28 +38,28 @@ def film_creep_figure(result: Result) -> Figure:
         _draw_coefficients(coefficients, result)
         for axis in (creep, coefficients):
             despined(axis)
-        title = str(result.details.get("title") or "Creep of a piezoresistive film")
-        entitle(figure, title)
+        entitle(figure, result.title or "Creep of a piezoresistive film")
     return figure
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:
-    tests = result.details["tests"]
+    scene = result.scene_as(FilmCreepScene)
+    tests = scene.tests
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(tests)))
     for test, step, colour in zip(tests, result.steps, colours, strict=False):
         values = step.values
-        time, stress = np.asarray(test["time"]), values["force"] / float(result.details["area"])
+        time, stress = np.array(test.time), values["force"] / scene.area
         delayed = -np.expm1(-values["delayed"] / values["viscosity"] * time) * stress / values["delayed"]
-        axis.plot(time, PER_CENT * np.asarray(test["strain"]), ".", color=colour, markersize=2.0, alpha=0.5)
+        axis.plot(time, PER_CENT * np.array(test.strain), ".", color=colour, markersize=2.0, alpha=0.5)
         axis.plot(time, PER_CENT * (stress / values["instantaneous"] + delayed), color=colour, label=f"{values['force']:.3g} N")
     axis.set(xlabel="time in s", ylabel="strain in %", title="Creep, dots, and fits, lines", ylim=(0, None))
     axis.legend(loc="lower right", ncols=2)
 
 
 def _draw_coefficients(axis: Axes, result: Result) -> None:
-    forces = np.array([step.values["force"] for step in result.steps])
+    forces = result.history("force")
     for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
-        values = np.array([step.values[name] for step in result.steps]) / 1e6
+        values = result.history(name) / 1e6
         widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
         axis.errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
         if f"{name}_slope" in result.quantities:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -48,8 +49,7 @@ def film_test_figure(result: Result) -> Figure:
         _draw_coefficients(axes[1, 1], result)
         for axis in axes.flat:
             despined(axis)
-        title = str(result.details.get("title") or "Piezoresistive film under constant forces")
-        entitle(figure, title)
+        entitle(figure, result.title or "Piezoresistive film under constant forces")
     return figure
 
 
@@ -58,10 +58,9 @@ def film_surface_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(7.0, 5.5)
         axis: Any = figure.add_subplot(projection="3d")
-        forces, times = np.meshgrid(_values(result, "forces"), _values(result, "times"))
-        axis.plot_surface(
-            forces, times, np.log10(_values(result, "resistance")), cmap=colormaps["viridis"], linewidth=0.2, edgecolor="#444444"
-        )
+        forces, times = np.meshgrid(result.quantities["forces"].array, result.quantities["times"].array)
+        resistance = np.log10(result.quantities["resistance"].array)
+        axis.plot_surface(forces, times, resistance, cmap=colormaps["viridis"], linewidth=0.2, edgecolor="#444444")
         axis.set_xlabel("force in N")
         axis.set_ylabel("time since the force began in s")
         axis.set_zlabel("$\\log_{10}$ of the resistance in ohm")
@@ -71,15 +70,11 @@ def film_surface_figure(result: Result) -> Figure:
     return figure
 
 
-def _values(result: Result, name: str) -> Array:
-    return np.asarray(result.quantities[name].value, dtype=float)
-
-
 def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
-    forces, read = _values(result, "forces"), _values(result, "reading_resistance")
-    when = f"{float(result.details['reading_time']):g} s after the force began"
+    forces, read = result.quantities["forces"].array, result.quantities["reading_resistance"].array
+    when = f"{result.scene_as(FilmTestScene).reading_time:g} s after the force began"
     resistance.semilogy(forces, read / 1e3, "o-", color=DATA, markersize=3, label="film and contacts")
-    resistance.semilogy(forces, _values(result, "reading_film_resistance") / 1e3, "--", color=LINE, label="film alone")
+    resistance.semilogy(forces, result.quantities["reading_film_resistance"].array / 1e3, "--", color=LINE, label="film alone")
     resistance.legend(loc="upper right")
     resistance.set(xlabel="force in N", ylabel="resistance in kΩ", title=f"Resistance, {when}")
     conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3, label="film")
@@ -92,7 +87,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:
-    forces, times, resistance = (_values(result, name) for name in ("forces", "times", "resistance"))
+    forces, times, resistance = (result.quantities[name].array for name in ("forces", "times", "resistance"))
     chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):
@@ -105,8 +100,9 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 
 
 def _draw_coefficients(axis: Axes, result: Result) -> None:
-    forces = _values(result, "forces")
+    forces = result.quantities["forces"].array
+    coefficients = result.scene_as(FilmTestScene).coefficients
     for name, label, colour, style in COEFFICIENTS:
-        axis.plot(forces, np.asarray(result.details["coefficients"][name]) / 1e6, style, color=colour, label=label)
+        axis.plot(forces, np.array(coefficients[name]) / 1e6, style, color=colour, label=label)
     axis.set(xlabel="force in N", ylabel="coefficient", title="Standard linear solid over force", ylim=(0, None))
     axis.legend(loc="upper left")

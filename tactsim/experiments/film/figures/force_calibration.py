@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, StepRecord
+from tactsim.results import Result
 
 Array = np.ndarray
 LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
@@ -35,16 +37,15 @@ def force_calibration_figure(result: Result) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
         _draw_line(upper, result)
         _draw_errors(lower, result)
-        title = str(result.details.get("title") or "") or "Calibration of a force sensor"
-        entitle(figure, title)
+        entitle(figure, result.title or "Calibration of a force sensor")
     return figure
 
 
 def _draw_line(axis: Axes, result: Result) -> None:
     """Conductance in mS over force in N, one line per sensor."""
-    confidence = f"{100 * float(result.details.get('confidence', np.nan)):.3g} % band of the line"
-    for number, steps in enumerate(_sensors(result)):
-        force, line, low, high, conductance, used = (_history(steps, name) for name in COLUMNS)
+    confidence = f"{100 * result.scene_as(CalibrationScene).confidence:.3g} % band of the line"
+    for number, sensor in enumerate(_sensors(result)):
+        force, line, low, high, conductance, used = (sensor.history(name) for name in COLUMNS)
         order = np.argsort(force, kind="stable")
         labels = (confidence, _equation(result), "readings") if number == 0 else (None, None, None)
         low, line, high, conductance = (MILLISIEMENS * values for values in (low, line, high, conductance))
@@ -70,14 +71,14 @@ def _equation(result: Result) -> str:
 
 def _draw_errors(axis: Axes, result: Result) -> None:
     """Force read less force applied, and the bands of the lines in force, in percent of full scale."""
-    scale = float(result.details.get("full_scale", np.nan))
+    scale = result.scene_as(CalibrationScene).full_scale
     slopes = np.atleast_1d(result.quantities["slope"].value)
-    for slope, steps in zip(slopes, _sensors(result), strict=True):
-        force, line, low, high = (_history(steps, name) for name in COLUMNS[:4])
+    for slope, sensor in zip(slopes, _sensors(result), strict=True):
+        force, line, low, high = (sensor.history(name) for name in COLUMNS[:4])
         order = np.argsort(force, kind="stable")
         low, high = (100 * (end - line)[order] / slope / scale for end in (low, high))
         axis.fill_between(force[order], low, high, color=LINE_COLOUR, alpha=0.3 / np.sqrt(slopes.size), linewidth=0)
-        axis.plot(force, 100 * _history(steps, "force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
+        axis.plot(force, 100 * sensor.history("force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
     axis.axhline(0.0, color=LINE_COLOUR, linewidth=1)
     for name, extreme in (("linearity_positive", np.max), ("linearity_negative", np.min)):
         _draw_limit(axis, 100 * float(extreme(result.quantities[name].value)))
@@ -100,10 +101,10 @@ def _draw_limit(axis: Axes, limit: float) -> None:
     )
 
 
-def _sensors(result: Result) -> list[list[StepRecord]]:
-    """The steps of each sensor."""
+def _sensors(result: Result) -> list[Result]:
+    """The result of each sensor alone."""
     numbers = sorted({step.values["sensor"] for step in result.steps})
-    return [[step for step in result.steps if step.values["sensor"] == number] for number in numbers]
+    return [replace(result, steps=tuple(step for step in result.steps if step.values["sensor"] == k)) for k in numbers]
 
 
 def _width(result: Result) -> float:
@@ -112,7 +113,3 @@ def _width(result: Result) -> float:
 
 def _size(result: Result) -> float:
     return 3.5 if np.ndim(result.quantities["slope"].value) == 0 else 1.5
-
-
-def _history(steps: list[StepRecord], name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in steps])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
@@ -31,7 +30,7 @@ class SensorResponseFigures(ResultFigures):
 
 def sensor_response_figure(result: Result) -> Figure:
     """Applied force with the three readings, and each reading's error."""
-    columns = {name: np.array([step.values[name] for step in result.steps]) for name in result.units}
+    columns = {name: result.history(name) for name in result.units}
     time, force = columns["time"], columns["force"]
     with styled():
         figure = new_figure(10.0, 6.0)
@@ -49,6 +48,5 @@ def sensor_response_figure(result: Result) -> Figure:
         above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         for axis in (above, below):
             despined(axis)
-        title = str(result.details.get("title") or "Response of a piezoresistive sensor")
-        entitle(figure, title)
+        entitle(figure, result.title or "Response of a piezoresistive sensor")
     return figure

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import Any, Literal
 
 from matplotlib.figure import Figure
@@ -10,19 +9,17 @@ from matplotlib.figure import Figure
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
 from tactsim.experiments.grasp.figures.maps import draw_maps
 from tactsim.experiments.grasp.figures.moment import shown_moment
-from tactsim.experiments.grasp.figures.parts import grasp_of
+from tactsim.experiments.grasp.figures.parts import loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, grasp_view
 from tactsim.experiments.localization.figures.parts import has_views
 from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
-FAILED_COLOUR = "#b00020"
-LETTERS_PER_INCH = 11
-"""Of the status across the foot."""
 PANEL_HEIGHT = 2.1
 """Of a history, in inches."""
 
@@ -55,7 +52,7 @@ class GraspFigures(ResultFigures):
 
 def grasp_figure(result: Result) -> Figure:
     """Overview: the section above the maps, and the histories beside them."""
-    grasp, timed = grasp_of(result), has_history(result)
+    grasp, timed = loaded_taxels(result), has_history(result)
     with styled():
         figure = new_figure(14.0 if timed else 8.6, 9.4 if result.frames else 5.2)
         parts: Any = figure.subfigures(1, 2, width_ratios=(1.62, 1)) if timed else (figure,)
@@ -74,7 +71,7 @@ def section_figure(result: Result) -> Figure:
     """The section alone."""
     with styled():
         figure = new_figure(9.0, 5.2)
-        draw_section(figure.add_subplot(), result, grasp_of(result))
+        draw_section(figure.add_subplot(), result, loaded_taxels(result))
         _entitle(figure, result)
     return figure
 
@@ -84,7 +81,7 @@ def maps_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(9.0, 5.0)
         axes = figure.subplots(1, 2)
-        draw_maps((axes[0], axes[1]), result, grasp_of(result))
+        draw_maps((axes[0], axes[1]), result, loaded_taxels(result))
         _entitle(figure, result)
     return figure
 
@@ -101,10 +98,5 @@ def history_figure(result: Result) -> Figure:
 
 def _entitle(figure: Figure, result: Result) -> None:
     """The title, and across the foot of a run that did not end as it should its status and reason."""
-    entitle(figure, str(result.details.get("title") or "") or "Grasp")
-    if result.status is not Status.CONVERGED:
-        words = f"{str(result.status).upper()}; the last accepted step is shown: {result.reason}"
-        lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=2, placeholder=" …")
-        figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
-        figure.supxlabel("\n".join(lines), color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
-        figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+    entitle(figure, result.title or "Grasp")
+    mark_failure(figure, result, "; the last accepted step is shown")

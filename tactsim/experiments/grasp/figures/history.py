@@ -8,7 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, described, history
+from tactsim.experiments.grasp.figures.parts import LETTERS
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
 
@@ -55,10 +57,10 @@ def draw_histories(axes: Sequence[Axes], result: Result) -> None:
 
 def abscissa(result: Result) -> tuple[Array, str]:
     """Values (steps,) over which to draw and their name: time, or the closing where no time passes."""
-    time = history(result, "time")
+    time = result.history("time")
     if np.isfinite(time).all() and np.ptp(time) > 0:
         return time, "time in s"
-    closing = history(result, "displacement")
+    closing = result.history("displacement")
     factor, unit = scale_of(float(np.abs(closing).max()), "m")
     return factor * closing, f"closing of each jaw in {unit}"
 
@@ -70,7 +72,7 @@ def _lumens(result: Result) -> list[str]:
 
 def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
     signs = {"upper": 1.0, "lower": -1.0}
-    forces = {side: signs[side] * history(result, f"jaw_force_{side}_z") for side in SIDES}
+    forces = {side: signs[side] * result.history(f"jaw_force_{side}_z") for side in JAWS}
     factor, unit = _scale(list(forces.values()), "N")
     for side, force in forces.items():
         colour, line, marker = FORCE_STYLES[side]
@@ -82,11 +84,12 @@ def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
 
 def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
     names = _lumens(result)
-    pressures = [history(result, name) for name in names]
+    pressures = [result.history(name) for name in names]
     factor, unit = _scale(pressures, "Pa")
+    scene = result.scene_as(GraspScene)
     for name, pressure, colour in zip(names, pressures, itertools.cycle(LUMEN_COLOURS), strict=False):
-        number = name.removeprefix("lumen_pressure").strip("_")
-        axis.plot(along, factor * pressure, ".-", color=colour, markersize=4, label=described(result.details, int(number or 1)))
+        label = scene.named_inclusion(int(name.removeprefix("lumen_pressure").strip("_") or 1))
+        axis.plot(along, factor * pressure, ".-", color=colour, markersize=4, label=label)
     axis.set_ylabel(f"pressure in {unit}")
     axis.set_title("pressure in the lumen", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
@@ -100,8 +103,8 @@ def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
 def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     """The taxels of both jaws that ever carry the most."""
     forces = {
-        (side, *place): np.asarray(result.quantities[f"taxel_force_{side}_history"].value, float)[:, place[0], place[1]]
-        for side in SIDES
+        (side, *place): result.quantities[f"taxel_force_{side}_history"].array[:, place[0], place[1]]
+        for side in JAWS
         for place in np.ndindex(np.shape(result.quantities[f"taxel_force_{side}_history"].value)[1:])
     }
     shown = sorted(forces, key=lambda taxel: -float(np.abs(forces[taxel]).max()))[:MOST_TAXELS]

@@ -12,7 +12,8 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, Grasp
+from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
 from tactsim.plotting.plane_cut import QUARTERS, interfaces
 from tactsim.results import FieldFrame, Result
@@ -34,12 +35,12 @@ CELL = 0.25e-3
 """Spacing in m of the points on which the shadow of an inclusion is traced."""
 
 
-def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: Grasp) -> None:
+def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> None:
     """The upper and the lower jaw seen from above, with one colour bar."""
     factor, unit = scale_of(grasp.largest_pressure, "Pa")
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    shadows = inclusion_shadows(result.frames[-1], grasp.size) if result.frames else None
-    for axis, side in zip(axes, SIDES, strict=True):
+    shadows = inclusion_shadows(result.frames[-1], grasp.scene.size) if result.frames else None
+    for axis, side in zip(axes, JAWS, strict=True):
         _draw_matrix(axis, grasp, side, (factor, norm))
         _draw_surroundings(axis, grasp, side, shadows)
         total = float(grasp.forces[side].sum())
@@ -57,11 +58,11 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: Grasp) -> None:
     bar.outline.set_linewidth(0.5)
 
 
-def _draw_matrix(axis: Axes, grasp: Grasp, side: str, scale: tuple[float, Normalize]) -> None:
+def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float, Normalize]) -> None:
     """The taxels as squares with their pressure and force; the names of rows and columns beside them."""
     import matplotlib
 
-    layout, place, (factor, norm) = grasp.layout, grasp.places[side], scale
+    layout, place, (factor, norm) = grasp.scene.matrix, grasp.scene.place(side), scale
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
     colours, size = matplotlib.colormaps[COLOURS], 1e3 * layout.size
     large = float(np.clip(26 / max(layout.rows, layout.columns), 3.0, 9.0))
@@ -98,11 +99,11 @@ def _named(count: int) -> list[int]:
     return list(range(1, count + 1)) if count <= MOST_NAMED else [1, count]
 
 
-def _extent(grasp: Grasp, side: str) -> tuple[Array, Array]:
+def _extent(grasp: LoadedTaxels, side: str) -> tuple[Array, Array]:
     """Lowest and highest x and y in mm of the jaw's face and the block."""
-    half = np.array([grasp.jaws[side].width, grasp.jaws[side].depth]) / 2
-    middle = grasp.places[side][:2]
-    return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.size[:2], middle + half)
+    half = np.array([grasp.scene.jaws[side].width, grasp.scene.jaws[side].depth]) / 2
+    middle = grasp.scene.place(side)[:2]
+    return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.scene.size[:2], middle + half)
 
 
 def _rim(colour: tuple[float, float, float, float]) -> withStroke:
@@ -110,9 +111,9 @@ def _rim(colour: tuple[float, float, float, float]) -> withStroke:
     return withStroke(linewidth=2.2, foreground=colour)
 
 
-def _draw_surroundings(axis: Axes, grasp: Grasp, side: str, shadows: tuple[Array, Array, Array] | None) -> None:
+def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, shadows: tuple[Array, Array, Array] | None) -> None:
     """The jaw's face, the undeformed block and the shadows of the inclusions in it."""
-    jaw, place, size = grasp.jaws[side], 1e3 * grasp.places[side], 1e3 * grasp.size
+    jaw, place, size = grasp.scene.jaws[side], 1e3 * grasp.scene.place(side), 1e3 * grasp.scene.size
     half = 1e3 * np.array([jaw.width, jaw.depth]) / 2
     face = Rectangle(tuple(place[:2] - half), *(2 * half), facecolor="#e6e8eb", edgecolor="#30363d", linewidth=1.0, zorder=1)
     axis.add_patch(face)

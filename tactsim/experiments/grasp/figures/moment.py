@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactsim.experiments.grasp.figures.parts import SIDES, history
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.experiments.grasp.scene import SimulatedGrasp
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results import Quantity, Result
 from tactsim.units import format_quantity
 
@@ -17,12 +17,12 @@ OUTWARD = {"upper": 1.0, "lower": -1.0}
 def shown_moment(result: Result) -> Result:
     """The result as it was when the sum of all pressures in lumens was largest; as it ended, if there is none or no field of it.
 
-    Steps are kept whole, so that histories can be drawn; ``moment`` in the details says in words what is shown.
+    Steps are kept whole, so that histories can be drawn; the scene says in words which moment is shown.
     """
     lumens = sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
     if not lumens or not result.frames or "taxel_force_upper_history" not in result.quantities:
         return result
-    pressure = np.sum([history(result, name) for name in lumens], axis=0)
+    pressure = np.sum([result.history(name) for name in lumens], axis=0)
     step = int(np.argmax(pressure))
     time = result.steps[step].values["time"]
     numbers = [k for k, frame in enumerate(result.frames) if np.isclose(frame.time, time, rtol=1e-9, atol=1e-12)]
@@ -36,24 +36,26 @@ def shown_moment(result: Result) -> Result:
         result,
         frames=result.frames[: numbers[-1] + 1],
         quantities=result.quantities | _quantities(result, step, closing),
-        details=result.details | _places(result, closing) | {"moment": words},
+        scene=_moved(result, closing).model_copy(update={"moment": words}),
     )
 
 
 def _quantities(result: Result, step: int, closing: float) -> dict[str, Quantity]:
-    area = TaxelLayout.model_validate(result.details["matrix"]).area
+    area = result.scene_as(SimulatedGrasp).matrix.area
     found = {"displacement": replace(result.quantities["displacement"], value=closing)}
-    for side in SIDES:
-        force = np.asarray(result.quantities[f"taxel_force_{side}_history"].value, dtype=float)[step]
+    for side in JAWS:
+        force = result.quantities[f"taxel_force_{side}_history"].array[step]
         found[f"taxel_force_{side}"] = replace(result.quantities[f"taxel_force_{side}"], value=force.tolist())
         found[f"taxel_pressure_{side}"] = replace(result.quantities[f"taxel_pressure_{side}"], value=(force / area).tolist())
     return found
 
 
-def _places(result: Result, closing: float) -> dict[str, object]:
-    """The jaws' places at that closing, from those at the end."""
-    told = result.details.get("jaw_places")
-    if told is None:
-        return {}
+def _moved(result: Result, closing: float) -> SimulatedGrasp:
+    """The scene with the jaws' places at that closing, from those at the end."""
+    scene = result.scene_as(SimulatedGrasp)
     moved = float(result.quantities["displacement"].value) - closing
-    return {"jaw_places": {side: [*told[side][:2], told[side][2] + OUTWARD[side] * moved] for side in SIDES}}
+    places = {}
+    for side, outward in OUTWARD.items():
+        x, y, z = scene.jaw_places[side]
+        places[side] = (x, y, z + outward * moved)
+    return scene.model_copy(update={"jaw_places": places})

@@ -9,7 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
-from tactsim.experiments.grasp.figures.parts import LETTERS, SIDES, Grasp, described, ending, inclusions_of
+from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, ending, inclusions_of, moment_of
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
@@ -51,22 +53,22 @@ def cutting_plane(frame: FieldFrame, size: Array) -> tuple[int, float, int]:
     return axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number
 
 
-def draw_section(axis: Axes, result: Result, grasp: Grasp) -> None:
+def draw_section(axis: Axes, result: Result, grasp: LoadedTaxels) -> None:
     """The cut of the last frame."""
     frame = result.frames[-1]
-    across, level, number = cutting_plane(frame, grasp.size)
+    across, level, number = cutting_plane(frame, grasp.scene.size)
     pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
     cut = plane_cut(frame, across, level, np.asarray(pressure))
     _draw_pressure(axis, cut)
     _draw_outlines(axis, cut, result)
     limits = _window(cut, grasp)
-    for side in SIDES:
+    for side in JAWS:
         _draw_jaw(axis, grasp, side, limits, (across, level))
     along = "yx"[across]
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
-    through = f"the middle of {described(result.details, number)}" if number else "the middle of the block"
+    through = f"the middle of {result.scene_as(GraspScene).named_inclusion(number)}" if number else "the middle of the block"
     place = f"cut at {'xy'[across]} = {1e3 * level:.3g} mm through {through}"
-    axis.set_title(place + ("\n" if "moment" in result.details else "; ") + ending(result), loc="left")
+    axis.set_title(place + ("\n" if moment_of(result) else "; ") + ending(result), loc="left")
     despined(axis)
 
 
@@ -104,24 +106,31 @@ def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
         middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
         box = {"boxstyle": "round,pad=0.2", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
         axis.text(
-            middle[0], middle[1], described(result.details, number), ha="center", va="center", fontsize=8, bbox=box, zorder=4
+            middle[0],
+            middle[1],
+            result.scene_as(GraspScene).named_inclusion(number),
+            ha="center",
+            va="center",
+            fontsize=8,
+            bbox=box,
+            zorder=4,
         )
 
 
-def _window(cut: PlaneCut, grasp: Grasp) -> tuple[tuple[float, float], tuple[float, float]]:
+def _window(cut: PlaneCut, grasp: LoadedTaxels) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits in mm of the picture."""
     low, high = 1e3 * cut.triangles.min(axis=(0, 1)), 1e3 * cut.triangles.max(axis=(0, 1))
     margin = 0.03 * (high[0] - low[0])
-    top = max(high[1], 1e3 * grasp.places["upper"][2]) + JAW_SHOWN
-    bottom = min(low[1], 1e3 * grasp.places["lower"][2]) - JAW_SHOWN
+    top = max(high[1], 1e3 * grasp.scene.place("upper")[2]) + JAW_SHOWN
+    bottom = min(low[1], 1e3 * grasp.scene.place("lower")[2]) - JAW_SHOWN
     return (float(low[0] - margin), float(high[0] + margin)), (float(bottom), float(top))
 
 
 def _draw_jaw(
-    axis: Axes, grasp: Grasp, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: tuple[int, float]
+    axis: Axes, grasp: LoadedTaxels, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: tuple[int, float]
 ) -> None:
     """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes."""
-    jaw, place, (across, level) = grasp.jaws[side], grasp.places[side], plane
+    jaw, place, (across, level) = grasp.scene.jaws[side], grasp.scene.place(side), plane
     middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
     along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
     points = np.empty((3, along.size))
@@ -138,14 +147,14 @@ def _draw_jaw(
     axis.text(max(left, limits[0][0]) + 0.6, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
 
 
-def _draw_taxels(axis: Axes, grasp: Grasp, side: str, plane: tuple[int, float]) -> None:
+def _draw_taxels(axis: Axes, grasp: LoadedTaxels, side: str, plane: tuple[int, float]) -> None:
     """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
-    (across, level), jaw, place = plane, grasp.jaws[side], grasp.places[side]
+    (across, level), jaw, place = plane, grasp.scene.jaws[side], grasp.scene.place(side)
     fixed = (level - place[across]) / jaw.rotation[across, across]
-    passed = grasp.layout.borders("xy"[across])
+    passed = grasp.scene.matrix.borders("xy"[across])
     hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
     for index in hit:
-        borders = grasp.layout.borders("yx"[across])
+        borders = grasp.scene.matrix.borders("yx"[across])
         every = -(-len(borders) // MOST_NAMED)
         for number, (low, high) in enumerate(borders):
             corners = np.zeros((3, 4))

@@ -9,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.grasp.figures.parts import SIDES
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -41,8 +41,8 @@ def voltages_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(10.5, 6.4)
         axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
-        factor, unit = scale_of(max(float(_values(result, f"voltage_{side}_history").max()) for side in SIDES), "V")
-        for row, side in zip(axes, SIDES, strict=True):
+        factor, unit = scale_of(max(float(result.quantities[f"voltage_{side}_history"].array.max()) for side in JAWS), "V")
+        for row, side in zip(axes, JAWS, strict=True):
             _draw_voltages(row[0], result, side, factor)
             _draw_forces(row[1], result, side)
             row[0].set(ylabel=f"voltage in {unit}", title=f"{side.capitalize()} jaw")
@@ -52,17 +52,12 @@ def voltages_figure(result: Result) -> Figure:
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes.flat:
             despined(axis)
-        title = str(result.details.get("title") or "Voltages of the matrices")
-        entitle(figure, title)
+        entitle(figure, result.title or "Voltages of the matrices")
     return figure
 
 
-def _values(result: Result, name: str) -> Array:
-    return np.asarray(result.quantities[name].value, dtype=float)
-
-
 def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None:
-    time, voltage = _values(result, "readout_time"), factor * _values(result, f"voltage_{side}_history")
+    time, voltage = result.quantities["readout_time"].array, factor * result.quantities[f"voltage_{side}_history"].array
     rows, columns = voltage.shape[1:]
     colours = colormaps["viridis"](np.linspace(0, 0.9, rows * columns))
     for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
@@ -73,7 +68,7 @@ def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None
 
 
 def _draw_forces(axis: Axes, result: Result, side: str) -> None:
-    applied, read = _values(result, f"taxel_force_{side}"), _values(result, f"read_force_{side}")
+    applied, read = result.quantities[f"taxel_force_{side}"].array, result.quantities[f"read_force_{side}"].array
     places = np.arange(applied.size)
     axis.bar(places, applied.ravel(), width=0.8, color="#fdd0a2", edgecolor=APPLIED, linewidth=0.6, label="applied")
     axis.plot(places, read.ravel(), "o", color=READ, markersize=4, label="read")

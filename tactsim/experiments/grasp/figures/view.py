@@ -15,7 +15,9 @@ from matplotlib.image import imread
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
-from tactsim.experiments.grasp.figures.parts import SIDES, Grasp, described, ending, grasp_of, inclusions_of
+from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.off_screen import Camera, Surface, pictures
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
@@ -57,7 +59,7 @@ def grasp_view(result: Result) -> bytes:
 
 def view_figure(result: Result) -> Figure:
     """The rendered scene from above and from below, with names, axes and the scale of the bars."""
-    grasp, frame = grasp_of(result), result.frames[-1]
+    grasp, frame = loaded_taxels(result), result.frames[-1]
     surfaces = scene(frame, grasp)
     cameras = [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
     images = pictures(surfaces, cameras)
@@ -77,12 +79,12 @@ def view_figure(result: Result) -> Figure:
         bar.set_label(f"mean pressure on the taxel in {unit}: colour and length of its bar on the back of the jaw")
         bar.outline.set_linewidth(0.5)
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
-        title = str(result.details.get("title") or "") or "Grasp"
+        title = result.title or "Grasp"
         entitle(figure, f"{title}: {ending(result)}{status}")
     return figure
 
 
-def scene(frame: FieldFrame, grasp: Grasp) -> list[Surface]:
+def scene(frame: FieldFrame, grasp: LoadedTaxels) -> list[Surface]:
     """Everything in the view, in m."""
     nodes, (faces, between) = deformed(frame), interfaces(frame)
     triangles = faces[:, QUARTERS]
@@ -91,7 +93,7 @@ def scene(frame: FieldFrame, grasp: Grasp) -> list[Surface]:
     for number in inclusions_of(frame):
         mine = (between == number).any(axis=1)
         surfaces.append(_surface(nodes, triangles[mine], INCLUSION_COLOUR, smooth=True))
-    for side in SIDES:
+    for side in JAWS:
         surfaces += jaw_surfaces(grasp, side)
     return surfaces
 
@@ -101,9 +103,9 @@ def _surface(nodes: Array, triangles: Array, colour: str, **style: Any) -> Surfa
     return Surface(nodes[used], numbers.reshape(-1, 3), colour, **style)
 
 
-def jaw_surfaces(grasp: Grasp, side: str) -> list[Surface]:
+def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
     """The plate, and on its back the bars in the colours of their pressure."""
-    jaw, layout, height = grasp.jaws[side], grasp.layout, float(grasp.size[2])
+    jaw, layout, height = grasp.scene.jaws[side], grasp.scene.matrix, float(grasp.scene.size[2])
     back = PLATE * height
     low = np.array([-jaw.width / 2, -jaw.depth / 2, 0.0])
     plate = _placed(grasp, side, _BOX * np.array([jaw.width, jaw.depth, back]) + low)
@@ -120,9 +122,9 @@ def jaw_surfaces(grasp: Grasp, side: str) -> list[Surface]:
     return [Surface(plate, _BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
 
 
-def _placed(grasp: Grasp, side: str, own: Array) -> Array:
+def _placed(grasp: LoadedTaxels, side: str, own: Array) -> Array:
     """Points (n, 3) in the jaw's own axes, in those of the block."""
-    return own @ grasp.jaws[side].rotation.T + grasp.places[side]
+    return own @ grasp.scene.jaws[side].rotation.T + grasp.scene.place(side)
 
 
 def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
@@ -136,9 +138,9 @@ def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float
     return Camera((float(middle[0]), float(middle[1]), float(middle[2])), direction, half, PIXELS)
 
 
-def annotate(axis: Axes, grasp: Grasp, camera: Camera) -> None:
+def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
     """The directions of the axes with a length, and the jaws' names."""
-    length = ARROW * float(grasp.size.max())
+    length = ARROW * float(grasp.scene.size.max())
     corner = np.array([0.06, 0.93]) * camera.pixels
     begin, *ends = camera.project(length * np.vstack([np.zeros(3), np.eye(3)]))
     for name, end in zip("xyz", ends, strict=True):
@@ -153,15 +155,15 @@ def annotate(axis: Axes, grasp: Grasp, camera: Camera) -> None:
         axis.text(beyond[0], beyond[1], name, ha="center", va="center")
     words = f"arrows: {format_quantity(length, 'm')}"
     axis.text(0.0, -0.03, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
-    for side in SIDES:
-        jaw, sign = grasp.jaws[side], 1.0 if side == "upper" else -1.0
-        own = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.size[2]) / 2])
+    for side in JAWS:
+        jaw, sign = grasp.scene.jaws[side], 1.0 if side == "upper" else -1.0
+        own = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
         x, y = camera.project(_placed(grasp, side, own[None]))[0]
         axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
 
 
 def _tell(axis: Axes, result: Result) -> None:
     """The names of the inclusions in their colour."""
-    told = ", ".join(described(result.details, number) for number in inclusions_of(result.frames[-1]))
+    told = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
     if told:
         axis.text(0.99, 0.04, told, transform=axis.transAxes, ha="right", color=INCLUSION_COLOUR, fontweight="bold")

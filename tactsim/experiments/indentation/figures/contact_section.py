@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh
+from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
-from tactsim.registry import read_kind
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -28,16 +26,15 @@ def draw_contact_section(axis: Axes, result: Result, displacement: float) -> Non
     frame = result.frames[-1]
     section = Section(frame)
     pressure = np.asarray(frame.point_data["pressure [Pa]"]).ravel()
-    body: RigidBody | None = _body(result)
-    height = 1e3 * (result.details.get("starting_height", 0.0) - displacement)
+    scene = result.scene_as(PressedBodyScene)
+    body, height = scene.body, 1e3 * (scene.starting_height - displacement)
     limits = _window(section, body, height)
     _draw_pressure(axis, section, pressure, limits)
     draw_mesh(axis, section)
-    if body is not None:
-        r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))
-        points = np.stack([r.ravel(), z.ravel() - height]) * 1e-3
-        draw_body(axis, body.signed_distance(points)[0].reshape(r.shape), (r, z))
-        _draw_sensor(axis, result, body, height)
+    r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))
+    points = np.stack([r.ravel(), z.ravel() - height]) * 1e-3
+    draw_body(axis, body.signed_distance(points)[0].reshape(r.shape), (r, z))
+    _draw_sensor(axis, scene, height)
     axis.set(xlim=(-limits[0], limits[0]), ylim=limits[1:], aspect="equal", xlabel="radius in mm", ylabel="height in mm")
     axis.set_title(f"at a displacement of {format_quantity(displacement, 'm')} (elements shown on the left)", loc="left")
     axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
@@ -61,7 +58,7 @@ def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[
     bar.outline.set_linewidth(0.5)
 
 
-def _window(section: Section, body: RigidBody | None, height: float) -> tuple[float, float, float]:
+def _window(section: Section, body: RigidBody, height: float) -> tuple[float, float, float]:
     """Half width, bottom and top of the picture in mm."""
     radius = 1e3 * float(getattr(body, "outer_radius", getattr(body, "radius", np.inf)))
     widest = float(section.places[:, 0].max())
@@ -71,15 +68,9 @@ def _window(section: Section, body: RigidBody | None, height: float) -> tuple[fl
     return half, float(bottom - margin), float(max(top, height) + 0.2 * min(half, radius) + margin)
 
 
-def _body(result: Result) -> Any:
-    """The rigid body that the result describes, None in a result of a version that did not."""
-    described = result.details.get("body")
-    return read_kind(RigidBody, described) if described else None
-
-
-def _draw_sensor(axis: Axes, result: Result, body: RigidBody, height: float) -> None:
+def _draw_sensor(axis: Axes, scene: PressedBodyScene, height: float) -> None:
     """The inner sensor's plane across the hole."""
-    recess, inner = result.details.get("recess"), getattr(body, "inner_radius", None)
+    recess, inner = scene.recess, getattr(scene.body, "inner_radius", None)
     if recess is None or inner is None:
         return
     level, edge = height + 1e3 * recess, 1e3 * inner

@@ -10,14 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
+from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 
 Array = np.ndarray
 
-FORCE_COLOUR, RISE_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#b00020"
+FORCE_COLOUR, RISE_COLOUR = "#1f4e79", "#b8540a"
 
 
 class IndentationFigures(ResultFigures):
@@ -45,31 +47,22 @@ def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: 
             draw_contact_section(axes[0], result, result.frames[-1].time)
         draw(axes[-1], result)
         entitle(figure, title)
-        if result.status is not Status.CONVERGED:
-            mark_failure(figure, result)
+        mark_failure(figure, result, after(result))
     return figure
 
 
 def _title(result: Result) -> str:
-    given = str(result.details.get("title") or "")
-    return given or f"Indentation by a rigid {result.details.get('body', {}).get('kind', 'body')}"
+    return result.title or f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}"
 
 
-def mark_failure(figure: Figure, result: Result) -> None:
-    """The status and its reason across the foot of the figure, and a coloured frame."""
-    last = format_quantity(result.steps[-1].values["displacement"], "m")
-    words = f"{str(result.status).upper()} after a displacement of {last}: {result.reason}"
-    figure.supxlabel(_shortened(words, 150), color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
-    figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
-
-
-def _shortened(words: str, most: int) -> str:
-    return words if len(words) <= most else f"{words[: most - 1]}…"
+def after(result: Result) -> str:
+    """How far a run came, as its failure is marked."""
+    return f" after a displacement of {format_quantity(result.steps[-1].values['displacement'], 'm')}"
 
 
 def draw_curve(axis: Axes, result: Result) -> None:
     """Force and rise against the displacement, with the threshold, and a cross where a run stopped short."""
-    displacement, force, rise = (_history(result, name) for name in ("displacement", "reaction_force", "tissue_rise"))
+    displacement, force, rise = (result.history(name) for name in ("displacement", "reaction_force", "tissue_rise"))
     along, length = scale_of(float(displacement.max()), "m")
     up, unit = scale_of(float(np.abs(force).max()), "N")
     axis.plot(displacement * along, force * up, ".-", color=FORCE_COLOUR, markersize=4)
@@ -90,7 +83,7 @@ def _draw_rise(axis: Axes, displacement: Array, rise: Array, result: Result) -> 
     axis.set_ylabel("tissue rise in the hole in mm", color=RISE_COLOUR)
     axis.set_ylim(0, None)
     axis.spines["top"].set_visible(False)
-    recess = result.details.get("recess")
+    recess = result.scene_as(PressedBodyScene).recess
     if recess is not None:
         axis.set_ylim(0, max(1.12e3 * recess, rise.max() * 1.05))
         axis.axhline(1e3 * recess, color=SENSOR_COLOUR, linewidth=0.9, linestyle=":")
@@ -131,7 +124,3 @@ def _label(axis: Axes, at: tuple[float, float], text: str, colour: str) -> None:
     shift = (-26 if x > 0.5 else 12, -4 if y > 0.5 else 12)
     sides: dict[str, Any] = {"ha": "right" if x > 0.5 else "left", "va": "top" if y > 0.5 else "bottom"}
     axis.annotate(text, at, shift, textcoords="offset points", color=colour, zorder=6, **sides)
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -8,11 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, draw_curve, mark_failure
+from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
+from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 
 
 class SpaceIndentationFigures(ResultFigures):
@@ -27,7 +29,7 @@ class SpaceIndentationFigures(ResultFigures):
 
 def space_indentation_figure(result: Result) -> Figure:
     """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""
-    around = "pressure_around" in result.quantities and result.details.get("symmetry") != "quarter"
+    around = "pressure_around" in result.quantities and result.scene_as(Indentation3dScene).symmetry != "quarter"
     with styled():
         wide = bool(result.frames)
         figure = new_figure(11.0 if wide else 6.0, 5.6 if around else 4.4)
@@ -37,16 +39,14 @@ def space_indentation_figure(result: Result) -> Figure:
         draw_curve(figure.add_subplot(grid[0, -1]), result)
         if around:
             _draw_around(figure.add_subplot(grid[1, -1]), result)
-        title = str(result.details.get("title") or "") or "Indentation in space"
-        entitle(figure, title)
-        if result.status is not Status.CONVERGED:
-            mark_failure(figure, result)
+        entitle(figure, result.title or "Indentation in space")
+        mark_failure(figure, result, after(result))
     return figure
 
 
 def _draw_around(axis: Axes, result: Result) -> None:
     """The mean pressure on each sector of the annulus against the angle about its axis."""
-    pressure = np.asarray(result.quantities["pressure_around"].value, float)
+    pressure = result.quantities["pressure_around"].array
     factor, unit = scale_of(max(float(np.abs(pressure).max()), 1e-12), "Pa")
     edges = np.linspace(0.0, 360.0, len(pressure) + 1)
     axis.stairs(factor * pressure, edges, color=FORCE_COLOUR, linewidth=1.5)

@@ -11,9 +11,8 @@ from matplotlib.tri import Triangulation
 
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, SHOWN_RADII
 from tactsim.experiments.indentation.figures.section import Section
-from tactsim.interfaces import RigidBody
+from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
-from tactsim.registry import read_kind
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
@@ -45,9 +44,10 @@ def draw_cut(axis: Axes, result: Result) -> None:
     """The deformed cut of the last frame with its pressure, the body and the sensor's plane in the hole."""
     frame = result.frames[-1]
     section = Section(cut(frame))
-    body: Any = read_kind(RigidBody, result.details["body"])
-    height = 1e3 * (result.details["starting_height"] - frame.time)
-    sides = (-1.0, 1.0) if result.details["symmetry"] == "quarter" else (1.0,)
+    scene = result.scene_as(Indentation3dScene)
+    body: Any = scene.body
+    height = 1e3 * (scene.starting_height - frame.time)
+    sides = (-1.0, 1.0) if scene.symmetry == "quarter" else (1.0,)
     limits = _window(section, body, height, mirrored=len(sides) > 1)
     _draw_pressure(axis, section, sides, limits)
     edges, outline = section.edges()
@@ -60,7 +60,7 @@ def draw_cut(axis: Axes, result: Result) -> None:
     distance = body.signed_distance(points)[0].reshape(x.shape)
     axis.contourf(x, z, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
     axis.contour(x, z, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
-    _draw_sensor(axis, result, body, height)
+    _draw_sensor(axis, scene.recess, body, height)
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x in mm", ylabel="height in mm")
     axis.set_title(f"cut y = 0 at a displacement of {format_quantity(frame.time, 'm')}", loc="left")
     despined(axis)
@@ -100,9 +100,9 @@ def _draw_pressure(axis: Axes, section: Section, sides: tuple[float, ...], limit
     bar.outline.set_linewidth(0.5)
 
 
-def _draw_sensor(axis: Axes, result: Result, body: Any, height: float) -> None:
+def _draw_sensor(axis: Axes, recess: float | None, body: Any, height: float) -> None:
     """The inner sensor's plane across the hole."""
-    recess, inner = result.details.get("recess"), getattr(body.body, "inner_radius", None)
+    inner = getattr(body.body, "inner_radius", None)
     if recess is None or inner is None:
         return
     ends = body.rotation @ np.array([[-inner, inner], [0.0, 0.0], [recess, recess]])

@@ -9,13 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
+from tactsim.experiments.indentation.scene import TimedIndentationScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 
 Array = np.ndarray
 
-FOUND_COLOUR, CLOSED_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#b00020"
+FOUND_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
 DECADES = 1e3
 """Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
 
@@ -49,29 +51,23 @@ def timed_indentation_figure(result: Result) -> Figure:
         for axis in axes[:-1]:
             axis.tick_params(labelbottom=False)
         entitle(figure, _title(result))
-        if result.status is not Status.CONVERGED:
-            words = f"{str(result.status).upper()} at {result.steps[-1].values['time']:.4g} s: {result.reason}"
-            figure.supxlabel(words[:150], color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
+        mark_failure(figure, result, f" at {result.steps[-1].values['time']:.4g} s")
     return figure
 
 
 def _title(result: Result) -> str:
-    body = result.details.get("body", {}).get("kind", "body")
-    return str(result.details.get("title") or "") or f"Prescribed {result.details.get('control', 'history')} on a rigid {body}"
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])
+    scene = result.scene_as(TimedIndentationScene)
+    return result.title or f"Prescribed {scene.control} on a rigid {scene.body.kind}"
 
 
 def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> None:
     name, words, unit = what
-    time, values = _history(result, "time"), _history(result, name)
+    time, values = result.history("time"), result.history(name)
     factor, prefixed = scale_of(float(np.abs(values).max()), unit)
     axis.plot(time, factor * values, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1, label="finite elements")
     other = "closed_form_force" if name == "reaction_force" else "closed_form_displacement"
     if other in result.steps[-1].values:
-        axis.plot(time, factor * _history(result, other), "--", color=CLOSED_COLOUR, label="closed form")
+        axis.plot(time, factor * result.history(other), "--", color=CLOSED_COLOUR, label="closed form")
         axis.legend(fontsize=8)
     axis.set_ylabel(f"{words}\nin {prefixed}")
     _scale_time(axis, time)
@@ -84,7 +80,7 @@ def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> Non
 
 
 def _draw_difference(axis: Axes, result: Result) -> None:
-    time, difference = _history(result, "time"), 100 * _history(result, "closed_form_difference")
+    time, difference = result.history("time"), 100 * result.history("closed_form_difference")
     axis.plot(time, difference, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1)
     axis.axhline(0.0, color="0.5", linewidth=0.7)
     widest = max(1.2 * float(np.nanmax(np.abs(difference))), 1e-6)

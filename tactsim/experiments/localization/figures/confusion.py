@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
+from tactsim.experiments.localization.scene import ConfusionScene
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -25,8 +26,8 @@ class ConfusionFigures(ResultFigures):
         """``confusion.png``, if anything was counted."""
         if "confusion" not in result.quantities:
             return {}
-        title = f"{str(result.details.get('title') or '') or 'Confusion table'}: {result.reason}"
-        counts, classes = result.quantities["confusion"].value, result.details["classes"]
+        title = f"{result.title or 'Confusion table'}: {result.reason}"
+        counts, classes = result.quantities["confusion"].value, result.scene_as(ConfusionScene).classes
         return {"confusion.png": lambda: confusion_png(counts, classes, title)}
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
@@ -93,7 +94,6 @@ def _legend(values: Any, colours: Array) -> list[Any]:
 
 
 def _title(result: Result) -> str:
-    told = result.details
-    title = str(told.get("title") or "") or "Smallest lump found"
-    share, alarms = 100 * told["probability"], 100 * told["false_alarms"]
-    return f"{title}: {share:g} % found at {alarms:g} % false alarms, noise {format_quantity(told['noise'], 'N')}"
+    scene, title = result.scene_as(DetectabilityScene), result.title or "Smallest lump found"
+    share, alarms = 100 * scene.probability, 100 * scene.false_alarms
+    return f"{title}: {share:g} % found at {alarms:g} % false alarms, noise {format_quantity(scene.noise, 'N')}"

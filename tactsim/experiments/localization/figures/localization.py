@@ -23,6 +23,5 @@ class LocalizationFigures(ResultFigures):
             return {}
         drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(result))}
         drawings[VIEWS_PRESSURE] = lambda: png(views_figure(result, "pressure"))
-        if "jaws" in result.details:
-            drawings[SPACE] = lambda: space_view(result)
+        drawings[SPACE] = lambda: space_view(result)
         return drawings

@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import Patch
 
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
-from tactsim.experiments.grasp.figures.parts import SIDES, Grasp
+from tactsim.experiments.grasp.figures.parts import LoadedTaxels
 from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
 from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, viewed
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mesh.solid import Solid
 from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.off_screen import Surface, pictures
@@ -53,8 +53,8 @@ def space_view(result: Result) -> bytes:
 def space_figure(result: Result) -> Figure:
     """What is truly there beside what was found, in the undeformed tissue, seen from the front, right and above."""
     shown = viewed(result)
-    grasp = _grasp(result, shown)
-    outside = [_tissue(shown.size), *(surface for side in SIDES for surface in jaw_surfaces(grasp, side))]
+    grasp = _grasp(shown)
+    outside = [_tissue(shown.scene.size), *(surface for side in JAWS for surface in jaw_surfaces(grasp, side))]
     scenes = {"true inclusions": list(_true(shown)), "estimated inclusions": list(_estimated(shown))}
     camera = framing_camera(outside, FROM_ABOVE)
     with styled():
@@ -73,11 +73,11 @@ def space_figure(result: Result) -> Figure:
 
 
 def _title(result: Result) -> str:
-    title = str(result.details.get("title") or "") or "Localization"
+    title = result.title or "Localization"
     return f"{title}: {result.reason}" if result.reason else title
 
 
-def _scale(figure: Figure, axes: Any, grasp: Grasp, shown: ViewedGrasp) -> None:
+def _scale(figure: Figure, axes: Any, grasp: LoadedTaxels, shown: ViewedGrasp) -> None:
     factor, unit = scale_of(grasp.largest_pressure, "Pa")
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
     bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
@@ -87,14 +87,13 @@ def _scale(figure: Figure, axes: Any, grasp: Grasp, shown: ViewedGrasp) -> None:
     figure.legend(handles=handles, loc="lower right", ncols=2, fontsize=8.5)
 
 
-def _grasp(result: Result, shown: ViewedGrasp) -> Grasp:
+def _grasp(shown: ViewedGrasp) -> LoadedTaxels:
     """The jaws at the faces of the undeformed block, with the pressures of what is shown."""
-    jaws = {side: Jaw.model_validate(result.details["jaws"][side]) for side in SIDES}
-    heights = {"upper": float(shown.size[2]), "lower": 0.0}
-    places = {side: np.array([*shown.middle, heights[side]]) for side in SIDES}
-    forces = dict(zip(SIDES, shown.signal, strict=True))
-    pressures = {side: forces[side] / shown.layout.area for side in SIDES}
-    return Grasp(shown.size, jaws, places, shown.layout, pressures, forces)
+    x, y = map(float, shown.scene.middle)
+    places = {"upper": (x, y, shown.scene.block_size[2]), "lower": (x, y, 0.0)}
+    forces = dict(zip(JAWS, shown.signal, strict=True))
+    pressures = {side: forces[side] / shown.scene.matrix.area for side in JAWS}
+    return LoadedTaxels(shown.scene.model_copy(update={"jaw_places": places}), pressures, forces)
 
 
 def _tissue(size: Array) -> Surface:
@@ -103,12 +102,12 @@ def _tissue(size: Array) -> Surface:
 
 def _true(shown: ViewedGrasp) -> Iterator[Surface]:
     for body in shown.true:
-        yield _surface(body, shown.size, TRUE_COLOUR)
+        yield _surface(body, shown.scene.size, TRUE_COLOUR)
 
 
 def _estimated(shown: ViewedGrasp) -> Iterator[Surface]:
-    for body in estimated_bodies(shown, UNKNOWN_RADIUS * float(shown.size[2])):
-        yield _surface(body, shown.size, ESTIMATE_COLOUR)
+    for body in estimated_bodies(shown, UNKNOWN_RADIUS * float(shown.scene.size[2])):
+        yield _surface(body, shown.scene.size, ESTIMATE_COLOUR)
 
 
 def _surface(body: Solid, size: Array, colour: str) -> Surface:

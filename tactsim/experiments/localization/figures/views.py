@@ -16,7 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from tactsim.experiments.localization.figures.parts import SIDES, ViewedGrasp, estimated_bodies, outline, viewed
+from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, outline, viewed
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
@@ -61,7 +62,7 @@ class View:
 
     def scale(self, grasp: ViewedGrasp, shown: Shown) -> tuple[float, str]:
         """Factor from a sum in N to what is shown, and its unit."""
-        over = 1.0 if shown == "force" else 1 / (self.summed * grasp.layout.area)
+        over = 1.0 if shown == "force" else 1 / (self.summed * grasp.scene.matrix.area)
         factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "N" if shown == "force" else "Pa")
         return over * factor, unit
 
@@ -78,11 +79,11 @@ def views_figure(result: Result, shown: Shown = "force") -> Figure:
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
     grasp = viewed(result)
-    found, layout = views(grasp.signal, SHAPE), grasp.layout
+    found, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
     front = View(found.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
     left = View(found.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
-    top = View(found.top, 2, 0, 1, len(SIDES), "Top view: {} of both jaws")
-    x, y, z = 1e3 * grasp.size
+    top = View(found.top, 2, 0, 1, len(JAWS), "Top view: {} of both jaws")
+    x, y, z = 1e3 * grasp.scene.size
     with styled():
         figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
         axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
@@ -90,8 +91,7 @@ def views_figure(result: Result, shown: Shown = "force") -> Figure:
             _draw(axis, view, grasp, shown)
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp, result, shown)
-        title = str(result.details.get("title") or "") or "Three views of the grasp"
-        entitle(figure, title)
+        entitle(figure, result.title or "Three views of the grasp")
     return figure
 
 
@@ -100,7 +100,7 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
     axis.imshow(factor * view.image, cmap=COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1)
-    size = 1e3 * grasp.size
+    size = 1e3 * grasp.scene.size
     block = Rectangle((0, 0), size[view.horizontal], size[view.vertical], fill=False, edgecolor=GREY, linewidth=0.8, zorder=3)
     block.set_linestyle((0, (4, 3)))
     axis.add_patch(block)
@@ -109,7 +109,7 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     else:
         _draw_jaws(axis, view, grasp)
     for body in grasp.true:
-        first, second, distance = outline(body, grasp.size, view.away)
+        first, second, distance = outline(body, grasp.scene.size, view.away)
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=2.6, zorder=5)
         axis.contour(first, second, distance, levels=[0.0], colors=["k"], linewidths=1.1, linestyles="--", zorder=6)
     _draw_estimates(axis, view, grasp)
@@ -135,9 +135,9 @@ def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]
     sides = []
     for axis, pixels in ((view.horizontal, view.image.shape[1]), (view.vertical, view.image.shape[0])):
         if axis == 2:
-            sides += [0.0, 1e3 * float(grasp.size[2])]
+            sides += [0.0, 1e3 * float(grasp.scene.size[2])]
             continue
-        borders = grasp.borders("xy"[axis])
+        borders = grasp.scene.borders("xy"[axis])
         centres = borders.mean(axis=1)
         half = (centres[-1] - centres[0]) / (pixels - 1) / 2
         sides += [centres[0] - half, centres[-1] + half] if len(centres) > 1 else list(borders[0])
@@ -148,8 +148,8 @@ def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]
 
 def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
     """Thin borders of the taxels, hatched where one of a place is interpolated."""
-    columns, rows = grasp.borders("x"), grasp.borders("y")
-    side, valid = 1e3 * grasp.layout.size, grasp.valid.all(axis=0)
+    columns, rows = grasp.scene.borders("x"), grasp.scene.borders("y")
+    side, valid = 1e3 * grasp.scene.matrix.size, grasp.valid.all(axis=0)
     places = [(columns[column, 0], rows[row, 0]) for row, column in np.ndindex(len(rows), len(columns))]
     squares = [Rectangle(corner, side, side) for corner in places]
     none: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "linewidth": 0.5, "zorder": 4}
@@ -163,9 +163,9 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     along, summed = ("x", 1) if view.horizontal == 0 else ("y", 2)
     sums, missing = grasp.signal.sum(axis=summed), (~grasp.valid).sum(axis=summed)
     norm = Normalize(0.0, max(float(view.image.max()), 1e-12))
-    colours, borders = colormaps[COLOURS], grasp.borders(along)
-    for jaw, side in enumerate(SIDES):
-        bottom = 1e3 * grasp.size[2] if side == "upper" else -JAW
+    colours, borders = colormaps[COLOURS], grasp.scene.borders(along)
+    for jaw, side in enumerate(JAWS):
+        bottom = 1e3 * grasp.scene.size[2] if side == "upper" else -JAW
         for number, (low, high) in enumerate(borders):
             shade = colours(float(norm(sums[jaw, number])))
             hatch = None if missing[jaw, number] == 0 else "xxx"
@@ -181,7 +181,7 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
 def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     rim = [withStroke(linewidth=3.4, foreground="w")]
     for body in estimated_bodies(grasp):
-        first, second, distance = outline(body, grasp.size, view.away)
+        first, second, distance = outline(body, grasp.scene.size, view.away)
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
         axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
     for line in grasp.regions[view.away]:

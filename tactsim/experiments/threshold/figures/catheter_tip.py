@@ -11,14 +11,16 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 
+from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 
 Array = np.ndarray
 TINTS = ("#ffffff", "#d9d9d9", "#f0f0f0", "#c4c4c4", "#e4e4e4")
 HATCHES = ("", "///", "..", "xx", "--")
-HARDEST_COLOUR, TRUE_COLOUR, FAILED_COLOUR = "#d62728", "#000000", "#b00020"
+HARDEST_COLOUR, TRUE_COLOUR = "#d62728", "#000000"
 MILLIMETRES, KILOPASCALS = 1e3, 1e-3
 MARGIN = 1.6
 """Half of the picture's width over the radius of the tip."""
@@ -39,7 +41,7 @@ def catheter_tip_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(11.0, 4.9)
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
-        found = KILOPASCALS * _history(result, "reported_pressure")
+        found = KILOPASCALS * result.history("reported_pressure")
         largest = float(np.nanmax(found)) if np.isfinite(found).any() else 1.0
         colours = ScalarMappable(Normalize(0.0, largest), "viridis")
         _draw_surface(left, result)
@@ -47,12 +49,9 @@ def catheter_tip_figure(result: Result) -> Figure:
         bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)
         bar.set_label("reported threshold pressure in kPa")
         _draw_thresholds(right, result, found)
-        title = str(result.details.get("title") or "Threshold sensors around the tip of a catheter")
+        title = result.title or "Threshold sensors around the tip of a catheter"
         entitle(figure, f"{title}\n{_answer(result)}")
-        if result.status is not Status.CONVERGED:
-            words = f"{str(result.status).upper()}: {result.reason}"[:150]
-            figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
-            figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+        mark_failure(figure, result)
     return figure
 
 
@@ -70,18 +69,18 @@ def _answer(result: Result) -> str:
 
 def _draw_surface(axis: Axes, result: Result) -> None:
     """Bands of tissue, the tip's outline and the middle it keeps free."""
-    surface, ring = result.details["surface"], result.details["ring"]
-    middle = MILLIMETRES * np.array(result.details["place"])
-    tip = MILLIMETRES * (ring["radius"] + ring["outer_radius"])
+    scene = result.scene_as(CatheterTipScene)
+    middle = MILLIMETRES * np.array(scene.place)
+    tip = MILLIMETRES * (scene.ring.radius + scene.ring.outer_radius)
     reach = MARGIN * tip
-    names = [tissue["name"] for tissue in surface["tissues"]]
+    names = scene.tissues
     looks: list[dict[str, Any]] = [
         {"facecolor": TINTS[k % len(TINTS)], "hatch": HATCHES[k % len(HATCHES)], "edgecolor": "0.6", "linewidth": 0.6}
         for k in range(len(names))
     ]
     axis.add_patch(Rectangle(middle - reach, 2 * reach, 2 * reach, zorder=0, **looks[-1]))
-    for k in reversed(range(len(surface["borders"]))):
-        axis.add_patch(Circle((0.0, 0.0), MILLIMETRES * surface["borders"][k], zorder=1, **looks[k]))
+    for k in reversed(range(len(scene.borders))):
+        axis.add_patch(Circle((0.0, 0.0), MILLIMETRES * scene.borders[k], zorder=1, **looks[k]))
     axis.add_patch(Circle(tuple(middle), tip, fill=False, edgecolor="black", linewidth=1.2, zorder=3))
     axis.set(xlim=middle[0] + np.array([-reach, reach]), ylim=middle[1] + np.array([-reach, reach]), aspect="equal")
     axis.set(xlabel="x from the middle of the valve in mm", ylabel="y in mm")
@@ -91,10 +90,10 @@ def _draw_surface(axis: Axes, result: Result) -> None:
 
 def _draw_sensors(axis: Axes, result: Result, found: Array, colours: ScalarMappable) -> None:
     """Rings coloured by the reported pressure; grey without one; the hardest outlined."""
-    ring, states = result.details["ring"], result.details["state"]
-    outer, inner = (MILLIMETRES * ring[name] for name in ("outer_radius", "inner_radius"))
+    scene = result.scene_as(CatheterTipScene)
+    outer, inner = MILLIMETRES * scene.ring.outer_radius, MILLIMETRES * scene.ring.inner_radius
     hardest = result.quantities["hardest_sensor"].value if "hardest_sensor" in result.quantities else 0
-    for number, (step, pressure, state) in enumerate(zip(result.steps, found, states, strict=True), 1):
+    for number, (step, pressure, state) in enumerate(zip(result.steps, found, scene.state, strict=True), 1):
         x, y = (MILLIMETRES * step.values[name] for name in "xy")
         known = np.isfinite(pressure)
         colour = colours.to_rgba(pressure) if known else "0.75"
@@ -113,10 +112,10 @@ def _draw_sensors(axis: Axes, result: Result, found: Array, colours: ScalarMappa
 
 def _name_hardest(axis: Axes, result: Result, hardest: int) -> None:
     """The word beside the hardest sensor, outside the tip."""
-    ring, values = result.details["ring"], result.steps[hardest - 1].values
+    scene, values = result.scene_as(CatheterTipScene), result.steps[hardest - 1].values
     outward = np.array([np.cos(values["angle"]), np.sin(values["angle"])])
-    reach = MILLIMETRES * (ring["radius"] + 1.35 * ring["outer_radius"])
-    x, y = MILLIMETRES * np.array(result.details["place"]) + reach * outward
+    reach = MILLIMETRES * (scene.ring.radius + 1.35 * scene.ring.outer_radius)
+    x, y = MILLIMETRES * np.array(scene.place) + reach * outward
     side = "left" if outward[0] > 0.4 else "right" if outward[0] < -0.4 else "center"
     level = "bottom" if outward[1] > 0.4 else "top" if outward[1] < -0.4 else "center"
     box = {"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
@@ -125,13 +124,13 @@ def _name_hardest(axis: Axes, result: Result, hardest: int) -> None:
 
 def _draw_thresholds(axis: Axes, result: Result, found: Array) -> None:
     """Reported and true thresholds of every sensor, those over two tissues named."""
-    angle = np.degrees(_history(result, "angle"))
-    deviation = KILOPASCALS * _history(result, "reported_deviation")
-    true = KILOPASCALS * _history(result, "threshold_pressure")
+    angle = np.degrees(result.history("angle"))
+    deviation = KILOPASCALS * result.history("reported_deviation")
+    true = KILOPASCALS * result.history("threshold_pressure")
     bars = np.nan_to_num(deviation)
     axis.errorbar(angle, found, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
     axis.plot(angle, true, "_", color=TRUE_COLOUR, markersize=16, markeredgewidth=1.8, label="true threshold")
-    straddling = np.array(result.details["straddles"])[: len(angle)]
+    straddling = np.array(result.scene_as(CatheterTipScene).straddles)[: len(angle)]
     if straddling.any():
         axis.plot(angle[straddling], true[straddling], "D", color="0.5", markersize=9, fillstyle="none", label="over two tissues")
     if "hardest_sensor" in result.quantities:
@@ -144,7 +143,3 @@ def _draw_thresholds(axis: Axes, result: Result, found: Array) -> None:
     axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, found + bars))))
     axis.legend(fontsize=8, loc="upper right", ncols=2)
     despined(axis)
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])

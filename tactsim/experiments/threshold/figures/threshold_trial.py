@@ -11,9 +11,12 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
+from tactsim.errors import InputError
+from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.plotting.result_figures import Drawing, ResultFigures
-from tactsim.results import Result, Status
+from tactsim.results import Result
 from tactsim.units import format_quantity
 
 Array = np.ndarray
@@ -24,7 +27,7 @@ PARTS = {
     "sampling_error": ("sampling", "#4d9221", "^:"),
     "noise_error": ("noise", "#7b3294", "v-."),
 }
-LARGE_COLOUR, SMALL_COLOUR, CAPTURE_COLOUR, FAILED_COLOUR = "#1f4e79", "#b8540a", "#000000", "#b00020"
+LARGE_COLOUR, SMALL_COLOUR, CAPTURE_COLOUR = "#1f4e79", "#b8540a", "#000000"
 MOST_LABELS = 60
 """Combinations of a map that are labelled with their numbers."""
 MOST_MAPS = 4
@@ -54,7 +57,7 @@ class ThresholdTrialFigures(ResultFigures):
 
 def threshold_error_figure(result: Result) -> Figure:
     """For each noise a map of the error over speed and cut-off, and below what makes the mean error at the middle cut-off."""
-    noises = result.details["noises"]
+    noises = result.scene_as(ThresholdTrialScene).noises
     shown = np.unique(np.linspace(0, len(noises) - 1, min(len(noises), MOST_MAPS)).round().astype(int))
     with styled():
         figure = new_figure(max(8.5, 1.6 + 3.7 * len(shown)), 7.2)
@@ -77,21 +80,13 @@ def threshold_error_figure(result: Result) -> Figure:
         force = result.quantities["threshold_force"].value
         told = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
         _headed(figure, result, f"Error of the reported threshold (true: {told}); labels: mean ± standard deviation in %")
-        _draw_foot(figure, result)
+        mark_failure(figure, result)
     return figure
 
 
 def _headed(figure: Figure, result: Result, words: str) -> None:
-    title = str(result.details.get("title") or "")
+    title = result.title
     entitle(figure, f"{title}\n{words}" if title else words)
-
-
-def _draw_foot(figure: Figure, result: Result) -> None:
-    """Why the run did not end well."""
-    if result.status is not Status.CONVERGED:
-        words = f"{str(result.status).upper()}: {result.reason}"[:150]
-        figure.supxlabel(words, color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
-        figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
 
 
 def _grid(result: Result, name: str) -> Array:
@@ -114,7 +109,7 @@ def _norm(result: Result) -> LogNorm:
 def _draw_map(axis: Axes, result: Result, noise: int, norm: LogNorm) -> Any:
     """Coloured and labelled errors; grey where no trial was valid."""
     total = _total(result)[:, noise].T
-    speeds, cutoffs = 1e3 * np.array(result.details["speeds"]), result.details["cutoffs"]
+    speeds, cutoffs = 1e3 * np.array(result.scene_as(ThresholdTrialScene).speeds), result.scene_as(ThresholdTrialScene).cutoffs
     axis.set_facecolor("0.8")
     drawn = axis.pcolormesh(np.clip(total, norm.vmin, None), norm=norm, cmap="cividis", edgecolors="white", linewidth=0.5)
     axis.set_xticks(np.arange(len(speeds)) + 0.5, [f"{value:.3g}" for value in speeds])
@@ -145,8 +140,8 @@ def _label(result: Result, place: tuple[int, int, int]) -> str:
 
 def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
     """The parts of the mean error over the speed, at the middle cut-off."""
-    cutoff = len(result.details["cutoffs"]) // 2
-    speeds = 1e3 * np.array(result.details["speeds"])
+    scene = result.scene_as(ThresholdTrialScene)
+    cutoff, speeds = len(scene.cutoffs) // 2, 1e3 * np.array(scene.speeds)
     true = np.array(result.quantities["threshold_force"].value)
     for name, (words, colour, line) in PARTS.items():
         if name == "film_error" and not np.nan_to_num(_grid(result, name)).any():
@@ -163,7 +158,8 @@ def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
     axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.set_xlabel("speed in mm/s")
-    axis.set_title(f"what makes it at a cut-off of {format_quantity(result.details['cutoffs'][cutoff], 'Hz')}", loc="left")
+    chosen = format_quantity(scene.cutoffs[cutoff], "Hz")
+    axis.set_title(f"what makes it at a cut-off of {chosen}", loc="left")
     if axis.get_subplotspec() and axis.get_subplotspec().is_first_col():  # type: ignore[union-attr]
         axis.set_ylabel("part of the mean error, % of the threshold")
     despined(axis)
@@ -171,64 +167,71 @@ def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
 
 def threshold_signal_figure(result: Result) -> Figure:
     """Both sensors over time, the large one with the captured threshold, and below the small one with its level (Fig. 3.6b)."""
-    result, told = _around_capture(result), result.details["capture"]
-    time = _history(result, "time")
+    told = _capture(result)
+    result = _around(told, result)
+    time = result.history("time")
     with styled():
         figure = new_figure(8.0, 5.6)
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(1.4, 1))
-        large, unit = scale_of(float(_history(result, "large_reading").max()), "N")
-        small, small_unit = scale_of(float(_history(result, "small_reading").max()), "N")
+        large, unit = scale_of(float(result.history("large_reading").max()), "N")
+        small, small_unit = scale_of(float(result.history("small_reading").max()), "N")
         _draw_signal(axes[0], result, "large", large, LARGE_COLOUR)
-        axes[0].plot(time, large * _history(result, "plate_force"), ":", color="black", label="force on the plate")
+        axes[0].plot(time, large * result.history("plate_force"), ":", color="black", label="force on the plate")
         _draw_signal(axes[1], result, "small", small, SMALL_COLOUR)
-        axes[1].plot(time, small * _history(result, "small_force"), ":", color="black", label="force on it")
-        axes[1].axhline(small * told["trigger_level"], color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
-        axes[1].annotate("trigger", (time[0], small * told["trigger_level"]), (2, 3), textcoords="offset points", fontsize=8)
+        axes[1].plot(time, small * result.history("small_force"), ":", color="black", label="force on it")
+        axes[1].axhline(small * told.trigger_level, color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
+        axes[1].annotate("trigger", (time[0], small * told.trigger_level), (2, 3), textcoords="offset points", fontsize=8)
         for axis in axes:
-            axis.axvline(told["touch_time"], color="0.45", linewidth=0.9, linestyle="-.")
+            axis.axvline(told.touch_time, color="0.45", linewidth=0.9, linestyle="-.")
             despined(axis)
         _mark_capture(axes, told, large)
         axes[0].set_ylabel(f"large sensor in {unit}")
         axes[1].set(xlabel="time in s", ylabel=f"small sensor in {small_unit}", xlim=(time[0], time[-1]))
         for axis in axes:
             axis.legend(fontsize=8, loc="upper left")
-        speed, noise, cutoff = (format_quantity(told[k], u) for k, u in (("speed", "m/s"), ("noise", "V"), ("cutoff", "Hz")))
+        speed, noise, cutoff = (
+            format_quantity(value, unit) for value, unit in ((told.speed, "m/s"), (told.noise, "V"), (told.cutoff, "Hz"))
+        )
         _headed(figure, result, f"One touch at {speed}, white noise {noise} rms, low pass {cutoff}")
     return figure
 
 
-def _around_capture(result: Result) -> Result:
+def _capture(result: Result) -> ThresholdCapture:
+    """The touch whose steps the result holds."""
+    capture = result.scene_as(ThresholdTrialScene).capture
+    if capture is None:
+        raise InputError("the result has steps of a touch but no capture")
+    return capture
+
+
+def _around(capture: ThresholdCapture, result: Result) -> Result:
     """The result without the time long after the capture."""
-    told = result.details["capture"]
-    begin, last = result.steps[0].values["time"], max(told["touch_time"], told.get("trigger_time", np.inf))
+    trigger = np.inf if capture.trigger_time is None else capture.trigger_time
+    begin, last = result.steps[0].values["time"], max(capture.touch_time, trigger)
     kept = tuple(step for step in result.steps if step.values["time"] <= last + AFTER * (last - begin))
     return replace(result, steps=kept)
 
 
 def _draw_signal(axis: Axes, result: Result, name: str, factor: float, colour: str) -> None:
-    time = _history(result, "time")
-    plain, filtered = (factor * _history(result, f"{name}_reading{end}") for end in ("_unfiltered", ""))
+    time = result.history("time")
+    plain, filtered = (factor * result.history(f"{name}_reading{end}") for end in ("_unfiltered", ""))
     axis.plot(time, plain, color=colour, alpha=0.3, linewidth=0.7, label="reading, unfiltered")
     axis.plot(time, filtered, color=colour, label="reading, filtered")
     spread = float(np.ptp(filtered))
     axis.set_ylim(min(-0.05 * spread, float(filtered.min()) - 0.1 * spread), float(filtered.max()) + 0.05 * spread)
 
 
-def _mark_capture(axes: Any, told: dict[str, Any], factor: float) -> None:
+def _mark_capture(axes: Any, told: ThresholdCapture, factor: float) -> None:
     """The captured threshold and, beside it, the true one."""
-    true = format_quantity(float(f"{told['threshold_force']:.3g}"), "N")
-    axes[0].plot(told["touch_time"], factor * told["threshold_force"], "s", color="0.45", markersize=6, fillstyle="none")
-    if "trigger_time" not in told:
+    true = format_quantity(float(f"{told.threshold_force:.3g}"), "N")
+    axes[0].plot(told.touch_time, factor * told.threshold_force, "s", color="0.45", markersize=6, fillstyle="none")
+    if told.trigger_time is None or told.captured_force is None:
         axes[0].set_title(f"no threshold captured; true threshold {true}", loc="left")
         return
     for axis in axes:
-        axis.axvline(told["trigger_time"], color=CAPTURE_COLOUR, linewidth=0.9)
-    axes[0].plot(told["trigger_time"], factor * told["captured_force"], "o", color=CAPTURE_COLOUR, markersize=8, zorder=5)
-    captured = format_quantity(float(f"{told['captured_force']:.3g}"), "N")
-    late = format_quantity(float(f"{told['trigger_time'] - told['touch_time']:.2g}"), "s")
-    when = f"{late} after the touch (dash-dotted)" if told["trigger_time"] >= told["touch_time"] else "before the touch: false"
+        axis.axvline(told.trigger_time, color=CAPTURE_COLOUR, linewidth=0.9)
+    axes[0].plot(told.trigger_time, factor * told.captured_force, "o", color=CAPTURE_COLOUR, markersize=8, zorder=5)
+    captured = format_quantity(float(f"{told.captured_force:.3g}"), "N")
+    late = format_quantity(float(f"{told.trigger_time - told.touch_time:.2g}"), "s")
+    when = f"{late} after the touch (dash-dotted)" if told.trigger_time >= told.touch_time else "before the touch: false"
     axes[0].set_title(f"captured threshold {captured} (dot), {when}; true threshold {true} (square)", loc="left")
-
-
-def _history(result: Result, name: str) -> Array:
-    return np.array([step.values.get(name, np.nan) for step in result.steps])

@@ -41,8 +41,8 @@ def test_constants_errors_and_the_statement_are_reported(result):
     assert any("trust the curves" in warning for warning in result.warnings)
     assert any("search longer" in warning for warning in result.warnings)
     assert any("not printed" in assumption for assumption in result.assumptions)
-    assert result.details["least_squares"]["true_curves_inside_band"] is True
-    assert set(result.details["least_squares"]["told"]) >= {"e_0", "e_8", "tau_8"}
+    assert result.scene.fits["least_squares"].true_curves_inside_band is True
+    assert set(result.scene.fits["least_squares"].told) >= {"e_0", "e_8", "tau_8"}
 
 
 def test_history_holds_the_curves_and_the_data_at_their_frequencies(result):

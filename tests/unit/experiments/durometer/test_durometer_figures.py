@@ -6,8 +6,12 @@ from dataclasses import replace
 
 import pytest
 from matplotlib.text import Text
+from scenes import SOLVER
 
+from tactsim.analytic.durometer import DurometerScale
+from tactsim.contact.sphere import Sphere
 from tactsim.experiments.durometer.figures.durometer import durometer_figure
+from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord
 
@@ -19,9 +23,10 @@ def made_up(**quantities):
         StepRecord(k, 5, 1e-12, {"displacement": 5e-4 * k, "reaction_force": 0.2 * k**1.5, "hertz_force": 0.15 * k**1.5})
         for k in range(1, 6)
     )
-    details = {"scale": {"travel": 2.5e-3, "force_at_zero": 0.203, "force_per_unit": 0.00908}, "title": "A title"}
+    pressed = {"body": Sphere(radius=1e-3), "starting_height": 0.0, "recess": None, "solver": SOLVER}
+    scene = DurometerScene(**pressed, scale=DurometerScale(), youngs_modulus=1e4)
     told = {name: Quantity(value, "1", "") for name, value in quantities.items()}
-    return Result("durometer", Status.CONVERGED, "because", told, steps=steps, details=details)
+    return Result("durometer", Status.CONVERGED, "because", told, steps=steps, title="A title", scene=scene)
 
 
 def texts(figure):

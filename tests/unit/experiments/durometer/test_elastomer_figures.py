@@ -9,6 +9,7 @@ from matplotlib.text import Text
 
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3
 from tactsim.experiments.durometer.figures.elastomer_ranking import elastomer_ranking_figure
+from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.plotting import figures_for
 from tactsim.results import Result, Status, StepRecord
 
@@ -21,11 +22,8 @@ def made_up():
         for row in PREDICTED
         for k, value in enumerate(row, 1)
     ]
-    details = {
-        "elastomers": [one.model_dump(mode="json") for one in TABLE_3_3],
-        "shapes": [one.model_dump(mode="json") for one in STABLE_SHAPES[:2]],
-    }
-    return Result("elastomer_ranking", Status.CONVERGED, "done", steps=tuple(steps), details=details)
+    scene = ElastomerRankingScene(elastomers=TABLE_3_3, shapes=STABLE_SHAPES[:2], threshold_displacement=(1e-3, 2e-3))
+    return Result("elastomer_ranking", Status.CONVERGED, "done", steps=tuple(steps), scene=scene)
 
 
 def texts(figure):

@@ -100,8 +100,8 @@ def test_what_a_run_records():
     assert found["taxel_force_lower_history"][-1] == found["taxel_force_lower"]
     assert result.steps[-1].values["taxel_force_upper_1_3"] == found["taxel_force_upper"][0][2]
     assert {name for step in result.steps for name in step.values} <= set(result.units)
-    assert any(result.details["mesh"]["content"] in told for told in result.assumptions)
-    assert [result.details["jaw_places"][side][2] for side in JAWS] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
+    assert any(result.scene.mesh.content in told for told in result.assumptions)
+    assert [result.scene.jaw_places[side][2] for side in JAWS] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
     assert len(result.frames) == 2
     frame = result.frames[-1]
     assert set(np.unique(frame.cell_data["region [1]"])) == {0.0, 1.0}
@@ -186,7 +186,7 @@ def test_a_failure_keeps_what_was_accepted(monkeypatch):
     assert result.status == "failed"
     assert "no way" in result.reason
     assert result.quantities["displacement"].value < 0.6e-3
-    assert result.details["rejected_steps"] > 0
+    assert result.scene.solver.rejected_steps > 0
 
 
 def test_an_interruption_keeps_what_was_accepted():

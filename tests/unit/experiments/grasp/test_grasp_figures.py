@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from matplotlib.image import imread, imsave
 from matplotlib.text import Text
+from scenes import grasp_scene
 
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures import view as grasp_view
 from tactsim.experiments.grasp.figures.grasp import grasp_figure, history_figure, maps_figure, section_figure
 from tactsim.experiments.grasp.figures.maps import inclusion_shadows
 from tactsim.experiments.grasp.figures.moment import shown_moment
-from tactsim.experiments.grasp.figures.parts import SIDES, grasp_of
 from tactsim.experiments.grasp.figures.section import cutting_plane
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.experiments.grasp.scene import SimulatedGrasp
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.structured_block import morphed_block
@@ -56,21 +56,14 @@ def made_up(*, frame=None, status=Status.CONVERGED, steps=STEPS, tilt=0.0, layou
     pressure = {"upper": 2e3 + 5e3 * shape, "lower": 2.2e3 + 1.5e3 * shape}
     course = np.linspace(1 / steps, 1, steps)
     quantities = {"displacement": Quantity(CLOSING, "m", "")}
-    for side in SIDES:
+    for side in JAWS:
         force = pressure[side] * layout.area
         quantities |= {
             f"taxel_pressure_{side}": Quantity(pressure[side].tolist(), "Pa", ""),
             f"taxel_force_{side}": Quantity(force.tolist(), "N", ""),
             f"taxel_force_{side}_history": Quantity((course[:, None, None] ** 1.3 * force).tolist(), "N", ""),
         }
-    jaws = {side: Jaw(width=50e-3, depth=50e-3, side=side, tilt_y=tilt) for side in SIDES}
-    details = {
-        "title": "A made-up grasp",
-        "block_size": SIZE.tolist(),
-        "inclusions": [SPHERE.model_dump(mode="json")],
-        "jaws": {side: jaw.model_dump(mode="json") for side, jaw in jaws.items()},
-        "matrix": layout.model_dump(mode="json"),
-    }
+    scene = grasp_scene(SIZE, layout, [SPHERE], closing=CLOSING - 25e-3 * abs(tilt), tilt_y=tilt)
     records = tuple(
         StepRecord(
             k + 1,
@@ -82,7 +75,7 @@ def made_up(*, frame=None, status=Status.CONVERGED, steps=STEPS, tilt=0.0, layou
         for k, s in enumerate(course)
     )
     frames = () if frame is None else (frame,)
-    return Result("grasp", status, "because", quantities, steps=records, frames=frames, details=details)
+    return Result("grasp", status, "because", quantities, steps=records, frames=frames, title="A made-up grasp", scene=scene)
 
 
 @pytest.fixture(scope="module")
@@ -135,16 +128,15 @@ def test_an_artery_is_shown_at_its_highest_pressure(frame):
     steps = tuple(
         replace(step, values=step.values | {"lumen_pressure_1": p}) for step, p in zip(result.steps, course, strict=True)
     )
-    places = {side: [20e-3, 20e-3, 19e-3 if side == "upper" else 1e-3] for side in SIDES}
     frames = (replace(frame, time=steps[2].values["time"]), replace(frame, time=steps[-1].values["time"]))
-    pulsing = replace(result, steps=steps, frames=frames, details=result.details | {"jaw_places": places})
+    pulsing = replace(result, steps=steps, frames=frames)
     shown = shown_moment(pulsing)
     assert [found.time for found in shown.frames] == [frames[0].time]
     assert shown.steps == steps
     force = np.asarray(result.quantities["taxel_force_upper_history"].value)[2]
     np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)
     opened = CLOSING - steps[2].values["displacement"]
-    assert shown.details["jaw_places"]["upper"][2] == pytest.approx(19e-3 + opened)
+    assert shown.scene_as(SimulatedGrasp).jaw_places["upper"][2] == pytest.approx(SIZE[2] - CLOSING + opened)
     assert "highest pressure, 5 kPa" in told(section_figure(shown))
     assert shown_moment(result) is result
     assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
@@ -173,18 +165,6 @@ def test_plane_passes_the_inclusion_and_crosses_a_long_one(frame):
     assert cutting_plane(bare, SIZE) == (1, 20e-3, 0)
 
 
-def test_jaws_stand_where_they_meet_the_tissue_or_where_the_result_says(frame):
-    grasp = grasp_of(made_up(frame=frame))
-    np.testing.assert_allclose(grasp.places["upper"], [20e-3, 20e-3, SIZE[2] - CLOSING], atol=1e-8)
-    np.testing.assert_allclose(grasp.places["lower"], [20e-3, 20e-3, CLOSING], atol=1e-8)
-    given = made_up(frame=frame)
-    places = {"upper": [1.0, 2.0, 3.0], "lower": [4.0, 5.0, 6.0]}
-    told_places = grasp_of(replace(given, details={**given.details, "jaw_places": places})).places
-    assert {side: place.tolist() for side, place in told_places.items()} == places
-    leaning = grasp_of(made_up(frame=frame, tilt=0.05)).places["upper"]
-    assert leaning[2] > SIZE[2] - CLOSING + 0.5e-3
-
-
 def test_shadow_of_a_ball_is_its_disc(frame):
     x, y, covered = inclusion_shadows(frame, SIZE)
     area = covered.sum() * (x[1] - x[0]) * (y[1] - y[0])
@@ -196,7 +176,7 @@ def test_shadow_of_a_ball_is_its_disc(frame):
 def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
     pressures = {"upper": np.arange(1.0, 7.0).reshape(2, 3) * 1e3, "lower": np.full((2, 3), 5e2)}
     result = made_up(layout=TaxelLayout(rows=2, columns=3, pitch=8e-3, size=6e-3))
-    written = {f"taxel_pressure_{side}": Quantity(pressures[side].tolist(), "Pa", "") for side in SIDES}
+    written = {f"taxel_pressure_{side}": Quantity(pressures[side].tolist(), "Pa", "") for side in JAWS}
     axes = maps_figure(replace(result, quantities={**result.quantities, **written})).axes
     places = {text.get_text(): text.get_position() for text in axes[0].texts}
     assert places["1.00"][0] == pytest.approx(12.0)

@@ -55,7 +55,7 @@ def test_a_readout_that_fails_does_not_lose_the_grasp():
 
 
 def test_an_incomplete_grasp_is_refused(read_grasp, tmp_path):
-    write_result(replace(read_grasp, details={}), tmp_path / "grasp", case_id="0" * 16, provenance={})
+    write_result(replace(read_grasp, scene=None), tmp_path / "grasp", case_id="0" * 16, provenance={})
     with pytest.raises(StorageError, match="not a complete result of a grasp"):
         MatrixReadoutRun(grasp=str(tmp_path / "grasp")).run()
 

@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from scenes import SOLVER
 
+from tactsim.contact.annulus import Annulus
 from tactsim.experiments.indentation.figures.indentation import indentation_figure
+from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.plotting import figures_for
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
 
@@ -27,8 +30,8 @@ def made_up(status=Status.CONVERGED):
         "threshold_force": Quantity(1.6, "N", ""),
         "threshold_pressure": Quantity(75450.0, "Pa", ""),
     }
-    details = {"body": {"kind": "annulus"}, "recess": 2e-4, "starting_height": 0.0, "title": "A title"}
-    return Result("indentation", status, "because", quantities, steps=steps, frames=(frame,), details=details)
+    scene = IndentationScene(body=Annulus(), recess=2e-4, starting_height=0.0, solver=SOLVER)
+    return Result("indentation", status, "because", quantities, steps=steps, frames=(frame,), title="A title", scene=scene)
 
 
 def texts(figure):

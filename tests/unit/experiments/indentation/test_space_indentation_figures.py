@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from scenes import SOLVER
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.tilted import Tilted
 from tactsim.experiments.indentation.figures.indentation_3d import space_indentation_figure
 from tactsim.experiments.indentation.figures.section import Section
 from tactsim.experiments.indentation.figures.section_3d import cut
+from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.mesh.axisymmetric import section_mesh
 from tactsim.mesh.revolved import swept
 from tactsim.plotting import figures_for
@@ -31,15 +33,9 @@ def made_up(symmetry="half", status=Status.CONVERGED):
         for k in range(1, 5)
     )
     body = Tilted(body=Annulus(), tilt_y=0.0 if symmetry == "quarter" else 0.05)
-    details = {
-        "body": body.model_dump(mode="json"),
-        "symmetry": symmetry,
-        "starting_height": 0.0,
-        "recess": 8e-4,
-        "title": "A title",
-    }
+    scene = Indentation3dScene(body=body, starting_height=0.0, recess=8e-4, solver=SOLVER, symmetry=symmetry, offset=0.0)
     quantities = {"pressure_around": Quantity([1e4, 2e4, 2e4, 1e4, 5e3, 4e3, 4e3, 5e3], "Pa", "")}
-    return Result("indentation_3d", status, "because", quantities, steps=steps, frames=(frame,), details=details)
+    return Result("indentation_3d", status, "because", quantities, steps=steps, frames=(frame,), title="A title", scene=scene)
 
 
 @pytest.mark.parametrize(("symmetry", "sections"), [("quarter", 1), ("half", 2), ("whole", 2)])

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from scenes import grasp_scene
 
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import Confusion
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -24,15 +24,9 @@ def stored(folder, forces, inclusions):
     found = {"displacement": Quantity(1e-3, "m", "")}
     for jaw, side in enumerate(("upper", "lower")):
         found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
-    details = {
-        "block_size": [40e-3, 40e-3, 20e-3],
-        "inclusions": [shape.model_dump(mode="json") for shape in inclusions],
-        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
-        "jaw_places": {"upper": [20e-3, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
-        "matrix": layout.model_dump(mode="json"),
-    }
+    scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, width=40e-3, depth=40e-3)
     step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})
-    result = Result("grasp", Status.CONVERGED, "", found, steps=(step,), units={"displacement": "m"}, details=details)
+    result = Result("grasp", Status.CONVERGED, "", found, steps=(step,), units={"displacement": "m"}, scene=scene)
     return str(write_result(result, folder, case_id="0" * 16, provenance={}))
 
 
@@ -61,7 +55,7 @@ def test_classes_are_counted(folders):
     assert result.quantities["share_right"].value == pytest.approx(6 / 9)
     assert result.quantities["recalls"].value == [1.0, 0.5, None, None, None]
     assert figures_for(result)["confusion.png"]()[:4] == b"\x89PNG"
-    assert str(folders["lump"]) not in str(result.details)
+    assert str(folders["lump"]) not in str(result.scene)
 
 
 def test_much_noise_hides_the_lump(folders):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scenes import grasp_scene
 
 from tactsim.case.loading import load_case
-from tactsim.contact.jaw import Jaw
 from tactsim.errors import CaseError, InputError, StorageError
 from tactsim.experiments.localization.figures.parts import outline, viewed
 from tactsim.experiments.localization.figures.views import VIEWS, views_figure
@@ -39,16 +39,12 @@ def grasp(forces, *, closing=1e-3, inclusions=(SPHERE,), apart=0.0, layout=None,
     for jaw, side in enumerate(("upper", "lower")):
         found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
         found[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
-    details = {
-        "block_size": SIZE.tolist(),
-        "inclusions": [shape.model_dump(mode="json") for shape in inclusions],
-        "jaws": {side: Jaw(side=side, width=40e-3, depth=40e-3).model_dump(mode="json") for side in ("upper", "lower")},
-        "jaw_places": {"upper": [20e-3 + apart, 20e-3, 19e-3], "lower": [20e-3, 20e-3, 1e-3]},
-        "matrix": layout.model_dump(mode="json"),
-    }
+    scene = grasp_scene(SIZE, layout, inclusions, width=40e-3, depth=40e-3)
+    x, y, z = scene.jaw_places["upper"]
+    scene = scene.model_copy(update={"jaw_places": scene.jaw_places | {"upper": (x + apart, y, z)}})
     step = StepRecord(1, 3, 0.0, {"displacement": closing})
     return Result(
-        "grasp", Status.CONVERGED, "made up", found | (extra or {}), steps=(step,), units={"displacement": "m"}, details=details
+        "grasp", Status.CONVERGED, "made up", found | (extra or {}), steps=(step,), units={"displacement": "m"}, scene=scene
     )
 
 

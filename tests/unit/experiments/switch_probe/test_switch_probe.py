@@ -51,14 +51,13 @@ def three():
 
 def forces(result):
     """Force (tissue, rate, depth) in N at each mm."""
-    details = result.details
-    shape = (len(details["tissues"]), len(details["rates"]), 5)
+    shape = (len(result.scene.tissues), len(result.scene.rates), 5)
     return np.array([result.quantities[f"forces_{k + 1}"].value for k in range(shape[0] * shape[1])]).reshape(shape)
 
 
 def test_the_rankings_of_figure_5_8(three):
     assert three.status is Status.CONVERGED
-    assert three.details["rates"] == [1e-3, 0.5e-3, 3e-3]
+    assert three.scene.rates == (1e-3, 0.5e-3, 3e-3)
     first, second, third = forces(three)
     assert (second > first).all()
     assert (second > third).all()
@@ -71,13 +70,13 @@ def test_the_rankings_of_figure_5_8(three):
 
 
 def test_every_touch_is_read(three):
-    for number, told in enumerate(three.details["touches"], 1):
-        assert told["count"] == 1
-        assert [closing["switch"] for closing in told["closings"]] == [1, 2, 3, 4, 5]
-        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(told["rate"], rel=0.03)
+    for number, told in enumerate(three.scene.touches, 1):
+        assert told.count == 1
+        assert [closing.switch for closing in told.closings] == [1, 2, 3, 4, 5]
+        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(told.rate, rel=0.03)
         intervals = three.quantities[f"switching_intervals_{number}"].value
         assert intervals[1:] == pytest.approx(
-            1e-3 / told["rate"], rel=0.05
+            1e-3 / told.rate, rel=0.05
         )  # the pressure on each switch is higher, so its threshold is met sooner
         read, true = three.quantities[f"switching_forces_{number}"].value, three.quantities[f"forces_{number}"].value
         assert ((read < true * 1.05) & (read > true * 0.85)).all(), "half a strip early, late by the threshold"

@@ -66,7 +66,7 @@ def test_shares_are_areas_and_mixed_thresholds_lie_between():
 
 def test_straddling_and_small_thresholds_are_told():
     result = run(place=(10e-3, 0.0))
-    assert result.details["straddles"] == [True, False, False, False]
+    assert result.scene.straddles == (True, False, False, False)
     assert any("over two tissues: 1" in warning for warning in result.warnings)
     assert any("E27" in warning for warning in result.warnings)
 
@@ -99,13 +99,13 @@ def test_touches_without_a_usable_threshold_are_told():
 
 def test_a_tilted_tip_leaves_sensors_without_contact():
     result = run(tilt=0.2, tilt_direction=np.pi, press=0.8e-3)
-    assert result.details["state"] == ["no contact", "threshold not reached", "measured", "threshold not reached"]
+    assert result.scene.state == ("no contact", "threshold not reached", "measured", "threshold not reached")
     assert result.quantities["reported_force"].value[0] is None
     assert result.quantities["valid_rate"].value[:2] == [0, 0]
     assert result.quantities["chance_of_wrong"].value == 1, "the hardest place is not touched"
     assert any("sensor 1: no contact" in warning for warning in result.warnings)
     flat = run()
-    assert flat.details["state"] == ["measured"] * 4
+    assert flat.scene.state == ("measured",) * 4
     np.testing.assert_allclose(RING.lag(0.2, np.pi), np.tan(0.2) * RING.radius * np.array([2, 1, 0, 1]))
 
 

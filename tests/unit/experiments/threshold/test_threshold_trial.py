@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 from pydantic import ValidationError
+from scenes import SOLVER
 
 from tactsim.case import load_case
+from tactsim.contact.annulus import Annulus
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
 from tactsim.experiments.threshold.figures.threshold_trial import threshold_error_figure, threshold_signal_figure
 from tactsim.experiments.threshold.sampling import ApproachSampling
@@ -66,13 +69,13 @@ def test_errors_over_speed_noise_and_cutoff(result):
 
 
 def test_the_recording_and_its_capture(result):
-    told = result.details["capture"]
+    told = result.scene.capture
     times = np.array([step.values["time"] for step in result.steps])
-    at = int(np.searchsorted(times, told["trigger_time"]))
-    assert times[at] == told["trigger_time"]
-    assert result.steps[at].values["large_reading"] == told["captured_force"]
-    assert result.steps[at].values["small_reading"] > told["trigger_level"]
-    assert told["trigger_time"] > told["touch_time"] > told["armed_time"]
+    at = int(np.searchsorted(times, told.trigger_time))
+    assert times[at] == told.trigger_time
+    assert result.steps[at].values["large_reading"] == told.captured_force
+    assert result.steps[at].values["small_reading"] > told.trigger_level
+    assert told.trigger_time > told.touch_time > told.armed_time
     assert set(result.steps[0].values) == set(result.units) <= set(ThresholdTrial.history_units)
 
 
@@ -99,7 +102,7 @@ def test_rates_of_false_missed_and_saturated_trials_are_told_and_drawn():
     assert false.quantities["force_error"].value == [[[None]]]
     missed = run(sensor=ThresholdSensor(trigger=TriggerLevel(force=5.0)))
     assert grid(missed, "missed_rate")[0, 0, 0] == 1
-    assert "trigger_time" not in missed.details["capture"]
+    assert missed.scene.capture.trigger_time is None
     narrow = SignalChain(converter=Converter(low=0.0, high=0.2), low_pass=SignalChain().low_pass)
     saturated = run(sensor=ThresholdSensor(chain=narrow))
     assert grid(saturated, "saturated_rate")[0, 0, 0] == 1
@@ -158,8 +161,9 @@ def stored(path, *, past, status=Status.CONVERGED, kind="indentation"):
         for n, d in enumerate(depth.tolist(), 1)
     ]
     reached = {"threshold_displacement": Quantity(1e-3, "m", "there")}
-    details = {"body": {"inner_radius": 1.5e-3, "outer_radius": 3e-3}, "recess": 0.8e-3}
-    result = Result(kind=kind, status=status, reason="done", quantities=reached, steps=tuple(steps), details=details)
+    body = Annulus(inner_radius=1.5e-3, outer_radius=3e-3)
+    scene = IndentationScene(body=body, starting_height=0.0, recess=0.8e-3, solver=SOLVER)
+    result = Result(kind=kind, status=status, reason="done", quantities=reached, steps=tuple(steps), scene=scene)
     return write_result(result, path, case_id="0" * 16, provenance={})
 
 

@@ -1,0 +1,45 @@
+"""What an identification from dynamic mechanical analysis reports beside quantities and history."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tactsim.results.scene import Scene
+from tactsim.units import FrozenModel
+
+
+class KelvinFit(FrozenModel):
+    """What one method of fitting found; constants by name in SI."""
+
+    evaluations: int
+    """Of the objective."""
+    statement: str
+    """How many constants the data determine, in words."""
+    constants: dict[str, float]
+    """Their values."""
+    standard_errors_of_logarithms: dict[str, float | None]
+    """Of each constant."""
+    told: dict[str, bool]
+    """Whether the data determine each constant."""
+    singular_values: tuple[float, ...]
+    """Of the sensitivity of the data to the logarithms of the constants, over the noise."""
+    confidence: float
+    """Of the band."""
+    band: Literal["simultaneous", "pointwise"]
+    """What the band holds at once: the whole curve, or each point of it."""
+    generation: tuple[int, ...] = ()
+    """Some generations of a genetic algorithm."""
+    best_objective: tuple[float, ...] = ()
+    """The best objective in each of them."""
+    true_curves_inside_band: bool | None = None
+    """Of synthetic data, whether the band holds the true curves."""
+
+
+class DmaScene(Scene):
+    """The fits, by method."""
+
+    kind: Literal["dma_identification"] = "dma_identification"
+    data_frequencies: tuple[float, ...]
+    """In Hz."""
+    fits: dict[str, KelvinFit]
+    """By the name of the method."""

@@ -1,0 +1,49 @@
+"""What the experiments on a film report beside quantities and history."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tactsim.results.scene import Scene
+from tactsim.units import FrozenModel
+
+
+class FilmTestScene(Scene):
+    """When the film was read, and its standard linear solid at each force."""
+
+    kind: Literal["film_test"] = "film_test"
+    reading_time: float
+    """Time of the reading in s after the force began."""
+    coefficients: dict[str, tuple[float, ...]]
+    """``instantaneous`` and ``delayed`` modulus in Pa and ``viscosity`` in Pa s, at every force."""
+
+
+class CreepCurve(FrozenModel):
+    """A creep test, thinned for the figure."""
+
+    force: float
+    """In N."""
+    time: tuple[float, ...]
+    """In s."""
+    strain: tuple[float, ...]
+    """At each time."""
+
+
+class FilmCreepScene(Scene):
+    """The creep tests that were fitted."""
+
+    kind: Literal["film_creep"] = "film_creep"
+    tests: tuple[CreepCurve, ...]
+    """By force, in the order of the data."""
+    area: float
+    """Loaded area in m^2."""
+
+
+class CalibrationScene(Scene):
+    """What the errors of a calibration are related to."""
+
+    kind: Literal["calibration"] = "calibration"
+    full_scale: float
+    """In N."""
+    confidence: float
+    """Of the band of the line."""

@@ -1,0 +1,48 @@
+"""What an indentation reports beside quantities and history: the body, its height at first touch, the inner sensor."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from tactsim.interfaces import RigidBody
+from tactsim.registry import Registered
+from tactsim.results.scene import Scene, SolverReport
+
+
+class PressedBodyScene(Scene):
+    """A rigid body on tissue."""
+
+    body: Annotated[RigidBody, Registered(RigidBody)]
+    """The body."""
+    starting_height: float
+    """Height in m of its reference point at first touch, above the undeformed surface."""
+    recess: float | None
+    """Depth in m of the inner sensor below the face of an annulus; null without one."""
+    solver: SolverReport
+    """What the solution took."""
+
+
+class IndentationScene(PressedBodyScene):
+    """An elastic indentation of a section."""
+
+    kind: Literal["indentation"] = "indentation"
+
+
+class TimedIndentationScene(PressedBodyScene):
+    """An indentation of a section over time."""
+
+    kind: Literal["timed_indentation"] = "timed_indentation"
+    control: Literal["displacement", "force"]
+    """What is prescribed."""
+    compare: Literal["half_space", "layer"] | None
+    """The closed form that it is compared with."""
+
+
+class Indentation3dScene(PressedBodyScene):
+    """An indentation in three dimensions."""
+
+    kind: Literal["indentation_3d"] = "indentation_3d"
+    symmetry: Literal["quarter", "half", "whole"]
+    """Part of the specimen that was computed."""
+    offset: float
+    """Distance in m of the body from the axis of the specimen, along x."""

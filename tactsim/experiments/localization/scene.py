@@ -1,0 +1,88 @@
+"""What a localization reports beside its quantities: the grasp that was read, the estimated inclusions, the trusted taxels."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tactsim.experiments.grasp.scene import GraspScene, Point
+from tactsim.localization.interface import EstimatedInclusion
+from tactsim.results.scene import Scene
+from tactsim.units import FrozenModel
+
+Line = list[tuple[float, float]]
+
+
+class EstimatedShape(FrozenModel):
+    """An inclusion as an estimator found it."""
+
+    kind: str
+    """"sphere", "tube", or "unknown" if the estimator does not tell."""
+    center: Point
+    """In m in the undeformed block."""
+    radius: float | None = None
+    """In m; null if not estimated."""
+    line: tuple[Point, Point] | None = None
+    """Both ends of the centre line of a tube in m; null if it is no tube."""
+    region: dict[str, list[Line]] | None = None
+    """By view, closed lines in m around where the centre lies with a probability of 90 %; null if not estimated."""
+
+    @classmethod
+    def of(cls, found: EstimatedInclusion) -> EstimatedShape:
+        """The shape of an estimated inclusion."""
+        region = None if found.region is None else found.region.shadows()
+        return cls.model_validate(
+            {"kind": found.kind, "center": found.center, "radius": found.radius, "line": found.line, "region": region}
+        )
+
+
+class LocalizedGrasp(GraspScene):
+    """A grasp with what an estimator found in it."""
+
+    kind: Literal["localization"] = "localization"
+    estimates: tuple[EstimatedShape, ...]
+    """The strongest first."""
+    estimator: str
+    """Kind of the estimator."""
+    noise: float
+    """Standard deviation of a reading in N."""
+    valid: tuple[tuple[tuple[bool, ...], ...], ...] | None = None
+    """Which taxels [jaw][row][column] can be trusted, the others are interpolated; null if all can."""
+    words: tuple[str, ...] = ()
+    """The estimates in words."""
+
+
+class JudgedGrasp(FrozenModel):
+    """One of the grasps whose class was estimated."""
+
+    grasp: str
+    """Name of the folder of its result."""
+    true: str
+    """Its true class."""
+    classes: tuple[dict[str, float] | None, ...]
+    """For every draw of the noise the probability of each class; null if the estimator gives none."""
+
+
+class ConfusionScene(Scene):
+    """What a confusion table was counted from."""
+
+    kind: Literal["confusion"] = "confusion"
+    classes: tuple[str, ...]
+    """Names of the classes, in the order of the table."""
+    grasps: tuple[JudgedGrasp, ...]
+    """In the order of the case."""
+    estimator: str
+    """Kind of the estimator."""
+
+
+class DetectabilityScene(Scene):
+    """Under which conditions the smallest lump was sought."""
+
+    kind: Literal["detectability"] = "detectability"
+    probability: float
+    """With which a lump is found."""
+    false_alarms: float
+    """Share of alarms without a lump."""
+    noise: float
+    """Standard deviation of a reading in N."""
+    side: float
+    """Side of the matrices in m."""

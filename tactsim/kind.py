@@ -1,0 +1,26 @@
+"""The base of every extension point: a concrete subclass is registered by its ``kind`` as it is defined."""
+
+from __future__ import annotations
+
+from abc import ABC
+from inspect import isabstract
+from typing import Any, ClassVar
+
+from tactsim.registry import register
+from tactsim.units import FrozenModel
+
+
+class Kind(FrozenModel, ABC):
+    """A base of what is registered by its ``kind``."""
+
+    package: ClassVar[str]
+    """Where the kinds of an extension point stand; a subclass that names it is an extension point."""
+    modules: ClassVar[str] = ".*"
+    """Pattern of the names, within that package, of the modules that define kinds."""
+    kind: str
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
+            register(cls)

@@ -1,0 +1,70 @@
+"""What later stages read of a run beside its quantities and history: a typed model for each kind of experiment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import ValidationError
+
+from tactsim.errors import TactsimError
+from tactsim.kind import Kind
+from tactsim.outside.text import one_line
+from tactsim.registry import kind_class
+from tactsim.units import FrozenModel
+
+EARLIER = "it was written by an earlier version of tactsim (schema_version 1), which described it in another form"
+
+
+class Scene(Kind):
+    """What a kind of experiment reports for figures, data sets and later experiments; lengths and all else in SI.
+
+    Subclass it in the module ``scene`` of the folder of that kind, with the kind as default.
+    """
+
+    package: ClassVar[str] = "tactsim.experiments"
+    modules: ClassVar[str] = r"\w+\.scene"
+
+
+class SolverReport(FrozenModel):
+    """What a solution by finite elements took: for diagnosis, not for later stages."""
+
+    unknowns: int
+    """Number of unknowns of the model."""
+    elements: int
+    """Number of its elements."""
+    linear_solver: str
+    """Name of the linear solver."""
+    rejected_steps: int
+    """Steps that did not converge and were repeated with a smaller length."""
+    newton_iterations: int
+    """Newton iterations of all accepted steps."""
+    mesh_adaptations: int = 0
+    """How often the mesh was adapted."""
+
+
+@dataclass(frozen=True)
+class UnreadableScene:
+    """A stored scene that cannot be read, and the reason."""
+
+    reason: str
+
+
+def read_scene(kind: str, described: Any) -> Scene | UnreadableScene | None:
+    """The scene of an experiment of a kind, from the mapping that `written_scene` made; None from None."""
+    if described is None:
+        return None
+    try:
+        scene: Scene = kind_class(Scene, kind).model_validate(described)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        place = ".".join(map(str, ("scene", *first["loc"])))
+        return UnreadableScene(f"{one_line(place)}: {one_line(first['msg'])}")
+    except (TactsimError, ArithmeticError) as error:
+        return UnreadableScene(f"scene: {one_line(error)}")
+    return scene
+
+
+def written_scene(scene: Scene) -> dict[str, Any]:
+    """The scene as plain JSON values, without its kind, which is that of the result."""
+    return scene.model_dump(mode="json", exclude={"kind"})

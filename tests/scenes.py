@@ -1,0 +1,40 @@
+"""Scenes of results that nobody computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tactsim.contact.jaw import Jaw
+from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.mesh.solid import Inclusion
+from tactsim.results import SolverReport
+
+SOLVER = SolverReport(unknowns=1000, elements=100, linear_solver="superlu", rejected_steps=0, newton_iterations=12)
+MESH = MeshReport(
+    content="0" * 16,
+    origin="made up",
+    least_quality=0.5,
+    mean_quality=0.8,
+    least_curvature=0.9,
+    straightened_edges=0,
+    volume_errors=(0.0,),
+    regions=("tissue",),
+)
+
+
+def grasp_scene(
+    size: Sequence[float], layout: TaxelLayout, inclusions: Sequence[Inclusion] = (), *, closing: float = 1e-3, **jaw: float
+) -> SimulatedGrasp:
+    """A grasp whose jaws, with these fields, have closed by ``closing`` in m on the middle of a block of this size in m."""
+    x, y, z = map(float, size)
+    return SimulatedGrasp(
+        block_size=(x, y, z),
+        inclusions=tuple(EmbeddedShape(shape=shape, unlike_tissue=True) for shape in inclusions),
+        jaws={side: Jaw.model_validate({"width": 50e-3, "depth": 50e-3} | jaw | {"side": side}) for side in JAWS},
+        jaw_places={"upper": (x / 2, y / 2, z - closing), "lower": (x / 2, y / 2, closing)},
+        matrix=layout,
+        solver=SOLVER,
+        mesh=MESH,
+        control="displacement",
+    )
