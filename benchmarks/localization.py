@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import Readings
 from tactsim.localization.views import SHAPE, views, volume
 
 SIDES = (3, 8, 16, 32)

@@ -1,10 +1,10 @@
-"""The base of every extension point: a concrete subclass is registered by its ``kind`` as it is defined."""
+"""The bases of every extension point: a concrete subclass is registered by its ``kind`` as it is defined."""
 
 from __future__ import annotations
 
-from abc import ABC
+from abc import ABC, abstractmethod
 from inspect import isabstract
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from tactsim.registry import register
 from tactsim.units import FrozenModel
@@ -24,3 +24,12 @@ class Kind(FrozenModel, ABC):
         super().__pydantic_init_subclass__(**options)
         if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
             register(cls)
+
+
+class CaseKind(Kind):
+    """What a case file names by its ``kind``."""
+
+    @classmethod
+    @abstractmethod
+    def example(cls) -> Self:
+        """A valid instance with values from its source; the contract tests start from it."""

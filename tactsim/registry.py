@@ -175,10 +175,14 @@ class Registered:
     ----------
     base : the extension point
     fits : which of its classes the field takes; all by default
+    default : the kind that is meant if a mapping names none; None demands it
+    unfit : what is wrong with a registered kind that does not fit, as the end of a sentence that begins with the kind
     """
 
-    def __init__(self, base: Any, fits: Callable[[Any], bool] = lambda cls: True):
-        self.base, self.fits = base, fits
+    def __init__(
+        self, base: Any, fits: Callable[[Any], bool] = lambda cls: True, *, default: str | None = None, unfit: str | None = None
+    ):
+        self.base, self.fits, self.default, self.unfit = base, fits, default, unfit
 
     def kinds(self) -> dict[str, Any]:
         """``kind`` -> class of what the field takes."""
@@ -189,16 +193,17 @@ class Registered:
 
         Raises
         ------
-        PydanticKnownError
-            If it is no mapping or has no kind.
+        PydanticKnownError, PydanticCustomError
+            If it is no mapping, has no kind, or one that the field does not take.
         """
-        if isinstance(value, self.base) and self.fits(type(value)):
+        if isinstance(value, self.base):
+            self._class(value.kind)
             return value
         if not isinstance(value, Mapping):
             raise PydanticKnownError("model_attributes_type")
-        if "kind" not in value:
+        if "kind" not in value and self.default is None:
             raise PydanticKnownError("union_tag_not_found", {"discriminator": "'kind'"})
-        cls = self._class(value["kind"])
+        cls = self._class(value.get("kind", self.default))
         if info.mode == "json":
             return cls.model_validate_json(json.dumps(value), strict=True, context=info.context)
         return cls.model_validate(value, context=info.context)
@@ -208,6 +213,9 @@ class Registered:
             cls = kind_class(self.base, kind) if isinstance(kind, str) else None
         except UnknownName:
             cls = None
+        if cls is not None and not self.fits(cls) and self.unfit is not None:
+            message = f"{kind} {self.unfit}; allowed: {', '.join(self.kinds())}"
+            raise PydanticCustomError("unfit_kind", "{message}", {"message": message})
         if cls is None or not self.fits(cls):
             known = ", ".join(f"'{name}'" for name in self.kinds())
             raise PydanticKnownError("union_tag_invalid", {"discriminator": "'kind'", "tag": str(kind), "expected_tags": known})
@@ -221,6 +229,9 @@ class Registered:
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         choices = {kind: _named_schema(cls) for kind, cls in self.kinds().items()}
+        if self.default is not None:
+            meant, others = handler(choices.pop(self.default)), [handler(schema) for schema in choices.values()]
+            return {"oneOf": [meant, *({"allOf": [one], "required": ["kind"]} for one in others)]} if others else meant
         return handler(core_schema.tagged_union_schema(choices, discriminator="kind"))
 
 

@@ -15,8 +15,8 @@ from tactsim.dataset.store.arrays import DONE
 from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import stored_variables
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result

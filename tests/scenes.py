@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
+from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.mesh.solid import Inclusion
 from tactsim.results import SolverReport
 
 SOLVER = SolverReport(unknowns=1000, elements=100, linear_solver="superlu", rejected_steps=0, newton_iterations=12)

@@ -117,19 +117,13 @@ def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.ranking.measures import ranking
     from tactsim.dataset.ranking.report import as_text, record
     from tactsim.experiments.localization.response_store import stored_response
+    from tactsim.localization.estimators.any_estimator import offered_estimators
     from tactsim.localization.estimators.learned import LearnedEstimator
-    from tactsim.localization.estimators.model_based import ModelBasedEstimator
-    from tactsim.localization.estimators.thesis import ThesisEstimator
-    from tactsim.localization.interface import Estimator
 
     folder = arguments.out or Path(RANKING)
     _refuse_place(folder)
     samples = _samples(arguments)
-    estimators: dict[str, Estimator] = {
-        "thesis": ThesisEstimator(),
-        "thesis with reference": ThesisEstimator(background="reference"),
-        "model_based": ModelBasedEstimator(),
-    }
+    estimators = offered_estimators()
     if arguments.learned is not None:
         estimators["learned"] = LearnedEstimator.checked(arguments.learned)
     ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
@@ -146,14 +140,15 @@ def _rank(arguments: argparse.Namespace) -> int:
 def _confusion(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.ranking.confusion import as_text, record, store_confusion, verdict
     from tactsim.experiments.localization.figures.confusion import confusion_png
-    from tactsim.localization.estimators.hypotheses import HypothesesEstimator
-    from tactsim.localization.interface import ROUNDING_NOISE
+    from tactsim.interfaces.readings import ROUNDING_NOISE
+    from tactsim.localization.estimators.any_estimator import offered_estimators
 
     if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
     folder = arguments.out or Path(CONFUSION)
     _refuse_place(folder)
-    estimator, given = HypothesesEstimator(), _noise(arguments)
+    told = [one for one in offered_estimators().values() if one.tells_classes]
+    estimator, given = told[0], _noise(arguments)
     noise = ROUNDING_NOISE if given is None else given
     split, seed = arguments.split, arguments.seed
     table, others = store_confusion(arguments.store, _references(arguments)[0], estimator, split=split, noise=noise, seed=seed)

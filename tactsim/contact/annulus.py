@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
+from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Length, format_quantity
 
 Array = np.ndarray
@@ -48,6 +49,11 @@ class Annulus(Revolved):
     def area(self) -> float:
         """Annular area in m^2 that the thesis divides the threshold force by."""
         return annular_area(self.inner_radius, self.outer_radius)
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The face, its hole and the rounding of both edges."""
+        return ContactShape(self.outer_radius, self.inner_radius, self.fillet)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
+from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Length
 
 Array = np.ndarray
@@ -41,6 +42,11 @@ class Punch(Revolved):
     def area(self) -> float:
         """Area of the face in m^2."""
         return float(np.pi * self.radius**2)
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The face and the rounding of its edge."""
+        return ContactShape(self.radius, fillet=self.fillet)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

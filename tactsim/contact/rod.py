@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.contact.profile import Revolved
+from tactsim.interfaces.contact_shape import ContactShape, RoundTip
 from tactsim.units import Length
 
 Array = np.ndarray
@@ -27,6 +28,11 @@ class Rod(Revolved):
     def example(cls) -> Self:
         """The indentor of type OO."""
         return cls()
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The hemisphere at its end."""
+        return ContactShape(self.radius, tip=RoundTip(elements=9, within_radius=True))
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the half-line of the centres above the end, minus the radius."""

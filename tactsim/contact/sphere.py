@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.interfaces import RigidBody
+from tactsim.interfaces.contact_shape import ContactShape, RoundTip
 from tactsim.units import Length
 
 Array = np.ndarray
@@ -27,6 +28,11 @@ class Sphere(RigidBody):
     def example(cls) -> Self:
         """A small indenter."""
         return cls()
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The sphere."""
+        return ContactShape(self.radius, tip=RoundTip(elements=20))
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance, normal and Hessian at points (d, n)."""

@@ -8,16 +8,16 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.contact.annulus import Annulus
-from tactsim.contact.plane import Plane
-from tactsim.contact.punch import Punch
-from tactsim.contact.sphere import Sphere
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
+from tactsim.interfaces.contact_shape import ContactShape
+from tactsim.registry import Registered
 from tactsim.units import Angle
 
 Array = np.ndarray
 
-TiltableBody = Annotated[Annulus | Plane | Punch | Sphere, Field(discriminator="kind")]
+TiltableBody = Annotated[RigidBody, Registered(RigidBody, lambda cls: {2, 3} <= set(cls.dimensions))]
+"""Any body that is defined by its section and in space, which is a body of revolution."""
 Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
 
 
@@ -42,6 +42,11 @@ class Tilted(RigidBody):
     def rotation(self) -> Array:
         """Matrix (3, 3) that turns the body's own axes into those of the tissue."""
         return tilt_matrix(self.tilt_x, self.tilt_y)
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """That of the body that is turned."""
+        return self.body.contact_shape
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""

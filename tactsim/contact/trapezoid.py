@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.profile import Revolved
+from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Angle, Length, format_quantity
 
 Array = np.ndarray
@@ -59,6 +60,11 @@ class Trapezoid(Revolved):
     def fillet_height(self) -> float:
         """Height in m above the face at which the fillet meets the side."""
         return self.fillet * (1 - math.sin(self.lean))
+
+    @property
+    def contact_shape(self) -> ContactShape:
+        """The face and the rounding of its corners."""
+        return ContactShape(self.radius, fillet=self.fillet)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded trapezoid: its faces moved in by the fillet, then grown by it."""

@@ -10,7 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from tactsim.errors import InputError
+from tactsim.fem.interpreted import InterpretedPart, PointState
 from tactsim.fem.kernels import compiled
+from tactsim.fem.material_forms import compiled_form
 from tactsim.fem.pattern import Pattern, build_pattern
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.threads import loop_threads
@@ -51,13 +53,19 @@ class Body:
     .. math::
         \\int (P_{iso}(F) + p\\, \\partial_F g) : \\nabla v\\, dV = f(v), \\qquad \\int q\\, (g(F) - p / K)\\, dV = 0
 
-    with g = J - 1 (or its linear part for a linear elastic material).
+    with the stress P = P_iso + p dg/dF and the volume change g of each material. Where a material has no compiled form, its
+    own methods are called at the points (``interpreted``), several times slower.
 
     Parameters
     ----------
     space : TaylorHood
     materials : one per region
     regions : (E,) index into ``materials``
+
+    Raises
+    ------
+    InputError
+        If there is not one region per element, or a region has no material.
     """
 
     past: PastStress | None = None
@@ -70,7 +78,8 @@ class Body:
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
         self.points = space.volume_points(quadrature_order)
-        self.linear = np.array([not hasattr(m, "energy_gradient") for m in materials])[self.regions]
+        self.linear = np.array([m.small_strain for m in materials])[self.regions]
+        self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self._kernels = compiled(space.dim)
 
@@ -102,18 +111,18 @@ class Body:
     def energy_slopes(self, state: Kinematics, *, second: bool) -> Array:
         """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear.
 
-        Scaled as the present step of a relaxing material asks.
+        Scaled as the present step of a relaxing material asks; zero where a material has no compiled form.
         """
         slopes = np.zeros((5 if second else 2, *state.J.shape))
         for index, material in enumerate(self.materials):
             mine = self.regions == index
-            if hasattr(material, "energy_gradient"):
-                values = material.energy_gradient(state.I1[mine], state.I2[mine])
+            if self.forms[index] == "invariants":
+                values = material.energy_gradient(state.I1[mine], state.I2[mine])  # type: ignore[attr-defined]
                 if second:
                     values = (*values, *material.energy_hessian(state.I1[mine], state.I2[mine]))  # type: ignore[attr-defined]
                 for slot, value in zip(slopes, values, strict=True):
                     slot[mine] = value
-            else:
+            elif self.forms[index] == "small_strain":
                 slopes[0, mine] = material.shear_modulus
         return slopes if self.past is None else slopes * self.past.scale[:, None]
 
@@ -124,7 +133,9 @@ class Body:
         out = np.zeros(self.space.size)
         slopes, pattern = self.energy_slopes(state, second=False), self.pattern
         with loop_threads(len(self.regions)):
-            self._kernels.residual(u, p, self._tables(), slopes, self._past(), pattern.order, pattern.color_starts, out)
+            self._kernels.residual(u, p, self._tables, slopes, self._past(), pattern.order, pattern.color_starts, out)
+        for part in self._interpreted:
+            part.add_residual(self._at(part, unknowns, state), out)
         return out
 
     def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
@@ -136,7 +147,9 @@ class Body:
         slopes = self.energy_slopes(state, second=True)
         with loop_threads(len(self.regions)):
             places = (pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets)
-            self._kernels.tangent(u, p, self._tables(), slopes, self._past(), *places, data)
+            self._kernels.tangent(u, p, self._tables, slopes, self._past(), *places, data)
+        for part in self._interpreted:
+            part.add_tangent(self._at(part, unknowns, state), pattern, data)
         return data
 
     def rounding_forces(self) -> Array:
@@ -147,19 +160,34 @@ class Body:
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
         return np.bincount(self.space.elements.ravel(), forces.ravel())
 
+    @cached_property
+    def _interpreted(self) -> tuple[InterpretedPart, ...]:
+        """The regions of materials without a compiled form."""
+        uncompiled = [index for index, form in enumerate(self.forms) if form is None]
+        chosen = ((self.materials[index], np.flatnonzero(self.regions == index)) for index in uncompiled)
+        return tuple(InterpretedPart(material, self.space, self.points, mine) for material, mine in chosen if mine.size)
+
+    def _at(self, part: InterpretedPart, unknowns: Array, state: Kinematics) -> PointState:
+        """What a part is computed from."""
+        mine, past = part.elements, self.past
+        history = (None, None) if past is None else (past.scale[mine], past.stress[:, mine])
+        return PointState(state.F[:, :, mine], self.pressure(unknowns)[mine], *history)
+
     def _past(self) -> Array:
         return NO_PAST if self.past is None else self.past.stress
 
+    @cached_property
     def _tables(self) -> tuple[Array, ...]:
-        """What the compiled loops read of the mesh and the materials."""
+        """What the compiled loops read of the mesh and the materials; elements without a compiled form have no weight there."""
         points = self.points
+        compiled_elements = np.array([form is not None for form in self.forms])[self.regions]
         return (
             self.space.elements,
             self.space.pressures,
             points.gradients,
             points.hoop,
-            points.weights,
+            points.weights if compiled_elements.all() else points.weights * compiled_elements[:, None],
             points.pressure_values,
-            self.linear,
+            self.linear | ~compiled_elements,
             self.compliance,
         )

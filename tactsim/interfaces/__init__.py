@@ -1,31 +1,39 @@
-"""The extension points on one page: a concrete subclass is registered by its ``kind``, wherever it is defined."""
+"""All extension points on one page.
+
+To add a kind, subclass its point with a literal ``kind`` that has a default, in a new module of the point's ``package`` or
+anywhere else, such as a notebook. It is registered as it is defined; no list names it. `registry.kinds` lists the kinds of a
+point, `registry.forget` removes one, and two classes with one ``kind`` are an error that names both. A number or a figure of a
+thesis table is a function that `quantity` or `drawing` marks.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from abc import abstractmethod
-from collections.abc import Callable
-from typing import Any, ClassVar, Self, TypeVar, final
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
 
-from tactsim.interfaces.run import Course, Progress, run_experiment
-from tactsim.interfaces.seeds import seeds_in
-from tactsim.kind import Kind as Kind
-from tactsim.registry import MarkedFunction, mark
+from tactsim.interfaces.contact_shape import ContactShape
+from tactsim.interfaces.estimate import Estimate
+from tactsim.interfaces.readings import Readings
+from tactsim.interfaces.recording import Recording, Values
+from tactsim.interfaces.run import Runnable
+from tactsim.interfaces.solid import Measures, Solid, check_bounds
+from tactsim.interfaces.table_functions import drawing as drawing
+from tactsim.interfaces.table_functions import quantity as quantity
+from tactsim.interfaces.variable import Variable
+from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
-from tactsim.results.result import Result
+from tactsim.results.result import Quantity, Result
+from tactsim.units import Area
 
 Array = np.ndarray
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-class CaseKind(Kind):
-    """What a case file names by its ``kind``."""
-
-    @classmethod
-    @abstractmethod
-    def example(cls) -> Self:
-        """A valid instance with values from its source; the contract tests start from it."""
+Drawing = Callable[[], bytes]
+"""Draws one figure and returns it as PNG."""
 
 
 class Material(CaseKind):
@@ -33,9 +41,14 @@ class Material(CaseKind):
 
     Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
     ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
+    A body uses the stress and tangent given here; one without a compiled form is assembled by numpy, several times slower.
     """
 
     package: ClassVar[str] = "tactsim.materials"
+    compiled_form: ClassVar[Literal["invariants", "small_strain"] | None] = None
+    """Compiled loops that equal the methods below: of an energy of the isochoric invariants, of linear elasticity, or none."""
+    small_strain: ClassVar[bool] = False
+    """Whether it holds for small strain and rotation only: stress per reference area, volumes that may turn over."""
     bulk_modulus: float | None
     relaxation: Relaxation | None = None
     """Relaxation of the isochoric stress; null means elastic."""
@@ -63,10 +76,12 @@ class Material(CaseKind):
 
 
 class RigidBody(CaseKind):
-    """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates."""
+    """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates.
+
+    A case file names it as ``body``.
+    """
 
     package: ClassVar[str] = "tactsim.contact"
-
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
     """Numbers of coordinates it is defined for; 2 means the section of a body of revolution."""
 
@@ -77,9 +92,14 @@ class RigidBody(CaseKind):
         Shapes ``(n,)``, ``(d, n)`` and ``(d, d, n)``.
         """
 
+    @property
+    def contact_shape(self) -> ContactShape:
+        """What the specimen and its mesh must know of the part that touches; by default it reaches beyond any specimen."""
+        return ContactShape()
+
 
 class ContactLaw(CaseKind):
-    """Tangential traction between tissue and a rigid body."""
+    """Tangential traction between tissue and a rigid body; a case file names it as ``contact``."""
 
     package: ClassVar[str] = "tactsim.contact"
 
@@ -92,93 +112,189 @@ class ContactLaw(CaseKind):
         """Derivative of the limit with respect to the pressure, dimensionless."""
 
 
-class Sensor(CaseKind):
-    """Turns a history of forces into readings."""
+class Inclusion(CaseKind):
+    """A body in the block, or a hollow one; a case file names it as ``shape`` among the ``inclusions``."""
 
-    package: ClassVar[str] = "tactsim.sensors"
+    package: ClassVar[str] = "tactsim.mesh.inclusions"
+    data_set_number: ClassVar[int | None] = None
+    """Number that stands for the kind in data sets, never to be changed; None comes behind all numbers, by the alphabet."""
+    hollow: ClassVar[bool] = False
+    """Whether there is an empty space in it."""
 
     @abstractmethod
-    def read(self, time: Array, force: Array) -> Array:
-        """Readings at the times in s for forces in N of shape ``(time, ...)``."""
+    def solids(self, size: Array) -> tuple[Solid, ...]:
+        """The body in a block of size (3,) in m, and the empty space in it if it is hollow."""
+
+    def measures(self, size: Array) -> Measures:
+        """Centre, size and height in a block of size (3,) in m, as data sets label it."""
+        return self.solids(size)[0].measures()
+
+    def places(self, size: Array) -> Array:
+        """Points (n, 3) in m that stand for it where an estimate is judged."""
+        return self.measures(size).center[None]
+
+    def refine(self, wanted: float) -> float:
+        """Element size in m near the body if ``wanted`` is what a thick body gets."""
+        return wanted
+
+    def identity(self) -> str:
+        """Text that changes with the geometry."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+
+    def check_in_block(self, size: Array, gap: float, name: str) -> None:
+        """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m, by an InvalidQuantity that names both."""
+        check_bounds(self.solids(size)[0].bounds(), size, gap, name)
 
 
-class Experiment(CaseKind):
-    """What a case can ask for: receives its parts, computes step by step, says what it found.
+class SensorFilm(CaseKind):
+    """What turns a force into an electrical quantity, its signal; a case file names it as ``film``.
 
-    A kind gives `begin`; how a run is timed, limited, ended and made a result is decided here, once for all kinds::
+    Methods that take samples raise InvalidQuantity if times do not increase, or a value is negative, not finite or beyond what
+    the film can bear or give. Forces and signals are arrays (n, ...) at times (n,) in s.
+    """
 
-        class Squeeze(Experiment):
-            kind: Literal["squeeze"] = "squeeze"
-            closings: tuple[Length, ...]
-            history_units: ClassVar[dict[str, str]] = {"closing": "m", "force": "N"}
+    package: ClassVar[str] = "tactsim.sensors"
+    modules: ClassVar[str] = r"(\w+_)?film"
+    signal: ClassVar[Literal["conductance", "capacitance"]]
+    """What electronics measure of it, increasing with the force."""
+    unit: ClassVar[Literal["S", "F"]]
+    """Unit of the signal."""
+    active_area: Annotated[Area, Field(gt=0)] | None = None
+    """Area that carries the force; null is the area for which the film's numbers hold."""
 
-            def begin(self) -> Course:
-                record = SqueezeRecord(self)
-                return Course((record.accept(closing) for closing in self.closings), record.findings)
+    @property
+    @abstractmethod
+    def largest_force(self) -> float:
+        """Force in N up to which the film was measured."""
 
-    ``accept`` computes a step and returns its `StepRecord`; ``findings`` returns the `Findings` of all steps accepted until then.
+    @abstractmethod
+    def advance(self, state: Any, time: ArrayLike, force: ArrayLike) -> tuple[Array, Any]:
+        """Signal of the next samples of force in N, and the state after them; None is a film at rest."""
+
+    @abstractmethod
+    def retreat(self, state: Any, time: ArrayLike, signal: ArrayLike) -> tuple[Array, Any]:
+        """Force in N of the next samples of the signal, and the state after them: the inverse of ``advance``."""
+
+    @abstractmethod
+    def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Compressive strain, of the shape of ``force``."""
+
+    @abstractmethod
+    def sensitivity(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Immediate change of the signal with the force, in its unit per N, of the shape of ``force``."""
+
+    @abstractmethod
+    def quantities(self) -> dict[str, Quantity]:
+        """Derived numbers of the film, for the result."""
+
+    @abstractmethod
+    def assumptions(self) -> tuple[str, ...]:
+        """What is assumed of the film."""
+
+    @abstractmethod
+    def warnings(self, largest: float) -> tuple[str, ...]:
+        """What goes beyond the measurements when forces reach ``largest`` newton."""
+
+    def read(self, time: ArrayLike, force: ArrayLike) -> Array:
+        """Signal of a film that is at rest before the first sample."""
+        return self.advance(None, time, force)[0]
+
+    def force(self, time: ArrayLike, signal: ArrayLike) -> Array:
+        """Force in N whose history gives this signal."""
+        return self.retreat(None, time, signal)[0]
+
+
+class Experiment(Runnable):
+    """What a case can ask for, as ``experiment``: receives its parts, computes step by step, says what it found.
+
+    A kind gives `begin`, which has an example; how a run is timed, limited, ended and made a result is decided by `Runnable`.
     """
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$|scene$)\w+"
 
-    history_units: ClassVar[dict[str, str]] = {}
-    """Unit of every value that an accepted step records."""
 
-    def seeds(self) -> dict[str, int]:
-        """Every seed of random numbers by its key path, such as ``readout.seed``; empty if nothing is random."""
-        return dict(seeds_in(self))
+class Estimator(CaseKind):
+    """Finds inclusions from readings; a case file names it as ``estimator``, the page and the ranking offer its variants."""
+
+    package: ClassVar[str] = "tactsim.localization.estimators"
+    needs_response: ClassVar[bool] = False
+    """Whether it needs the fast forward model of the tissue."""
+    tells_classes: ClassVar[bool] = False
+    """Whether it gives a probability for each class of what may be there."""
+
+    @property
+    def title(self) -> str:
+        """What the page calls it."""
+        return self.kind
+
+    @property
+    def needs_reference(self) -> bool:
+        """Whether it needs what the tissue reads without a lump."""
+        return self.needs_response
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """Name -> what is offered without settings of a user; empty if it needs what only a user has, such as a file."""
+        return {cls.example().kind: cls.example()}
 
     @abstractmethod
-    def begin(self) -> Course:
-        """What computes the steps and knows what they found; what is made before the first step, such as a mesh, is made here.
+    def estimate(self, readings: Readings) -> Estimate:
+        """What is there, and where.
 
         Raises
         ------
         InputError
-            If something that the experiment names, such as a file, cannot be used.
-        Unfinished
-            If it cannot begin: there is nothing to keep yet.
+            If the readings lack what this estimator needs, such as a reference.
         """
 
-    @final
-    def run(self, progress: Progress | None = None, *, time_limit: float | None = None) -> Result:
-        """Run to the end, calling ``progress`` after each accepted step.
 
-        A run that does not converge, lacks memory, takes longer than ``time_limit`` in s (None: as long as it needs) or is
-        interrupted returns a result with that status, the reason, and what was accepted.
+class Recorder(Kind):
+    """The labels and readings that a data set keeps of a kind of experiment: its ``kind`` is that of the experiment."""
 
-        Raises
-        ------
-        InputError
-            If something that the experiment names, such as a file, cannot be used.
-        Unfinished
-            If it ended before its first step was begun: there is nothing to keep.
-        """
-        return run_experiment(self, progress, time_limit)
+    package: ClassVar[str] = "tactsim.experiments"
+    modules: ClassVar[str] = r"\w+\.recorder"
+    settings: Recording
+    most_inclusions: int = 0
+    """Largest number of inclusions that the sweep can draw."""
+    quantities: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """Name of a number of the result -> unit and description; stored as they are."""
+    optional: ClassVar[tuple[str, ...]] = ()
+    """Those of them that a result may lack."""
+    noise_seed: ClassVar[tuple[str, ...]] = ()
+    """Where such an experiment keeps the seed of its noise; one that keeps none is read with noise of the sweep's own."""
+    histories: ClassVar[bool] = False
+    """Whether `readings` are stored at several times."""
+    reads_force: ClassVar[bool] = False
+    """Whether a force is read through the sensor of the sweep."""
+
+    def labels_of(self, experiment: Any) -> list[Variable]:
+        """What is known before the experiment is run; sizes as those of this experiment."""
+        return []
+
+    def readings_of(self, experiment: Any) -> list[Variable]:
+        """What its result holds beside ``quantities``; sizes as those of this experiment."""
+        return []
+
+    def labels(self, experiment: Any) -> Values:
+        """Values of `labels_of`."""
+        return {}
+
+    def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
+        """Values of `readings_of`; the generator makes noise."""
+        return {}
+
+    @abstractmethod
+    def describe(self) -> str:
+        """What is simulated, for the card of the data set."""
 
 
-def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | None = None) -> Callable[[Function], Function]:
-    """Marks a function as a number that rows of a thesis table compare, wherever it is defined.
+class ResultFigures(Kind):
+    """The figures of a kind of experiment, in a module ``figures`` of its folder: its ``kind`` is that of the experiment."""
 
-    ::
+    package: ClassVar[str] = "tactsim.experiments"
+    modules: ClassVar[str] = r"\w+\.figures(\.\w+)?"
 
-        @quantity(unit="Pa")
-        def initial_modulus(material: str) -> float: ...
-
-    A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. The type of an argument sets its unit and
-    bounds; its description stands there or under ``Parameters``. A parameter ``inputs: Inputs`` receives the outcomes of the
-    table's studies. ``unit`` and ``check`` are those of `MarkedFunction`.
-    """
-
-    def marked(function: Function) -> Function:
-        mark(MarkedFunction("quantity", function, unit, check))
-        return function
-
-    return marked
-
-
-def drawing(function: Function) -> Function:
-    """Marks a function, as `quantity` does, as one that returns the plain data of a figure of a thesis table."""
-    mark(MarkedFunction("drawing", function))
-    return function
+    @abstractmethod
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """File name -> drawing, the main figure first; only what the result has the data for."""

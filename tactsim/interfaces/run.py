@@ -7,14 +7,17 @@ for once the steps have ended, for whatever reason.
 from __future__ import annotations
 
 import time
+from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from typing import ClassVar, Protocol, Self
+from typing import ClassVar, Self, final
 
 from tactsim.deadline import check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
+from tactsim.interfaces.seeds import seeds_in
+from tactsim.kind import CaseKind
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.results.scene import Scene
 
@@ -72,26 +75,66 @@ def _same(findings: Findings) -> Findings:
     return findings
 
 
-class Runnable(Protocol):
-    """What can be run: an `Experiment`."""
+class Runnable(CaseKind):
+    """What can be run: what is the same for every kind of `Experiment`."""
 
-    history_units: ClassVar[dict[str, str]]
+    history_units: ClassVar[dict[str, str]] = {}
+    """Unit of every value that an accepted step records."""
 
-    @property
-    def kind(self) -> str:
-        """Name of the kind of experiment."""
+    def seeds(self) -> dict[str, int]:
+        """Every seed of random numbers by its key path, such as ``readout.seed``; empty if nothing is random."""
+        return dict(seeds_in(self))
 
+    @abstractmethod
     def begin(self) -> Course:
-        """See `Experiment.begin`."""
+        """What computes the steps and knows what they found; what is made before the first step, such as a mesh, is made here.
+
+        ::
+
+            class Squeeze(Experiment):
+                kind: Literal["squeeze"] = "squeeze"
+                closings: tuple[Length, ...]
+                history_units: ClassVar[dict[str, str]] = {"closing": "m", "force": "N"}
+
+                def begin(self) -> Course:
+                    record = SqueezeRecord(self)
+                    return Course((record.accept(closing) for closing in self.closings), record.findings)
+
+        ``accept`` computes a step and returns its `StepRecord`; ``findings`` returns the `Findings` of all steps accepted until
+        then.
+
+        Raises
+        ------
+        InputError
+            If something that the experiment names, such as a file, cannot be used.
+        Unfinished
+            If it cannot begin: there is nothing to keep yet.
+        """
+
+    @final
+    def run(self, progress: Progress | None = None, *, time_limit: float | None = None) -> Result:
+        """Run to the end, calling ``progress`` after each accepted step.
+
+        A run that does not converge, lacks memory, takes longer than ``time_limit`` in s (None: as long as it needs) or is
+        interrupted returns a result with that status, the reason, and what was accepted.
+
+        Raises
+        ------
+        InputError
+            If something that the experiment names, such as a file, cannot be used.
+        Unfinished
+            If it ended before its first step was begun: there is nothing to keep.
+        """
+        return run_experiment(self, progress, time_limit)
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
-    """The result that `Experiment.run` returns.
+    """The result that `Runnable.run` returns.
 
     Raises
     ------
     InputError, Unfinished
-        As `Experiment.begin`.
+        As `Runnable.begin`.
     OutOfMemory
         If the memory does not suffice to begin, or to say what was found.
     """

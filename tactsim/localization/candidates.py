@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from tactsim.errors import InputError
-from tactsim.localization.lump_response import LumpResponse
+from tactsim.interfaces.readings import TissueResponse
 
 Array = np.ndarray
 LINE_STEP = 1e-3
@@ -66,7 +66,7 @@ class Candidates:
         return (_plan_distance(self.begins[:, :2], self.ends[:, :2], one) < reach) & (above < reach)
 
 
-def ball_candidates(response: LumpResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
+def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
     """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.
 
     Raises
@@ -89,7 +89,7 @@ def ball_candidates(response: LumpResponse, size: Array, radii: Sequence[float],
 
 
 def tube_candidates(
-    response: LumpResponse, size: Array, radii: Sequence[float], *, gap: float, closed: bool = True, spacing: float = LINE_STEP
+    response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, closed: bool = True, spacing: float = LINE_STEP
 ) -> Candidates:
     r"""Straight level tubes of about these outer radii in every direction, through the block or, if ``closed``, ending in it.
 
@@ -129,7 +129,7 @@ def tube_candidates(
     return Candidates("tube", begins, ends, sizes, found)
 
 
-def _tabulated(response: LumpResponse, radii: Array) -> Array:
+def _tabulated(response: TissueResponse, radii: Array) -> Array:
     """Numbers of the tabulated radii nearest to those wanted, each once."""
     return np.unique(np.abs(response.radii[:, None] - radii).argmin(axis=0))
 
@@ -169,7 +169,7 @@ def _beside(firsts: Array, lasts: Array, size: Array) -> Array:
     return np.abs(away[..., 0] * along[:, None, 1] - away[..., 1] * along[:, None, 0]).min(axis=1)
 
 
-def _line_integrals(response: LumpResponse, firsts: Array, lasts: Array) -> csr_array:
+def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> csr_array:
     """Weights in m (lines, nx ny) whose product with values at the centres in plan is their integral along each line."""
     counts = np.maximum(1, np.ceil(np.linalg.norm(lasts - firsts, axis=1) / LINE_STEP).astype(int))
     line = np.repeat(np.arange(len(counts)), counts)

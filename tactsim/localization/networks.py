@@ -11,8 +11,8 @@ from pydantic import ValidationError
 from scipy.special import expit
 
 from tactsim.errors import InputError, StorageError
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.interface import Readings
 from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line

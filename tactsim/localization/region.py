@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,33 +10,12 @@ from contourpy import contour_generator
 from scipy.stats import chi2
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.estimate import LEVEL, Region
 from tactsim.localization.views import AWAY
 
 Array = np.ndarray
-LEVEL = 0.9
-"""Probability of a region where none is named."""
 CORNERS = 48
 """Of the polygon that stands for an ellipse."""
-
-
-class Region(ABC):
-    """Regions of highest density of the centre, one for every probability."""
-
-    @abstractmethod
-    def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether a point (3,) in m lies in the region of this probability."""
-
-    @abstractmethod
-    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Width in plan, the diameter of a circle of the same area, and height of the region, both in m."""
-
-    @abstractmethod
-    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """Outline of the region seen along the axis ``away``: closed lines (n, 2) in m along the other two axes."""
-
-    def shadows(self) -> dict[str, list[list[list[float]]]]:
-        """The outline in every view, as plain numbers in m."""
-        return {view: [line.tolist() for line in self.shadow(away)] for view, away in AWAY.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,3 +141,8 @@ def check_probability(probability: float) -> None:
     """
     if not 0 < probability < 1:
         raise InvalidQuantity(f"a region of probability {probability}; allowed: above 0 and below 1")
+
+
+def shadows(region: Region) -> dict[str, list[list[list[float]]]]:
+    """The outline of a region in every view, as plain numbers in m."""
+    return {view: [line.tolist() for line in region.shadow(away)] for view, away in AWAY.items()}

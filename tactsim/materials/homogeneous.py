@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tactsim.errors import InputError
 from tactsim.interfaces import Array, Material
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.linear_elastic import LinearElastic
@@ -31,6 +30,11 @@ PATHS: dict[str, Callable[[Array], Array]] = {"uniaxial": uniaxial, "equibiaxial
 """Loading path by name: a function of the stretch."""
 
 
+def diagonal(stretches: Array) -> Array:
+    """Deformation gradient (3, 3, ...) of principal stretches (3, ...) along the axes."""
+    return np.einsum("ij,j...->ij...", np.eye(3), stretches)
+
+
 def principal_invariants(stretches: Array) -> tuple[Array, Array]:
     """I1 and I2 of an incompressible state of principal stretches of shape (3, ...)."""
     squared = stretches**2
@@ -52,12 +56,8 @@ def cauchy_stress(W1: Array, W2: Array, stretches: Array) -> Array:
 def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
     """Force per reference area in Pa along direction 1 of a path of ``PATHS``, of the shape of ``stretch``.
 
-    Hyperelastic kinds are taken as incompressible, ``linear_elastic`` keeps its Poisson's ratio.
-
-    Raises
-    ------
-    InputError
-        For a kind whose homogeneous states are not known.
+    Every kind is taken as incompressible but ``linear_elastic``, which keeps its Poisson's ratio. One without an energy of the
+    invariants is loaded along its axes; its pressure follows from the free direction 3.
     """
     stretch = np.asarray(stretch, dtype=float)
     if isinstance(material, Hyperelastic):
@@ -67,4 +67,8 @@ def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
         nu = material.poisson_ratio
         stiffening = {"uniaxial": 1.0, "equibiaxial": 1 / (1 - nu), "planar": 1 / (1 - nu**2)}[path]
         return material.youngs_modulus * stiffening * (stretch - 1)
-    raise InputError(f"homogeneous states of material kind {material.kind!r} are not known")
+    stretches = PATHS[path](stretch)
+    F = diagonal(stretches)
+    stress = material.first_piola_kirchhoff(F, np.zeros(stretch.shape))
+    slope = material.volume_change_gradient(F)
+    return stress[0, 0] - stress[2, 2] / slope[2, 2] * slope[0, 0]

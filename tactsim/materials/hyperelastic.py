@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -34,6 +34,7 @@ class Hyperelastic(Material):
     1987, doi:10.1016/0045-7949(87)90265-3 (displacement and pressure).
     """
 
+    compiled_form: ClassVar[Literal["invariants", "small_strain"] | None] = "invariants"
     bulk_modulus: BulkModulus | None = None
     """Bulk modulus K > 0; null means exactly incompressible."""
 

@@ -29,6 +29,8 @@ class LinearElastic(Material):
     Source: Love 1927, A Treatise on the Mathematical Theory of Elasticity, sections 68 and 69.
     """
 
+    compiled_form: ClassVar[Literal["invariants", "small_strain"] | None] = "small_strain"
+    small_strain: ClassVar[bool] = True
     kind: Literal["linear_elastic"] = "linear_elastic"
     youngs_modulus: Annotated[Pressure, Field(gt=0)]
     """Young's modulus E > 0."""

@@ -1,15 +1,20 @@
-"""Material stability at a point: strong ellipticity and Drucker's condition of an incompressible isotropic energy."""
+"""Material stability at a point: strong ellipticity and Drucker's condition, exact for an energy of the invariants."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from tactsim.errors import InputError
 from tactsim.interfaces import Array, Material
-from tactsim.materials.homogeneous import principal_invariants
+from tactsim.materials.homogeneous import diagonal, principal_invariants
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.kinematics import determinant
 from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.sampled_stability import (
+    LOGARITHMIC,
+    sampled_drucker_margin,
+    sampled_ellipticity_margin,
+    smaller_eigenvalue,
+)
 
 PAIRS = ((1, 2, 0), (2, 0, 1), (0, 1, 2))
 """Principal directions i, j and the third one, k."""
@@ -51,7 +56,7 @@ def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array,
     return np.stack(shear), np.stack(opposite), np.stack(equal)
 
 
-def ellipticity_margin(material: Hyperelastic, stretches: Array) -> Array:
+def invariant_ellipticity_margin(material: Hyperelastic, stretches: Array) -> Array:
     r"""Smallest of the nine conditions of strong ellipticity in Pa; positive where, and only where, the material is elliptic.
 
     .. math:: g_k > 0, \quad d_k > 0, \quad (\sqrt{d_i} + \sqrt{d_j})^2 + e_k > 0
@@ -69,7 +74,7 @@ def ellipticity_margin(material: Hyperelastic, stretches: Array) -> Array:
     return np.minimum(np.minimum(g.min(axis=0), d.min(axis=0)), np.min(third, axis=0))
 
 
-def drucker_margin(material: Hyperelastic, stretches: Array) -> Array:
+def invariant_drucker_margin(material: Hyperelastic, stretches: Array) -> Array:
     r"""Smallest eigenvalue in Pa of the second derivative of W by the logarithmic principal strains of constant volume.
 
     Positive where the work of an increment of Kirchhoff stress (true stress, as J = 1) on its logarithmic strain is positive in
@@ -85,35 +90,49 @@ def drucker_margin(material: Hyperelastic, stretches: Array) -> Array:
     W1, W2 = material.energy_gradient(*invariants)
     W11, W12, W22 = material.energy_hessian(*invariants)
     u, v = 2 * stretches**2, -2 / stretches**2
-    in_plane = np.array([[1, -1, 0], [1, 1, -2]]) / np.sqrt([[2], [6]])
     diagonal = 2 * (W1 * u - W2 * v)
-    hessian = np.einsum("ai,bi,i...->ab...", in_plane, in_plane, diagonal)
-    u, v = np.tensordot(in_plane, u, 1), np.tensordot(in_plane, v, 1)
+    hessian = np.einsum("ai,bi,i...->ab...", LOGARITHMIC, LOGARITHMIC, diagonal)
+    u, v = np.tensordot(LOGARITHMIC, u, 1), np.tensordot(LOGARITHMIC, v, 1)
     uv = np.einsum("a...,b...->ab...", u, v)
     hessian += W11 * np.einsum("a...,b...->ab...", u, u) + W22 * np.einsum("a...,b...->ab...", v, v)
     hessian += W12 * (uv + np.swapaxes(uv, 0, 1))
-    mean, half = (hessian[0, 0] + hessian[1, 1]) / 2, (hessian[0, 0] - hessian[1, 1]) / 2
-    return mean - np.hypot(half, hessian[0, 1])
+    return smaller_eigenvalue(hessian)
+
+
+def ellipticity_margin(material: Material, stretches: Array) -> Array:
+    """Margin of strong ellipticity in Pa at principal stretches (3, ...) of product 1; positive where the material is elliptic.
+
+    Exact conditions for an energy of the invariants, sampled directions of the tangent otherwise.
+    """
+    if isinstance(material, Hyperelastic):
+        return invariant_ellipticity_margin(material, stretches)
+    return sampled_ellipticity_margin(material, diagonal(stretches))
+
+
+def drucker_margin(material: Material, stretches: Array) -> Array:
+    """Margin of Drucker's condition in Pa at principal stretches (3, ...) of product 1; positive where the material is stable."""
+    if isinstance(material, Hyperelastic):
+        return invariant_drucker_margin(material, stretches)
+    return sampled_drucker_margin(material, stretches)
 
 
 def strongly_elliptic(material: Material, F: Array) -> Array:
     """Whether the material is strongly elliptic at ``F`` of shape (3, 3, ...), booleans of the trailing shape.
 
-    The isochoric part of ``F`` is judged; an inverted or undefined ``F`` is not elliptic. Linear elasticity always is.
-
-    Raises
-    ------
-    InputError
-        For a kind whose condition is not known.
+    The isochoric part of ``F`` is judged; an inverted or undefined ``F`` is not elliptic. A law of small strain is judged as it
+    is; linear elasticity always is elliptic. What has no energy of the invariants is judged in sampled directions.
     """
     if isinstance(material, LinearElastic):
         return np.ones(F.shape[2:], dtype=bool)
-    if not isinstance(material, Hyperelastic):
-        raise InputError(f"strong ellipticity of material kind {material.kind!r} is not known")
+    if material.small_strain:
+        return sampled_ellipticity_margin(material, F) > 0
     J = determinant(F)
     valid = J > 0
-    stretches = principal_stretches(np.where(valid, F, np.eye(3).reshape(3, 3, *(1,) * J.ndim)))
-    return valid & (ellipticity_margin(material, stretches / np.cbrt(stretches.prod(axis=0))) > 0)
+    regular = np.where(valid, F, np.eye(3).reshape(3, 3, *(1,) * J.ndim))
+    if not isinstance(material, Hyperelastic):
+        return valid & (sampled_ellipticity_margin(material, regular / np.cbrt(np.where(valid, J, 1.0))) > 0)
+    stretches = principal_stretches(regular)
+    return valid & (invariant_ellipticity_margin(material, stretches / np.cbrt(stretches.prod(axis=0))) > 0)
 
 
 def principal_stretches(F: Array) -> Array:

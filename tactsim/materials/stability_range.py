@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from tactsim.errors import InputError
 from tactsim.interfaces import Array, Material
 from tactsim.materials.homogeneous import PATHS
-from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.stability import drucker_margin, ellipticity_margin
 
@@ -64,23 +62,17 @@ class StabilityReport:
 def stability_range(material: Material) -> StabilityReport:
     """Intervals of stretch in which the incompressible material is strongly elliptic and Drucker stable.
 
-    Ends are located to 1e-10 of the stretch. Linear elasticity is stable at every stretch.
-
-    Raises
-    ------
-    InputError
-        For a kind whose condition is not known.
+    Ends are located to 1e-10 of the stretch. Linear elasticity is stable at every stretch. A law without an energy of the
+    invariants is judged along its axes, in sampled directions of the tangent.
     """
     if isinstance(material, LinearElastic):
         everywhere = PathStability(SCANNED, (), SCANNED, ())
         return StabilityReport(dict.fromkeys(PATHS, everywhere), SCANNED[1])
-    if not isinstance(material, Hyperelastic):
-        raise InputError(f"stability of material kind {material.kind!r} is not known")
     paths = {name: _path_stability(material, stretches) for name, stretches in PATHS.items()}
     return StabilityReport(paths, _elliptic_everywhere_within(material))
 
 
-def _path_stability(material: Hyperelastic, stretches: Callable[[Array], Array]) -> PathStability:
+def _path_stability(material: Material, stretches: Callable[[Array], Array]) -> PathStability:
     """Both conditions along one path."""
     elliptic_lost = lost_intervals(lambda stretch: ellipticity_margin(material, stretches(stretch)))
     drucker_lost = lost_intervals(lambda stretch: drucker_margin(material, stretches(stretch)))
@@ -106,7 +98,7 @@ def around_rest(lost: tuple[Interval, ...]) -> Interval:
     return max(below, default=SCANNED[0]), min(above, default=SCANNED[1])
 
 
-def _elliptic_everywhere_within(material: Hyperelastic) -> float:
+def _elliptic_everywhere_within(material: Material) -> float:
     """Largest s with strong ellipticity for all principal stretches in [1/s, s], along rays of logarithmic strain."""
     angle = np.linspace(0, np.pi / 3, DIRECTIONS)
     direction = np.stack([np.cos(angle - k * 2 * np.pi / 3) for k in range(3)])

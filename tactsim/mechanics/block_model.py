@@ -18,6 +18,7 @@ from tactsim.fem.space import FACET_POINTS, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
+from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
 from tactsim.mechanics.first_touch import first_touch
@@ -25,7 +26,6 @@ from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.mesh.solid import FACES
 from tactsim.results.result import FieldFrame
 
 Array = np.ndarray

@@ -11,6 +11,8 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
@@ -18,7 +20,6 @@ from tactsim.mesh.graded_block import graded_block
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
-from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.mesh.structured_block import morphed_block, structured_block
 from tactsim.mesh.wholeness import check_whole
 from tactsim.outside.input_path import InputPath

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Inclusion
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.solid import Inclusion
 
 Array = np.ndarray
 MOST_UNKNOWNS = 3_000_000

@@ -10,7 +10,8 @@ from typing import Annotated
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
-from tactsim.mesh.solid import Array, Inclusion, Solid
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Array, Solid
 from tactsim.registry import Registered
 from tactsim.units import format_quantity
 

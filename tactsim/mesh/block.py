@@ -8,8 +8,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.interfaces.solid import Positive
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.mesh.solid import Positive
 from tactsim.units import FrozenModel, Time
 
 Array = np.ndarray

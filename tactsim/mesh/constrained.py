@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.mesh.solid import FACES, Patch, plane_patch
+from tactsim.interfaces.solid import FACES, Patch
+from tactsim.mesh.solid import plane_patch
 
 Array = np.ndarray
 STEPS = 40

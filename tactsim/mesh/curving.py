@@ -9,6 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from tactsim.errors import ConvergenceError
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import FACES
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import FLATNESS, VOLUME_TOLERANCE, BlockMesh, Quality
 from tactsim.mesh.constrained import Constraints
@@ -16,7 +18,6 @@ from tactsim.mesh.labelling import Interfaces, Surfaces, interfaces
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.smoothing import smoothed
-from tactsim.mesh.solid import FACES, Inclusion
 from tactsim.mesh.wedges import side_patches, without_wedges
 
 Array = np.ndarray

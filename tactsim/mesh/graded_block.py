@@ -13,13 +13,13 @@ from functools import partial
 import numpy as np
 
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
-from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
-from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
@@ -56,13 +56,14 @@ def graded_block(
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
     solid = inclusion.solids(extent)[0]
-    if not isinstance(solid, EllipsoidSolid):
+    ball = solid.ball_image()
+    if ball is None:
         raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
     for finer in range(ATTEMPTS):
-        around = lines_around(solid, extent, settings, finer)
+        around = lines_around(ball, solid.bounds(), extent, settings, finer)
         _check_size([len(line.near) - 1 for line in around])
-        corners, cells, labels = _around(solid, around)
-        simplices = _sixths(cells, _mirrored_places(corners, solid.center, solid.stretch))
+        corners, cells, labels = _around(ball, around)
+        simplices = _sixths(cells, _mirrored_places(corners, ball.center, ball.stretch))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
         except ConvergenceError as error:
@@ -77,14 +78,14 @@ def _check_size(cells: Sequence[int]) -> None:
     check_unknowns(unknowns_of_cells(cells), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
 
 
-def _around(solid: EllipsoidSolid, lines: Sequence[Line]) -> tuple[Array, Array, Array]:
+def _around(ball: BallImage, lines: Sequence[Line]) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
     corners, outside = _around_box(lines)
     logical = product([np.linspace(-1, 1, line.across + 1) for line in lines])
     core = grid([line.across for line in lines])
     shell, quads = skin(core, logical)
-    inner = solid.center + blown(logical) @ solid.stretch
-    wall = solid.center + directions(logical[shell]) @ solid.stretch
+    inner = ball.center + blown(logical) @ ball.stretch
+    wall = ball.center + directions(logical[shell]) @ ball.stretch
     steps = np.stack(np.unravel_index(shell, [line.across + 1 for line in lines])) + np.array([[line.first] for line in lines])
     on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.near) for line in lines))
     added, rounded, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 
 Array = np.ndarray
 EDGE_SHARE = 1 / 3
@@ -61,18 +61,16 @@ class Line:
         return np.maximum(0.0, np.maximum(below, above))
 
 
-def lines_around(solid: EllipsoidSolid, extent: Array, settings: BlockMeshSettings, finer: int) -> list[Line]:
+def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockMeshSettings, finer: int) -> list[Line]:
     """For each axis: places graded from a face to the box, through the box to its middle, and on to the other face.
 
-    ``finer`` counts how often cells across the box were added.
+    ``bounds`` (2, 3) in m are those of the lump; ``finer`` counts how often cells across the box were added.
     """
     lines = []
-    check_along(
-        np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size, f"mesh.inclusion_size {settings.inclusion_size:.3g} m"
-    )
-    wanted = round(np.pi / 2 * float(solid.semi_axes.max()) / settings.inclusion_size)
-    along = _cells_along(solid.bounds(), float(extent[2]), wanted, finer)
-    for axis, ((low, high), center, length) in enumerate(zip(solid.bounds().T, solid.center, extent, strict=True)):
+    check_along(np.pi / 2 * ball.longest / settings.inclusion_size, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
+    wanted = round(np.pi / 2 * ball.longest / settings.inclusion_size)
+    along = _cells_along(bounds, float(extent[2]), wanted, finer)
+    for axis, ((low, high), center, length) in enumerate(zip(bounds.T, ball.center, extent, strict=True)):
         half = (high - low) / 2
         gaps = np.array([low, length - high])
         left = np.maximum(np.array([center, length - center]) - REACH * half, _left(gaps, settings, pressed=axis == 2))

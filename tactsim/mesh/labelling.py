@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.interfaces.solid import FACES, Patch, Solid
 from tactsim.mesh.constrained import Constraints, block_patches
-from tactsim.mesh.solid import FACES, Patch, Solid
 
 Array = np.ndarray
 OUTSIDE = -1

@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 
 from tactsim.errors import ConvergenceError, InputError, StorageError
+from tactsim.interfaces import Inclusion
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
@@ -24,7 +25,6 @@ from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.manifest import shipped_entry
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.shipped import shipped_folders
-from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import block_mesh, mesh_key, mesher_version
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened

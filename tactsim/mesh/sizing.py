@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from skfem import MeshTet
 
+from tactsim.interfaces import Inclusion
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.solid import Inclusion
 
 Array = np.ndarray
 EDGE_SHARE = 2 / 3

@@ -9,14 +9,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Inclusion
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_along, check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled, fitted
-from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.quadratic import quadratic_mesh
-from tactsim.mesh.solid import Inclusion
 from tactsim.mesh.tetrahedra import mesh_key
 
 Array = np.ndarray
@@ -84,10 +83,10 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     """
     started, extent, settings = time.perf_counter(), np.asarray(size, float), settings or BlockMeshSettings()
     check_inclusions(extent, [inclusion], settings.least_gap)
-    solid = inclusion.solids(extent)[0]
-    if not isinstance(solid, EllipsoidSolid):
+    ball = inclusion.solids(extent)[0].ball_image()
+    if ball is None:
         raise InputError(f"a {inclusion.kind} cannot be meshed in layers; allowed: sphere, ellipsoid")
-    radius, size_at = float(solid.semi_axes.max()), settings.inclusion_size
+    radius, size_at = ball.longest, settings.inclusion_size
     check_along(np.pi / 2 * radius / size_at, f"mesh.inclusion_size {size_at:.3g} m")
     around = max(LEAST_AROUND, 2 * round(np.pi / 4 * radius / size_at))
     cell = np.pi / 2 * radius / around
@@ -98,8 +97,8 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     logical = product([np.linspace(-1, 1, around + 1)] * 3)
     core = grid((around,) * 3)
     shell, quads = skin(core, logical)
-    inner = solid.center + blown(logical) @ solid.stretch
-    wall = solid.center + directions(logical[shell]) @ solid.stretch
+    inner = ball.center + blown(logical) @ ball.stretch
+    wall = ball.center + directions(logical[shell]) @ ball.stretch
     outer = (logical[shell] + 1) / 2 * extent
     layers = [inner[shell] + share * (wall - inner[shell]) for share in np.arange(1, within + 1) / within]
     layers += [wall + share * (outer - wall) for share in beyond]

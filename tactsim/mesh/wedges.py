@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.interfaces.solid import FACES
 from tactsim.mesh.labelling import Interfaces
-from tactsim.mesh.solid import FACES
 
 Array = np.ndarray
 _UNDER, _BESIDE = ([number for number, (_, axis, _) in enumerate(FACES) if (axis == 2) == flat] for flat in (True, False))

@@ -7,10 +7,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from tactsim.errors import InputError
+from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import FLATNESS
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.mesh.solid import FACES
 
 Array = np.ndarray
 

@@ -11,17 +11,18 @@ integrated with the coefficients of its middle (exponential midpoint rule, secon
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.interfaces import Sensor
+from tactsim.interfaces import SensorFilm
+from tactsim.results.result import Quantity
 from tactsim.sensors.composite_library import AnyComposite, named_composite
-from tactsim.sensors.force_history import checked_conductances, checked_forces, checked_times
-from tactsim.sensors.tunnelling import relative_resistance
+from tactsim.sensors.force_history import checked_forces, checked_signal, checked_times
+from tactsim.sensors.tunnelling import particle_separation, relative_resistance, tunnelling_decay
 from tactsim.units import Area, format_quantity
 
 Array = np.ndarray
@@ -43,13 +44,15 @@ class FilmState:
     delayed_strain: Array
 
 
-class Film(Sensor):
+class Film(SensorFilm):
     """A film of composite between two electrodes, pressed by a total force in N; any number of equal films at once.
 
     A film of another area than the composite's reference is strained by its pressure, and its unstrained resistance is inverse
     to its area; the contact resistance depends on the force alone (2.1.12).
     """
 
+    signal: ClassVar[Literal["conductance", "capacitance"]] = "conductance"
+    unit: ClassVar[Literal["S", "F"]] = "S"
     kind: Literal["film"] = "film"
     composite: AnyComposite = named_composite("lingstat_identified")
     """Name of a shipped composite, or its numbers."""
@@ -71,10 +74,6 @@ class Film(Sensor):
     def largest_force(self) -> float:
         """Force in N up to which the creep was measured."""
         return self.composite.largest_force / self.magnification
-
-    def read(self, time: ArrayLike, force: ArrayLike) -> Array:
-        """Conductance; see ``conductance``."""
-        return self.conductance(time, force)
 
     def conductance(self, time: ArrayLike, force: ArrayLike) -> Array:
         """Conductance in S of the whole film with its contacts, 0 without force.
@@ -116,8 +115,8 @@ class Film(Sensor):
         slope = self._conductance(forces * (1 + 1j * COMPLEX_STEP), delayed).imag / COMPLEX_STEP
         return np.divide(slope, forces, where=loaded, out=np.full(forces.shape, np.inf))
 
-    def force(self, time: ArrayLike, conductance: ArrayLike) -> Array:
-        """Force in N whose history gives these conductances: the inverse of ``conductance``, creep included.
+    def retreat(self, state: FilmState | None, time: ArrayLike, signal: ArrayLike) -> tuple[Array, FilmState]:
+        """Force in N of the next samples of conductance in S, creep included, and the state after them.
 
         Raises
         ------
@@ -126,17 +125,46 @@ class Film(Sensor):
         ConvergenceError
             If a force is not found to 1e-12.
         """
-        return self.retreat(None, time, conductance)[0]
-
-    def retreat(self, state: FilmState | None, time: ArrayLike, conductance: ArrayLike) -> tuple[Array, FilmState]:
-        """Force in N of the next samples of conductance in S, and the state after them."""
         times = checked_times(time, after=None if state is None else state.time)
-        values = checked_conductances(conductance, len(times))
+        values = checked_signal(signal, len(times), "conductance", "S")
         found = np.empty_like(values)
         for n, (moment, value) in enumerate(zip(times, values, strict=True)):
             found[n], state = self._force(state, float(moment), value)
         assert state is not None  # there is at least one sample
         return found, state
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Constants of the tunnelling and the resistances."""
+        composite = self.composite
+        separation = particle_separation(composite.particle_diameter, composite.volume_fraction)
+        initial = composite.initial_resistance * self.magnification
+        return {
+            "tunnelling_decay": Quantity(tunnelling_decay(composite.barrier), "1/m", "gamma of eq. 2.1.4"),
+            "particle_separation": Quantity(separation, "m", "s0 of eq. 2.1.8"),
+            "resistance_exponent": Quantity(composite.exponent, "1", "gamma s0: fall of the resistance with strain"),
+            "initial_resistance": Quantity(initial, "ohm", "R0 of the unstrained film of this area"),
+            "contact_resistance": Quantity(composite.contact_resistance, "ohm", "of both contacts at 1 N"),
+        }
+
+    def assumptions(self) -> tuple[str, ...]:
+        """Source of the composite, law of the creep, what another area changes."""
+        composite = self.composite
+        told = (
+            f"film: {composite.source}",
+            "creep with coefficients that follow the force (errata E29), which gives eq. 2.3.1 under a constant force",
+            f"the coefficients of creep depend on the pressure; they were measured on {composite.reference_area * 1e6:.4g} mm²",
+        )
+        other = "the unstrained resistance is inverse to the active area, the contact resistance depends on the force alone"
+        return told if self.magnification == 1 else (*told, other)
+
+    def warnings(self, largest: float) -> tuple[str, ...]:
+        """Whether the force goes beyond that of the creep tests."""
+        if largest <= self.largest_force * (1 + 1e-9):
+            return ()
+        reached, measured = format_quantity(largest, "N"), format_quantity(self.largest_force, "N")
+        return (
+            f"the force reaches {reached} on the film; its creep was measured up to {measured}, beyond that lines are prolonged",
+        )
 
     def _strain(self, force: Array, delayed: Array) -> Array:
         felt = force * self.magnification

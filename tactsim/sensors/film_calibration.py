@@ -6,13 +6,13 @@ import numpy as np
 from scipy.stats import linregress
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces import SensorFilm
 from tactsim.sensors.calibration import LinearCalibration
-from tactsim.sensors.film import Film
 
 Array = np.ndarray
 
 
-def film_line(film: Film, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:
+def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:
     """Least-squares line C = m F + n through conductances read ``delay`` seconds after constant forces, in N, between two bounds.
 
     Raises
@@ -25,7 +25,7 @@ def film_line(film: Film, forces: tuple[float, float], *, delay: float = 1.0, po
     if not 0 <= forces[0] < forces[1]:
         raise InvalidQuantity(f"forces of the calibration are {forces} N; allowed: 0 <= low < high")
     applied = np.linspace(*forces, points)
-    return least_squares_line(applied, film.conductance([0.0, delay], np.tile(applied, (2, 1)))[-1])
+    return least_squares_line(applied, film.read([0.0, delay], np.tile(applied, (2, 1)))[-1])
 
 
 def least_squares_line(force: Array, conductance: Array) -> LinearCalibration:

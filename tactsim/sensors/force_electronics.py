@@ -9,6 +9,8 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.interfaces import SensorFilm
+from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_calibration import film_line
@@ -36,7 +38,7 @@ class ForceElectronics(FrozenModel):
     Source: thesis, chapter 2 and sections 3.1.2 and 6.1 to 6.3: low pass of 40 Hz.
     """
 
-    film: Film = Film()
+    film: ConductingFilm = Film()
     """What turns force into conductance."""
     chain: SignalChain = SignalChain(sampling_rate=200.0, low_pass=LowPass(cutoff=40.0))
     """Electronics of each channel."""
@@ -55,12 +57,18 @@ class ForceElectronics(FrozenModel):
         """The same without noise."""
         return self.model_copy(update={"chain": self.chain.model_copy(update={"noise": Noise()})})
 
-    def line_of(self, film: Film) -> LinearCalibration:
+    def line_of(self, film: SensorFilm) -> LinearCalibration:
         """The calibration of sensors with this film."""
         return self.calibration or _own_line(film, self.calibration_forces)
 
     def sensed(
-        self, time: Array, force: Array, generator: np.random.Generator, *, film: Film | None = None, gains: Array | float = 1.0
+        self,
+        time: Array,
+        force: Array,
+        generator: np.random.Generator,
+        *,
+        film: SensorFilm | None = None,
+        gains: Array | float = 1.0,
     ) -> Sensed:
         """What sensors make of forces (n, ...) in N, linear between times (n,) in s; pulls read as no force.
 
@@ -68,12 +76,12 @@ class ForceElectronics(FrozenModel):
         """
         film = film or self.film
         times, applied = self.chain.sampled(time, np.maximum(force, 0.0))
-        recording = self.chain.acquire(gains * film.conductance(times, applied), generator)
+        recording = self.chain.acquire(gains * film.read(times, applied), generator)
         read = self.line_of(film).force(self.chain.read_conductance(recording.filtered))
         return Sensed(times, applied, recording, read)
 
 
 @lru_cache(maxsize=16)
-def _own_line(film: Film, forces: tuple[float, float]) -> LinearCalibration:
+def _own_line(film: SensorFilm, forces: tuple[float, float]) -> LinearCalibration:
     """The calibration of a film, which all sensors share."""
     return film_line(film, forces)

@@ -1,4 +1,4 @@
-"""What sensors accept as samples: times that increase, forces that press, conductances."""
+"""What sensors accept as samples: times that increase, forces that press, signals."""
 
 from __future__ import annotations
 
@@ -49,18 +49,18 @@ def checked_forces(force: ArrayLike, samples: int, largest: float) -> Array:
     return forces
 
 
-def checked_conductances(conductance: ArrayLike, samples: int) -> Array:
-    """Conductances (n, ...) in S as floats >= 0.
+def checked_signal(signal: ArrayLike, samples: int, name: str, unit: str) -> Array:
+    """Values (n, ...) of a film's signal as floats >= 0; ``name`` and ``unit`` are how messages call them.
 
     Raises
     ------
     InvalidQuantity
         Naming the first sample that is not.
     """
-    values = _sampled(conductance, samples, "conductance", "S")
+    values = _sampled(signal, samples, name, unit)
     if (values < 0).any():
         place = tuple(int(i) for i in np.argwhere(values < 0)[0])
-        raise InvalidQuantity(f"conductance {values[place]:g} S of sample {place[0]} is negative; allowed: >= 0")
+        raise InvalidQuantity(f"{name} {values[place]:g} {unit} of sample {place[0]} is negative; allowed: >= 0")
     return values
 
 

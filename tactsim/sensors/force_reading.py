@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.interfaces.recording import ForceReader
 from tactsim.sensors.force_electronics import ForceElectronics
 
 Array = np.ndarray
@@ -13,7 +14,7 @@ CLEAN = "_clean"
 """How the names of readings without noise end."""
 
 
-class ForceReading(ForceElectronics):
+class ForceReading(ForceElectronics, ForceReader):
     """A sensor under the whole force of a history."""
 
     def read(self, time: Array, force: Array, at: Array, generator: np.random.Generator) -> dict[str, Array]:

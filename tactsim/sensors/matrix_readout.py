@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces import SensorFilm
 from tactsim.sensors.calibration import LinearCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.film import Film
 from tactsim.sensors.force_electronics import ForceElectronics
 
 Array = np.ndarray
@@ -89,6 +89,6 @@ class MatrixReadout(ForceElectronics):
             strongest_pull=float(max(0.0, -force.min(initial=0.0))),
         )
 
-    def film_of(self, area: float) -> Film:
+    def film_of(self, area: float) -> SensorFilm:
         """The film of a taxel of an area in m^2."""
         return self.film if self.film.active_area else self.film.model_copy(update={"active_area": area})

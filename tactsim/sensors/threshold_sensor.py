@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.interfaces import Array
+from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
-from tactsim.sensors.film import Film
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import Recording, SignalChain
@@ -25,12 +25,12 @@ class ForceSensor(FrozenModel):
 
     calibration: AnyCalibration = THESIS_LINE
     """Line of the reading."""
-    film: Film | None = None
+    film: ConductingFilm | None = None
     """What the sensor conducts, with creep; null is the calibration line itself."""
 
     def conductance(self, time: Array, force: Array) -> Array:
         """Conductance in S under forces in N, shape (time, ...), at times in s."""
-        return self.calibration.conductance(force) if self.film is None else self.film.conductance(time, force)
+        return self.calibration.conductance(force) if self.film is None else self.film.read(time, force)
 
 
 class ThresholdSensor(FrozenModel):

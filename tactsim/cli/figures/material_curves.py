@@ -14,7 +14,6 @@ from tactsim.identification.uniaxial import UniaxialFit, relative_errors, uniaxi
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Array, Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
-from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.stability_range import PathStability, stability_range
 from tactsim.units import format_quantity
 
@@ -44,7 +43,7 @@ def material_figure(material: Material, name: str) -> Figure:
     axes[0].set_ylabel(f"nominal stress in {unit}")
     labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
-    volume = ", incompressible" if isinstance(material, Hyperelastic) else ""
+    volume = "" if material.small_strain else ", incompressible"
     figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}", parse_math=False)
     return figure
 

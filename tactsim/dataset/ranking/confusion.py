@@ -14,8 +14,9 @@ from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.localization.estimators.hypotheses import CLASSES
-from tactsim.localization.interface import ROUNDING_NOISE, Estimator
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 

@@ -13,9 +13,9 @@ from scipy.stats import binomtest
 
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth
 from tactsim.errors import InputError
-from tactsim.localization.interface import Estimate, Estimator
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import LEVEL, Estimate
 from tactsim.localization.lump_response import LumpResponse
-from tactsim.localization.region import LEVEL
 
 Array = np.ndarray
 NOISES = (1.0, 2.0, 4.0)

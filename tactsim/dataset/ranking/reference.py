@@ -10,8 +10,8 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import readings_of, stored_grasp
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.localization.interface import Readings
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
 

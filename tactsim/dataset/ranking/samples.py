@@ -19,7 +19,7 @@ from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.localization.source import Source
-from tactsim.localization.interface import ROUNDING_NOISE, Readings
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import one_line
 from tactsim.sensors.matrix_readout import MatrixReadout

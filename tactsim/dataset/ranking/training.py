@@ -12,10 +12,10 @@ from scipy.stats import chi2
 
 from tactsim.dataset.ranking.samples import JudgedSamples
 from tactsim.errors import InputError
+from tactsim.interfaces.estimate import LEVEL
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import OUTPUTS, LearnedWeights, Network, inputs
-from tactsim.localization.region import LEVEL
 
 Array = np.ndarray
 HIDDEN = (64, 64)

@@ -15,6 +15,7 @@ from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
 from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.dataset.store.blocks import checksum, encoded, stacked
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
+from tactsim.experiments.recording import numbers as numbers_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.results.result import Status
 
@@ -84,7 +85,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
-        found = layout.recorder.numbers(result) | readings
+        found = numbers_of(layout.recorder, result) | readings
         _check(found, layout)
     except CaseError:
         raise  # what the sweep stores is wrong for every sample

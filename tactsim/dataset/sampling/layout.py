@@ -15,7 +15,10 @@ from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.sweep import SECTION, Sweep, is_distribution
 from tactsim.dataset.store.arrays import index_variables
 from tactsim.errors import CaseError, suggestion
-from tactsim.experiments.recording import Recorder, Values, recorder_for
+from tactsim.experiments.recording import recorder_for
+from tactsim.experiments.recording import variables as variables_of
+from tactsim.interfaces import Recorder
+from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
 
 Array = np.ndarray
@@ -51,7 +54,7 @@ def layout_of(sweep: Sweep) -> Layout:
         unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), unknown)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
-    index, own = index_variables(sweep.settings.splits.names), recorder.variables(first_case(sweep).experiment)
+    index, own = index_variables(sweep.settings.splits.names), variables_of(recorder, first_case(sweep).experiment)
     labels = [variable for variable in own if variable.role == "label"]
     readings = [variable for variable in own if variable.role == "reading"]
     variables = (*index, *varied_variables(sweep), *labels, *readings)

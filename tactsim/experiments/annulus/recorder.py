@@ -7,8 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from tactsim.experiments.annulus.closed_form import ClosedForm
-from tactsim.experiments.recording import Recorder, Values
-from tactsim.interfaces import Experiment
+from tactsim.experiments.recording import history
+from tactsim.interfaces import Experiment, Recorder
+from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.results.result import Result
@@ -55,17 +56,17 @@ class ClosedFormRecorder(Recorder):
 
     def readings_of(self, experiment: Any) -> list[Variable]:
         """Histories."""
-        told = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.reading else {})}
+        told = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.settings.reading else {})}
         times, given = self.settings.times, experiment.loading.control
         return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in told.items()]
 
     def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the times that the experiment sampled."""
-        times, columns = self.history(result)
-        at = self.stored_times(float(times[-1]))
+        times, columns = history(result)
+        at = self.settings.stored_times(float(times[-1]))
         found = {"time_s": at, **{name: np.interp(at, times, columns[name]) for name in HISTORY}}
-        if self.reading:
-            found |= self.reading.read(times, columns["force"], at, generator)
+        if self.settings.reading:
+            found |= self.settings.reading.read(times, columns["force"], at, generator)
         return found
 
     def describe(self) -> str:

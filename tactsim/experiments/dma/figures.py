@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from tactsim.experiments.dma.scene import DmaScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
 Array = np.ndarray

@@ -1,4 +1,4 @@
-"""Constant forces on a piezoresistive film: strain, resistance and conductance over force and time."""
+"""Constant forces on a sensor film: strain and signal over force and time."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from scipy.stats import linregress
 
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
+from tactsim.sensors.any_film import AnyFilm
+from tactsim.sensors.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.film import HOLM, Film
-from tactsim.sensors.film_calibration import least_squares_line
-from tactsim.sensors.film_report import film_assumptions, film_quantities, film_warnings
 from tactsim.units import Force, Time, check_increasing
 
 Array = np.ndarray
@@ -27,11 +28,13 @@ PositiveTime = Annotated[Time, Field(gt=0, le=LONGEST)]
 class FilmTest(Experiment):
     """A force suddenly put on a film and held, for each of several forces.
 
+    The signal of the film is told with what electronics make of it: a resistance, or the voltage of a charge amplifier.
+
     Source: thesis, sections 2.2 and 2.3, Fig. 2.5, 2.6b, 2.9 and 2.10.
     """
 
     kind: Literal["film_test"] = "film_test"
-    film: Film = Film()
+    film: AnyFilm = Film()
     """What is pressed."""
     forces: Annotated[tuple[PositiveForce, ...], Field(min_length=3, max_length=1000)] = tuple(float(n) / 4 for n in range(2, 21))
     """Forces, increasing; by default 0.5 to 5 N."""
@@ -40,13 +43,30 @@ class FilmTest(Experiment):
     )
     """Times since the force began, increasing; the immediate answer at 0 s is always told."""
     reading_time: PositiveTime = 1.0
-    """Time since the force began at which the force is plotted against the conductance and a line is laid through."""
+    """Time since the force began at which the signal is plotted against the force and a line is laid through."""
 
-    history_units: ClassVar[dict[str, str]] = {"force": "N", "time": "s", "strain": "1", "resistance": "ohm", "conductance": "S"}
+    amplifier: ChargeAmplifier | None = None
+    """What turns the capacitance of a capacitive film into a voltage; null tells the capacitance only."""
+
+    history_units: ClassVar[dict[str, str]] = {
+        "force": "N",
+        "time": "s",
+        "strain": "1",
+        "resistance": "ohm",
+        "conductance": "S",
+        "capacitance": "F",
+        "voltage": "V",
+    }
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         check_increasing(forces=self.forces, times=self.times)
+        return self
+
+    @model_validator(mode="after")
+    def _amplified(self) -> Self:
+        if self.amplifier is not None and self.film.signal != "capacitance":
+            raise ValueError(f"amplifier: {self.film.kind} has no capacitance, for an amplifier to read; leave it out")
         return self
 
     @classmethod
@@ -59,58 +79,73 @@ class FilmTest(Experiment):
         times = np.concatenate([[0.0], self.times])
         forces = np.array(self.forces)
         held = np.tile(forces, (len(times), 1))
-        conductance, strain = self.film.conductance(times, held), self.film.strain(times, held)
+        signal = self.film.read(times, held)
+        shown = {"strain": self.film.strain(times, held), **self._shown(signal)}
+        units = {name: self.history_units[name] for name in ("force", "time", *shown)}
         steps = []
         for number, (j, i) in enumerate(itertools.product(range(len(forces)), range(len(times))), start=1):
-            reached = (forces[j], times[i], strain[i, j], 1 / conductance[i, j], conductance[i, j])
-            steps.append(StepRecord(number, 0, 0.0, dict(zip(self.history_units, map(float, reached), strict=True))))
-        read = self.film.conductance([0.0, self.reading_time], np.tile(forces, (2, 1)))[-1]
+            reached = (forces[j], times[i], *(values[i, j] for values in shown.values()))
+            steps.append(StepRecord(number, 0, 0.0, dict(zip(units, map(float, reached), strict=True))))
+        read = self.film.read([0.0, self.reading_time], np.tile(forces, (2, 1)))[-1]
         return Course.computed(
             Findings(
                 "all forces held",
                 steps,
-                quantities=film_quantities(self.film) | self._readings(times, conductance) | self._line(forces, read),
-                assumptions=film_assumptions(self.film),
-                warnings=film_warnings(self.film, float(forces.max())),
-                scene=self._scene(forces),
+                quantities=self.film.quantities() | self._readings(times, signal) | self._at_reading(forces, read),
+                assumptions=self.film.assumptions(),
+                warnings=self.film.warnings(float(forces.max())),
+                scene=FilmTestScene(reading_time=self.reading_time, coefficients=self._coefficients(forces)),
+                units=units,
             )
         )
 
-    def _readings(self, times: Array, conductance: Array) -> dict[str, Quantity]:
-        drift = conductance[-1] / conductance[0] - 1
-        return {
+    def _shown(self, signal: Array) -> dict[str, Array]:
+        """Signals of any shape by name, with what electronics make of them."""
+        if self.film.signal == "conductance":
+            return {"resistance": 1 / signal, "conductance": signal}
+        return {"capacitance": signal} | ({} if self.amplifier is None else {"voltage": self.amplifier.voltage(signal)})
+
+    def _readings(self, times: Array, signal: Array) -> dict[str, Quantity]:
+        drift = signal[-1] / signal[0] - 1
+        found = {
             "forces": Quantity(list(self.forces), "N", "forces that were held"),
             "times": Quantity(times.tolist(), "s", "times since the force began"),
-            "resistance": Quantity((1 / conductance).tolist(), "ohm", "resistance [time][force]"),
-            "drift": Quantity(drift.tolist(), "1", "growth of the conductance from 0 s to the last time, for each force"),
+            "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time, for each force"),
         }
+        shown = {name: values for name, values in self._shown(signal).items() if name != "conductance"}
+        told = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
+        return found | told
 
-    def _line(self, forces: Array, read: Array) -> dict[str, Quantity]:
-        line = least_squares_line(forces, read)
-        errors = line.force(read) - forces
+    def _at_reading(self, forces: Array, read: Array) -> dict[str, Quantity]:
+        """What is read at the reading time, and the line through it."""
+        fit, symbol = linregress(forces, read), self.film.signal
+        slope, intercept = float(fit.slope), float(fit.intercept)
+        errors = (read - intercept) / slope - forces
         found = {
-            "reading_resistance": Quantity((1 / read).tolist(), "ohm", "resistance at the reading time, for each force"),
-            "reading_film_resistance": Quantity(
-                (1 / read - self.film.composite.contact_resistance / np.sqrt(forces)).tolist(),
-                "ohm",
-                "the same without the contacts at the electrodes",
-            ),
-            "line_slope": Quantity(line.slope, "S/N", "m of the least-squares line C = m F + n at the reading time"),
-            "line_intercept": Quantity(line.intercept, "S", "n of that line"),
+            f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time, for each force")
+            for name, values in self._shown(read).items()
+            if name != "conductance"
         }
+        found |= self._film_alone(forces, read)
+        words = f"m of the least-squares line of the {symbol}, C = m F + n, at the reading time"
+        found["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
+        found["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
         for sign, error in (("positive", errors.max()), ("negative", errors.min())):
             words = f"largest {sign} error of the force that the line reads, over the largest force"
             found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
         return found
 
-    def _scene(self, forces: Array) -> FilmTestScene:
-        composite = self.film.composite
-        felt = forces * self.film.magnification
-        return FilmTestScene(
-            reading_time=self.reading_time,
-            coefficients={
-                "instantaneous": composite.instantaneous.at(felt).tolist(),
-                "delayed": composite.delayed.at(felt).tolist(),
-                "viscosity": composite.viscosity.at(felt).tolist(),
-            },
-        )
+    def _film_alone(self, forces: Array, read: Array) -> dict[str, Quantity]:
+        """What a film of composite has without its electrodes."""
+        if not isinstance(self.film, Film):
+            return {}
+        alone = 1 / read - self.film.composite.contact_resistance / np.sqrt(forces)
+        return {"reading_film_resistance": Quantity(alone.tolist(), "ohm", "the same without the contacts at the electrodes")}
+
+    def _coefficients(self, forces: Array) -> dict[str, list[float]] | None:
+        """Coefficients of the creep of a film of composite at each force."""
+        if not isinstance(self.film, Film):
+            return None
+        felt, composite = forces * self.film.magnification, self.film.composite
+        names = ("instantaneous", "delayed", "viscosity")
+        return {name: getattr(composite, name).at(felt).tolist() for name in names}

@@ -9,13 +9,13 @@ from tactsim.units import FrozenModel
 
 
 class FilmTestScene(Scene):
-    """When the film was read, and its standard linear solid at each force."""
+    """When the film was read, and, of a composite, its standard linear solid at each force."""
 
     kind: Literal["film_test"] = "film_test"
     reading_time: float
     """Time of the reading in s after the force began."""
-    coefficients: dict[str, tuple[float, ...]]
-    """``instantaneous`` and ``delayed`` modulus in Pa and ``viscosity`` in Pa s, at every force."""
+    coefficients: dict[str, tuple[float, ...]] | None = None
+    """``instantaneous`` and ``delayed`` modulus in Pa and ``viscosity`` in Pa s, at every force; null if it is no composite."""
 
 
 class CreepCurve(FrozenModel):

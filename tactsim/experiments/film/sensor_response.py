@@ -12,9 +12,9 @@ from tactsim.experiments.film.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, rows
+from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.film import Film
-from tactsim.sensors.film_report import film_assumptions, film_warnings
 from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_square
 from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, check_increasing, format_quantity
@@ -33,7 +33,7 @@ class SensorResponse(Experiment):
     kind: Literal["sensor_response"] = "sensor_response"
     force: AnyForceSignal
     """The force on the sensor."""
-    film: Film = Film()
+    film: ConductingFilm = Film()
     """What turns force into conductance."""
     chain: SignalChain = SignalChain()
     """What turns conductance into samples."""
@@ -70,7 +70,7 @@ class SensorResponse(Experiment):
         """One step for every sample."""
         times = self._times()
         force = self.force.sampled(times)
-        conductance = self.film.conductance(times, force)
+        conductance = self.film.read(times, force)
         recording = self.chain.acquire(conductance, np.random.default_rng(self.seed))
         read, raw = (self._linear(voltage) for voltage in (recording.filtered, recording.voltage))
         model = self._modelled(times, recording)
@@ -80,7 +80,7 @@ class SensorResponse(Experiment):
                 "end of the record",
                 rows(self.history_units, columns),
                 quantities=self._quantities(force, conductance, recording, {"read": read, "raw": raw, "model": model}),
-                assumptions=(*film_assumptions(self.film), "one straight line as calibration, without regard to history"),
+                assumptions=(*self.film.assumptions(), "one straight line as calibration, without regard to history"),
                 warnings=self._warnings(force, recording),
             )
         )
@@ -165,7 +165,7 @@ class SensorResponse(Experiment):
         return found
 
     def _warnings(self, force: Array, recording: Recording) -> tuple[str, ...]:
-        told = list(film_warnings(self.film, float(force.max())))
+        told = list(self.film.warnings(float(force.max())))
         if recording.saturated.any():
             first = format_quantity(float(recording.time[recording.saturated][0]), "s")
             told.append(

@@ -9,15 +9,16 @@ import numpy as np
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
-from tactsim.experiments.recording import Recorder, Values
-from tactsim.interfaces import Experiment
+from tactsim.experiments.recording import history
+from tactsim.interfaces import Experiment, Inclusion, Recorder
+from tactsim.interfaces.recording import Values
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.interfaces.variable import Variable, label, reading
+from tactsim.registry import kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import CLEAN, latest, read_variables
 
 Array = np.ndarray
-KINDS = ("none", "sphere", "ellipsoid", "tube", "surface")
 PER_INCLUSION = {
     "inclusion_radius": ("m", "radius of a sphere, outer radius of a tube, that of a ball of equal volume of others"),
     "inclusion_wall": ("m", "wall of a tube"),
@@ -64,7 +65,7 @@ class GraspRecorder(Recorder):
         told = [Variable("inclusion_count", "1", "number of inclusions", "label", dtype="int64")]
         told += [label(name, unit, words) for name, (unit, words) in PER_SAMPLE.items()]
         if count:
-            told.append(Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", KINDS))
+            told.append(Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", inclusion_kinds()))
             told += [label(name, unit, words, inclusion=count) for name, (unit, words) in PER_INCLUSION.items()]
             told.append(label("inclusion_center", "m", "centre, x along the columns", inclusion=count, axis=3))
             told.append(label("inclusion_direction", "1", "unit vector along a tube", inclusion=count, axis=3))
@@ -90,7 +91,7 @@ class GraspRecorder(Recorder):
         for number, embedded in enumerate(there):
             modulus = embedded.material.shear_modulus
             told = _geometry(embedded.shape, size)
-            if embedded.shape.kind == "tube":
+            if embedded.shape.hollow:
                 lumen = embedded.lumen
                 told["inclusion_lumen_pressure"] = float(lumen_history(lumen, end).value(end)) if lumen else 0.0
             told |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
@@ -111,8 +112,8 @@ class GraspRecorder(Recorder):
 
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
-        times, columns = self.history(result)
-        at = self.stored_times(float(times[-1]))
+        times, columns = history(result)
+        at = self.settings.stored_times(float(times[-1]))
         force = np.stack([_taxel_history(result, side) for side in JAWS], axis=1)
         if len(force) < len(times):
             force = np.concatenate([np.zeros_like(force[:1]), force])
@@ -153,17 +154,21 @@ def _interpolated(at: Array, times: Array, values: Array) -> Array:
     return (1 - share) * values[after - 1] + share * values[after]
 
 
-def _geometry(shape: Any, size: Array) -> dict[str, Any]:
+def inclusion_kinds() -> tuple[str, ...]:
+    """What the numbers of `inclusion_kind` stand for: nothing, the kinds with a number of their own, then all others."""
+    known: dict[str, type[Inclusion]] = kinds(Inclusion)
+    numbers = {kind: cls.data_set_number for kind, cls in known.items()}
+    return ("none", *sorted(known, key=lambda kind: (numbers[kind] is None, numbers[kind] or 0, kind)))
+
+
+def _geometry(shape: Inclusion, size: Array) -> dict[str, Any]:
     """Labels of an inclusion in a block of size (3,) in m."""
-    told: dict[str, Any] = {"inclusion_kind": KINDS.index(shape.kind)}
-    if shape.kind == "tube":
-        line = np.array(shape.centre_line)
-        along, radius = line[-1] - line[0], shape.outer_radius
-        told |= {"inclusion_direction": along / np.linalg.norm(along), "inclusion_wall": shape.wall}
-        center, top = (line[0] + line[-1]) / 2, line[:, 2].max() + radius
-    else:
-        body = shape.solids(size)[0]
-        bounds = body.bounds()
-        center, top = bounds.mean(axis=0), bounds[1, 2]
-        radius = shape.radius if shape.kind == "sphere" else (0.75 * body.volume() / np.pi) ** (1 / 3)
-    return told | {"inclusion_center": center, "inclusion_radius": radius, "inclusion_depth": size[2] - top}
+    measured = shape.measures(size)
+    told: dict[str, Any] = {
+        "inclusion_kind": inclusion_kinds().index(shape.kind),
+        "inclusion_center": measured.center,
+        "inclusion_radius": measured.radius,
+        "inclusion_depth": size[2] - measured.top,
+    }
+    optional = {"inclusion_direction": measured.direction, "inclusion_wall": measured.wall}
+    return told | {name: value for name, value in optional.items() if value is not None}

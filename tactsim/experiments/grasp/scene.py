@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import AfterValidator
 
 from tactsim.contact.jaw import Jaw
+from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
-from tactsim.mesh.solid import Inclusion
 from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import FrozenModel
 

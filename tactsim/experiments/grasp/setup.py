@@ -16,7 +16,8 @@ from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
-from tactsim.interfaces import Material
+from tactsim.interfaces import Inclusion, Material
+from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_relaxation
@@ -25,7 +26,6 @@ from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, Tetrahe
 from tactsim.mechanics.loading import AnyLoading, check_periods
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
-from tactsim.mesh.solid import Inclusion, Positive
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, FrozenModel, Length, format_quantity
 
@@ -64,7 +64,7 @@ class Embedded(FrozenModel):
 
     def unlike(self, tissue: Material) -> bool:
         """Whether it differs from the tissue around it: it is hollow or of another material."""
-        return self.shape.kind == "tube" or self.material != tissue
+        return self.shape.hollow or self.material != tissue
 
 
 class JawSettings(FrozenModel):
@@ -211,12 +211,12 @@ class GraspSetup(FrozenModel):
             blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
             raise ValueError(f"{''.join(blamed)}{error}") from None
         for number, embedded in enumerate(self.inclusions, 1):
-            name, hollow = inclusion_name(number, embedded.shape), len(embedded.shape.solids(size)) > 1
+            name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
             if hollow and self.mesh.kind == "structured":
                 raise ValueError(f"mesh.kind: structured cannot follow the wall of {name}; take kind: tetrahedra")
-        round_ones = all(shape.kind in ("sphere", "ellipsoid") for shape in self.shapes)
+        round_ones = all(shape.solids(size)[0].ball_image() is not None for shape in self.shapes)
         if self.mesh.kind == "layers" and not (round_ones and len(self.shapes) == 1):
             raise ValueError("mesh.kind: layers serves exactly one sphere or ellipsoid; take kind: tetrahedra")
         if self.mesh.kind == "graded" and not (round_ones and len(self.shapes) <= 1):

@@ -6,7 +6,6 @@ import numpy as np
 
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.result import Quantity
-from tactsim.sensors.film_report import film_assumptions, film_warnings
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import format_quantity
@@ -44,7 +43,7 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
 def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
     """What is assumed of sensors and electronics."""
     line = readout.line(area)
-    told = [*film_assumptions(readout.film), "force linear between the accepted steps, from zero at 0 s"]
+    told = [*readout.film.assumptions(), "force linear between the accepted steps, from zero at 0 s"]
     if readout.calibration is None:
         low, high = (format_quantity(value, "N") for value in readout.calibration_forces)
         told.append(
@@ -61,7 +60,7 @@ def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
 
 def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
     """What a user must know of the readings."""
-    told = list(film_warnings(readout.film_of(area), float(reading.applied.max())))
+    told = list(readout.film_of(area).warnings(float(reading.applied.max())))
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")
         told.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")

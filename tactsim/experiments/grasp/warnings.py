@@ -8,6 +8,7 @@ import numpy as np
 
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.plausibility import oddities
 from tactsim.mesh.any_inclusion import inclusion_name
@@ -56,4 +57,5 @@ def unlikely(grasp: GraspSetup) -> list[str]:
     tissue = {f"block.size along {axis}": side for axis, side in zip("xyz", grasp.block.size, strict=True)}
     jaws = {side: grasp.jaw(side) for side in JAWS}
     bodies = {f"{name} of the {side} jaw": getattr(jaw, name) for side, jaw in jaws.items() for name in ("width", "depth")}
-    return oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})
+    told = oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})
+    return [*told, *interpreted_warnings(materials)]

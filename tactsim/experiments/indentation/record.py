@@ -16,6 +16,7 @@ from tactsim.experiments.indentation.scene import (
     TimedIndentationScene,
 )
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
+from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
 from tactsim.mechanics.history_path import TimedState
@@ -247,7 +248,7 @@ def contact_oddities(setup: IndentationSetup) -> list[str]:
     tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
     tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
     bodies = {f"body.{name}": getattr(body, name) for name in ("radius", "inner_radius", "outer_radius") if hasattr(body, name)}
-    return oddities(materials, tissue=tissue, bodies=bodies)
+    return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
 
 
 def contact_assumptions(setup: IndentationSetup) -> list[str]:

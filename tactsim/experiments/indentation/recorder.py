@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tactsim.experiments.recording import Recorder, Values
-from tactsim.interfaces import Experiment
+from tactsim.interfaces import Experiment, Recorder
+from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label
 
 LABELS = {

@@ -155,7 +155,7 @@ class IndentationSetup(FrozenModel):
     @model_validator(mode="after")
     def _fitting(self) -> Self:
         width = format_quantity(self.specimen.radius, "m")
-        if self.body.kind != "plane" and self.contact_radius >= self.specimen.radius:
+        if self.body.contact_shape.radius is not None and self.contact_radius >= self.specimen.radius:
             raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
         largest = max(self.specimen.radius, self.specimen.thickness)
         if largest > LARGEST_RATIO * self.contact_radius:
@@ -171,7 +171,7 @@ class IndentationSetup(FrozenModel):
         return self
 
     def _check_penetration(self) -> None:
-        fillet, layers = getattr(self.body, "fillet", None), -np.diff(self.specimen.interfaces)
+        fillet, layers = self.body.contact_shape.fillet, -np.diff(self.specimen.interfaces)
         lengths = {"displacement": self.prescribed, "width of the contact": self._narrowest, "body's fillet": fillet}
         check_penetration(self.penetration_tolerance, lengths | {"thickness of the thinnest layer": float(layers.min())})
 
@@ -186,12 +186,13 @@ class IndentationSetup(FrozenModel):
     @property
     def contact_radius(self) -> float:
         """Radius in m that the body's size is measured by."""
-        return float(getattr(self.body, "outer_radius", getattr(self.body, "radius", self.specimen.radius)))
+        radius = self.body.contact_shape.radius
+        return self.specimen.radius if radius is None else radius
 
     @property
     def _narrowest(self) -> float:
         """Width in m of the contact that the mesh must resolve."""
-        return self.contact_radius - float(getattr(self.body, "inner_radius", 0.0))
+        return self.contact_radius - float(self.body.contact_shape.hole)
 
     @property
     def rise_at_touch(self) -> float:
@@ -230,13 +231,13 @@ class IndentationSetup(FrozenModel):
 
     def _focus(self) -> tuple[tuple[float, ...], float, float]:
         """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
-        if self.body.kind in ("sphere", "rod"):
+        shape = self.body.contact_shape
+        if shape.tip is not None:
             reach = 1.5 * float(np.sqrt(self.contact_radius * self.depth))
-            if self.body.kind == "rod":
+            if shape.tip.within_radius:
                 reach = min(reach, 1.5 * self.contact_radius)
-            return (), min(reach, self.specimen.radius), reach / (20 if self.body.kind == "sphere" else 9)
-        rims = (getattr(self.body, "inner_radius", 0.0), self.contact_radius)
-        fillet = float(getattr(self.body, "fillet", 0.0))
+            return (), min(reach, self.specimen.radius), reach / shape.tip.elements
+        rims, fillet = (shape.hole, self.contact_radius), shape.fillet or 0.0
         finest = fillet / 3 if fillet > 0 else self.contact_radius / 50
         return tuple(r for r in rims if 0 < r < self.specimen.radius), fillet, finest
 

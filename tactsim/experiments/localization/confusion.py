@@ -21,10 +21,11 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.estimate import Estimate
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.run import Course, Findings
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
-from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, format_quantity

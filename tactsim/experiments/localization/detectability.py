@@ -15,9 +15,9 @@ from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
 from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.interface import ROUNDING_NOISE
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
 from tactsim.mechanics.loading import DisplacementLoading

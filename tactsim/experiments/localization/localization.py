@@ -19,16 +19,15 @@ from tactsim.experiments.localization.source import (
     readings_of,
     reference_notes,
     stored_grasp,
-    true_places,
     with_reference,
 )
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.estimate import Estimate, told
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import ROUNDING_NOISE, Estimate, Readings, told
-from tactsim.localization.readings import silent_taxels, silent_words
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
@@ -81,7 +80,7 @@ class Localization(Experiment):
         readings = self._readings(stored, plain)
         estimate = self.estimator.estimate(readings)
         scene = stored.scene_as(GraspScene)
-        true = [true_places(shape, readings.block_size) for shape in scene.true_inclusions]
+        true = [shape.places(readings.block_size) for shape in scene.true_inclusions]
         return Course.computed(
             Findings(
                 estimate.reason,

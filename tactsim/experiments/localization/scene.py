@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 from tactsim.experiments.grasp.scene import GraspScene, Point
-from tactsim.localization.interface import EstimatedInclusion
+from tactsim.interfaces.estimate import EstimatedInclusion
+from tactsim.localization.region import shadows
 from tactsim.results.scene import Scene
 from tactsim.units import FrozenModel
 
@@ -29,7 +30,7 @@ class EstimatedShape(FrozenModel):
     @classmethod
     def of(cls, found: EstimatedInclusion) -> EstimatedShape:
         """The shape of an estimated inclusion."""
-        region = None if found.region is None else found.region.shadows()
+        region = None if found.region is None else shadows(found.region)
         return cls.model_validate(
             {"kind": found.kind, "center": found.center, "radius": found.radius, "line": found.line, "region": region}
         )

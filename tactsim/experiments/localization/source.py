@@ -11,10 +11,9 @@ import numpy as np
 
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.localization.interface import Readings
-from tactsim.mesh.inclusions.tube import Tube, extended
-from tactsim.mesh.solid import Inclusion
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
@@ -24,8 +23,6 @@ Source = Literal["taxel_force", "read_force"]
 """Forces of the solution, or those read through film, electronics and calibration."""
 SAME_CLOSING = 1e-3
 """Largest relative difference of the closing of the reference."""
-ALONG_LINE = 400
-"""Points on the centre line of an artery among which the nearest is sought."""
 
 
 def stored_grasp(folder: str) -> Result:
@@ -110,16 +107,6 @@ def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
         return ()
     what = "an inclusion" if len(inclusions) == 1 else f"{len(inclusions)} inclusions"
     return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
-
-
-def true_places(inclusion: Inclusion, size: Array) -> Array:
-    """Points (n, 3) in m that stand for an inclusion: its centre, or many along the centre line of an artery in the block."""
-    if isinstance(inclusion, Tube):
-        line = extended(inclusion.centre_line, inclusion.outer_radius, tuple(size))
-        points = line.derivatives(np.linspace(*line.limits, ALONG_LINE))[0]
-        return points[((points >= 0) & (points <= size)).all(axis=1)]
-    center = getattr(inclusion, "center", None)
-    return np.array([inclusion.solids(size)[0].bounds().mean(axis=0) if center is None else center], dtype=float)
 
 
 def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:

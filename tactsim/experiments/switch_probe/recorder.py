@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.recording import Recorder, Values
 from tactsim.experiments.switch_probe.setup import COUNT
-from tactsim.interfaces import Experiment
+from tactsim.interfaces import Experiment, Recorder
+from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.results.result import Result

@@ -10,12 +10,11 @@ import numpy as np
 
 from tactsim.errors import StorageError, TactsimError
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
+from tactsim.interfaces.estimate import PARAMETERS, Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.live.sources.recorded import DAMAGE
-from tactsim.localization.estimators.hypotheses import HypothesesEstimator
+from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.localization.estimators.learned import LearnedEstimator
-from tactsim.localization.estimators.model_based import ModelBasedEstimator
-from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import PARAMETERS, Estimate, EstimatedInclusion, Readings
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Quantity
@@ -42,12 +41,9 @@ class Choice:
     needs_reference: bool
 
 
-CHOICES = (
-    Choice("thesis", "Thesis", ThesisEstimator(), False),
-    Choice("thesis_reference", "Thesis, less a reference", ThesisEstimator(background="reference"), True),
-    Choice("model_based", "Model based: one lump", ModelBasedEstimator(), True),
-    Choice("hypotheses", "Model based: lumps or arteries", HypothesesEstimator(), True),
-)
+def offered_choices() -> tuple[Choice, ...]:
+    """Every variant of every registered estimator, the one that needs least first."""
+    return tuple(Choice(name, one.title, one, one.needs_reference) for name, one in offered_estimators().items())
 
 
 @dataclass(frozen=True)
@@ -70,7 +66,8 @@ def learned_choice(weights: str) -> Choice:
     StorageError
         If it cannot be read, or holds no weights of this version.
     """
-    return Choice("learned", "Learned", LearnedEstimator.checked(weights), True)
+    learned = LearnedEstimator.checked(weights)
+    return Choice(learned.kind, learned.title, learned, learned.needs_reference)
 
 
 def stored_choice(folder: str | Path) -> Choice | None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tactsim.errors import InputError
-from tactsim.live.session.choices import CHOICES, Choice, learned_choice, stored_choice
+from tactsim.live.session.choices import Choice, learned_choice, offered_choices, stored_choice
 from tactsim.live.sources.feed import Feed
 from tactsim.live.sources.recorded import result_recordings
 from tactsim.live.sources.reference import Reference
@@ -28,7 +28,7 @@ class Content:
     reference: Reference | None = None
     noise: float | None = None
     """Standard deviation in N of a reading, instead of what the data say."""
-    choices: tuple[Choice, ...] = CHOICES
+    choices: tuple[Choice, ...] = field(default_factory=offered_choices)
     """Estimators that can be chosen, the first one at the beginning."""
 
     @property
@@ -57,7 +57,7 @@ def opened_content(
     if place is None and feed is None:
         raise InputError("nothing to show; name the folder of a result or a data set, or --live FILE, - or tcp://127.0.0.1:PORT")
     given = Reference.open(reference) if reference else None
-    choices = CHOICES if learned is None else (*CHOICES, learned_choice(learned))
+    choices = offered_choices() if learned is None else (*offered_choices(), learned_choice(learned))
     if place is None:
         return Content({}, None, feed, given, noise, choices)
     if (place / "zarr.json").is_file():

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.experiments.localization.source import away_from_truth, true_places, with_reference
+from tactsim.experiments.localization.source import away_from_truth, with_reference
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings, shown_change
 from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
-from tactsim.localization.readings import shown_change
+from tactsim.localization.region import shadows
 
 Array = np.ndarray
 DIGITS = 3
@@ -69,7 +70,7 @@ def estimated(scene: PageScene, readings: Readings, choice: Choice, reference: R
 
 def _drawn(one: EstimatedInclusion) -> dict[str, Any]:
     """What the page draws of an inclusion, in mm: its centre, radius, centre line and, by view, the outlines of its region."""
-    regions = {} if one.region is None else one.region.shadows()
+    regions = {} if one.region is None else shadows(one.region)
     return {
         "center": (1e3 * np.array(one.center)).tolist(),
         "radius": None if one.radius is None else 1e3 * one.radius,
@@ -114,7 +115,7 @@ def _errors(scene: PageScene, found: Estimate) -> list[str]:
     if not found.inclusions:
         count = len(scene.inclusions)
         return [f"Missed: there {'is one inclusion' if count == 1 else f'are {count} inclusions'}"]
-    points = np.concatenate([true_places(shape, scene.size) for shape in scene.inclusions])
+    points = np.concatenate([shape.places(scene.size) for shape in scene.inclusions])
     _, lateral, depth = away_from_truth(np.array(found.inclusions[0].center), points)
     size = _radius_error(scene, found.inclusions[0])
     return [f"Off by {1e3 * lateral:.1f} mm in plan and {round(1e3 * depth, 1) + 0.0:+.1f} mm in height{size}"]

@@ -12,11 +12,11 @@ import numpy as np
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.localization.figures.views import ESTIMATE, colour_table
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.session.estimating import shown_signal
 from tactsim.live.session.shapes import drawn_inclusions
 from tactsim.live.sources.scene import Frame, PageScene
-from tactsim.localization.interface import Readings
 from tactsim.localization.views import SHAPE, views
 from tactsim.outside.text import one_line
 

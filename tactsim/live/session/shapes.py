@@ -9,10 +9,10 @@ from contourpy import contour_generator
 
 from tactsim.errors import InputError, TactsimError
 from tactsim.experiments.localization.figures.parts import outline
+from tactsim.interfaces.solid import Solid
 from tactsim.live.sources.scene import PageScene
 from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import inclusion_name
-from tactsim.mesh.solid import Solid
 from tactsim.outside.text import one_line
 
 Array = np.ndarray

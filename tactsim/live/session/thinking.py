@@ -14,13 +14,13 @@ from queue import SimpleQueue
 from typing import Any, TypeVar
 
 from tactsim.errors import TactsimError
+from tactsim.interfaces.readings import Readings
 from tactsim.live.defects import report
 from tactsim.live.session.choices import Choice
 from tactsim.live.session.estimating import estimated
 from tactsim.live.session.messages import plain_json
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import PageScene
-from tactsim.localization.interface import Readings
 from tactsim.outside.text import one_line
 
 Send = Callable[[str], Awaitable[None]]

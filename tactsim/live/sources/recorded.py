@@ -10,9 +10,9 @@ from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.experiments.localization.source import saturated_taxels
+from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
-from tactsim.localization.interface import ROUNDING_NOISE
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status

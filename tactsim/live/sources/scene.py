@@ -9,10 +9,9 @@ import numpy as np
 from tactsim.errors import InputError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, named_taxels, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.localization.interface import ROUNDING_NOISE, Readings
-from tactsim.localization.readings import named_taxels, silent_taxels, silent_words
-from tactsim.mesh.solid import Inclusion
 
 Array = np.ndarray
 LARGEST_FORCE = 1e6

@@ -9,10 +9,11 @@ from pydantic import Field
 from scipy.special import logsumexp
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
 from tactsim.localization.evidence import Change, Found, nothing
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
-from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import Length
 
 Array = np.ndarray
@@ -46,6 +47,7 @@ class HypothesesEstimator(Estimator):
     """
 
     needs_response: ClassVar[bool] = True
+    tells_classes: ClassVar[bool] = True
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """Classes that are considered."""
@@ -65,6 +67,11 @@ class HypothesesEstimator(Estimator):
     """Prior probability of a class of two over that of one: readings say nothing of a second one too weak to be felt."""
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the draws by which pairs are averaged."""
+
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Model based: lumps or arteries"
 
     @classmethod
     def example(cls) -> Self:
@@ -111,7 +118,7 @@ class HypothesesEstimator(Estimator):
             return change.single(candidates), candidates
         return change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)])), candidates
 
-    def _bodies(self, name: str, response: LumpResponse, size: Array) -> tuple[Candidates, Candidates | None]:
+    def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""
         balls, tubes = _steps(self.radii), _steps(self.tube_radii)
         if name == "lump":

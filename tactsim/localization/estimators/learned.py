@@ -8,7 +8,9 @@ from typing import Literal, Self
 import numpy as np
 
 from tactsim.errors import InputError
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.localization.networks import inputs, read_weights
 from tactsim.localization.region import GaussianRegion
 from tactsim.outside.input_path import InputPath
@@ -32,10 +34,25 @@ class LearnedEstimator(Estimator):
     weights: InputPath
     """File of the weights, beside the case or in the working folder."""
 
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Learned"
+
     @classmethod
     def example(cls) -> Self:
         """Weights wherever they were written."""
         return cls(weights="results/lumps_estimator.npz")
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """None: it needs a file of weights."""
+        return {}
+
+    @property
+    def needs_reference(self) -> bool:
+        """Always: networks take changes."""
+        return True
 
     @classmethod
     def checked(cls, path: str | Path) -> Self:

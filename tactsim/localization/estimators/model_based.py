@@ -11,8 +11,9 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
 from tactsim.errors import InputError
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
-from tactsim.localization.lump_response import LumpResponse
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.region import CellRegion
 from tactsim.units import Length
 
@@ -66,6 +67,11 @@ class ModelBasedEstimator(Estimator):
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
 
+    @property
+    def title(self) -> str:
+        """Its name in words."""
+        return "Model based: one lump"
+
     @classmethod
     def example(cls) -> Self:
         """Lumps of 2 to 7 mm."""
@@ -115,7 +121,7 @@ class ModelBasedEstimator(Estimator):
         stiff = strength + 1 / self.contrast_spread**2
         return along**2 / stiff / 2 - np.log(stiff * self.contrast_spread**2) / 2, along / stiff, 1 / stiff
 
-    def _candidates(self, response: LumpResponse, size: Array) -> Candidates:
+    def _candidates(self, response: TissueResponse, size: Array) -> Candidates:
         """All balls of the table that fit into the block."""
         chosen = np.flatnonzero((response.radii >= self.radii[0] - 1e-12) & (response.radii <= self.radii[1] + 1e-12))
         if not len(chosen):

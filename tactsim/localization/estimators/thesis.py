@@ -8,9 +8,10 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings, rising
 from tactsim.localization.bands import Form
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings
-from tactsim.localization.readings import rising
 from tactsim.localization.section_image import depth_share
 from tactsim.units import format_quantity
 
@@ -45,6 +46,21 @@ class ThesisEstimator(Estimator):
     def example(cls) -> Self:
         """The corrected algorithm on the bare forces."""
         return cls()
+
+    @classmethod
+    def variants(cls) -> dict[str, Self]:
+        """On the bare forces, and on what they differ from a reference."""
+        return {"thesis": cls(), "thesis with reference": cls(background="reference")}
+
+    @property
+    def title(self) -> str:
+        """Whether it takes off a reference too."""
+        return "Thesis, less a reference" if self.needs_reference else "Thesis"
+
+    @property
+    def needs_reference(self) -> bool:
+        """Whether the reference is taken off."""
+        return self.background == "reference"
 
     def estimate(self, readings: Readings) -> Estimate:
         """At most one inclusion, without radius, contrast or covariance."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from tactsim.mesh.solid import Array, Inclusion, Point, Positive, Solid, Triangles, outward
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Array, BallImage, Point, Positive, Solid, Triangles
+from tactsim.mesh.solid import outward
 from tactsim.units import Angle
 
 BISECTIONS = 110
@@ -21,6 +23,7 @@ class Ellipsoid(Inclusion):
     """An ellipsoid wholly inside the block."""
 
     kind: Literal["ellipsoid"] = "ellipsoid"
+    data_set_number: ClassVar[int | None] = 2
     center: Point
     """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
     semi_axes: tuple[Positive, Positive, Positive]
@@ -50,6 +53,10 @@ class EllipsoidSolid(Solid):
     def stretch(self) -> Array:
         """Symmetric matrix (3, 3) in m that maps the unit ball onto the ellipsoid about its centre, without a twist."""
         return self.turn * self.semi_axes @ self.turn.T
+
+    def ball_image(self) -> BallImage:
+        """The ellipsoid itself."""
+        return BallImage(self.center, self.stretch, float(self.semi_axes.max()))
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Nearest points and outward normals, both (n, 3)."""

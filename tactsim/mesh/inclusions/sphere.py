@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Array, Point, Positive, Solid
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
-from tactsim.mesh.solid import Array, Inclusion, Point, Positive, Solid
 
 
 class Sphere(Inclusion):
     """A sphere wholly inside the block."""
 
     kind: Literal["sphere"] = "sphere"
+    data_set_number: ClassVar[int | None] = 1
     center: Point
     """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
     radius: Positive

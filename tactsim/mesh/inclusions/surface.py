@@ -5,15 +5,16 @@ from __future__ import annotations
 import hashlib
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tactsim.errors import InputError
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import Array, Point, Solid, Triangles
 from tactsim.mesh.foreign import read_foreign
 from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
-from tactsim.mesh.solid import Array, Inclusion, Point, Solid, Triangles
 from tactsim.outside.files import OutsideFile, opened
 from tactsim.outside.input_path import InputPath
 from tactsim.units import Angle
@@ -27,6 +28,7 @@ class Surface(Inclusion):
     """A closed surface, turned about the origin of the file and then moved."""
 
     kind: Literal["surface"] = "surface"
+    data_set_number: ClassVar[int | None] = 4
     path: InputPath
     """STL, PLY or OBJ file of triangles; one of ``meshes/`` is also found where this program is kept."""
     unit: Literal["m", "cm", "mm", "um"]

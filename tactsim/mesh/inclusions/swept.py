@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.interfaces.solid import Array, Patch, Solid, Triangles
 from tactsim.mesh.inclusions.centre_line import CentreLine
-from tactsim.mesh.solid import Array, Patch, Solid, Triangles
 
 RADIAL_POINTS, ANGLES = 12, 96
 """Points of the section at which the length inside the block is integrated."""

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from tactsim.errors import InputError
+from tactsim.interfaces.solid import Array, Solid, Triangles
 from tactsim.mesh.inclusions.crossing import crossing_pair
-from tactsim.mesh.solid import Array, Solid, Triangles
 
 FIRST_CANDIDATES = 12
 CHUNK = 20_000

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.solid import FACES, Array, Measures, Point, Positive, Solid
 from tactsim.mesh.inclusions.centre_line import CentreLine
 from tactsim.mesh.inclusions.swept import SweptSolid
-from tactsim.mesh.solid import FACES, Array, Inclusion, Point, Positive, Solid
 from tactsim.units import format_quantity
 
 LARGEST_EXTENSION = 6.0
@@ -20,6 +21,8 @@ STEEPEST = 0.4
 """Least sine of the angle between a tube and the face that it leaves through."""
 WALL_SIZE = 3.5
 """Element size asked for in wall thicknesses: one layer of quadratic elements spans the wall, with edges of about two of them."""
+ALONG_LINE = 400
+"""Points along a centre line that stand for the tube."""
 THINNEST = 0.02
 """Least wall in inner radii: a thinner one is a membrane, which solid elements do not represent."""
 
@@ -32,6 +35,8 @@ class Tube(Inclusion):
     """
 
     kind: Literal["tube"] = "tube"
+    data_set_number: ClassVar[int | None] = 3
+    hollow: ClassVar[bool] = True
     centre_line: Annotated[tuple[Point, ...], Field(min_length=2)]
     """Points of the centre line; two make a straight tube, more a smooth curve through them."""
     inner_radius: Positive
@@ -61,6 +66,19 @@ class Tube(Inclusion):
         """The filled tube and the empty space in it, both long enough to leave the block where the tube leaves it."""
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         return SweptSolid(line, self.outer_radius, size), SweptSolid(line, self.inner_radius, size)
+
+    def measures(self, size: Array) -> Measures:
+        """Middle between the ends, outer radius and highest point of the tube, as it is given."""
+        line = np.array(self.centre_line)
+        along = line[-1] - line[0]
+        center, top = (line[0] + line[-1]) / 2, float(line[:, 2].max() + self.outer_radius)
+        return Measures(center, self.outer_radius, top, along / np.linalg.norm(along), self.wall)
+
+    def places(self, size: Array) -> Array:
+        """Points along the centre line in the block."""
+        line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
+        points = line.derivatives(np.linspace(*line.limits, ALONG_LINE))[0]
+        return points[((points >= 0) & (points <= size)).all(axis=1)]
 
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
         """Refuse a tube that is too thin, too bent, or leaves the block other than by an end.

@@ -15,9 +15,9 @@ from tactsim.dataset.ranking.measures import Outcome, binned, interval, measures
 from tactsim.dataset.ranking.report import against_baseline, as_text, record
 from tactsim.dataset.ranking.samples import Truth
 from tactsim.errors import InputError
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import Estimate, EstimatedInclusion
 from tactsim.localization.region import GaussianRegion
 
 LUMP = Truth(1, 1e-3, (20e-3, 20e-3, 12e-3), 4e-3, 8e-3, 10.0)
@@ -144,7 +144,7 @@ def test_the_command_writes_report_and_figures(
     content = json.loads((tmp_path / "out" / "report.json").read_text())
     assert content["samples"] == 10
     assert content["noise"]["value"] == pytest.approx(0.3e-3)
-    assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference", "model_based"}
+    assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference", "model_based", "hypotheses"}
     names = {file.name for file in (tmp_path / "out").iterdir()}
     assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5

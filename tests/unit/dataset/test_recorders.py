@@ -17,7 +17,8 @@ from tactsim.dataset.store.arrays import FAILED
 from tactsim.dataset.store.blocks import decoded
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
-from tactsim.experiments.recording import Recorder, recorder_for
+from tactsim.experiments.recording import recorder_for
+from tactsim.interfaces import Recorder
 from tactsim.registry import kinds
 from tactsim.results.result import Quantity, Result, Status, StepRecord
 

@@ -12,7 +12,7 @@ from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, mad
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
-from tactsim.live.session.choices import CHOICES, stored_choice
+from tactsim.live.session.choices import offered_choices, stored_choice
 from tactsim.live.session.content import opened_content
 from tactsim.live.session.estimating import estimated, frame_readings, shown_signal
 from tactsim.live.session.messages import Scales, frame_message
@@ -22,7 +22,7 @@ from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.samples import Samples
 from tactsim.results import Quantity, write_result
 
-BY_NAME = {choice.name: choice for choice in CHOICES}
+BY_NAME = {choice.name: choice for choice in offered_choices()}
 
 
 def test_frames_between_the_steps_are_linear_and_the_jaws_follow(tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str | int, ...], 
 def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None:
     recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
     reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(8, lump=0.0), lump=False))])
-    choice = BY_NAME["thesis_reference"]
+    choice = BY_NAME["thesis with reference"]
     for time in (0.3, 0.77, 1.0):
         signal, words = shown_signal(frame_readings(recording.scene, recording.at(time), choice, reference))
         np.testing.assert_allclose(signal, time * (taxel_forces()[-1] - 0.1), rtol=1e-9)

@@ -5,11 +5,12 @@ import pytest
 
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.candidates import ball_candidates, tube_candidates
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.evidence import Change, nothing
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Readings
 from tactsim.localization.lump_response import LumpResponse
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])

@@ -9,9 +9,9 @@ from made_grasps import LAYOUT, NOISE, SIZE, made_samples, response
 from tactsim.dataset.ranking import training
 from tactsim.dataset.ranking.measures import measures, outcomes
 from tactsim.errors import InputError, StorageError
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.learned import LearnedEstimator
-from tactsim.localization.interface import Readings
 from tactsim.localization.networks import LearnedWeights, Network, inputs, read_weights
 
 PLAIN = np.full((2, 3, 3), 0.3)

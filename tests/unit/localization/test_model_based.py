@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
-from tactsim.localization.interface import Readings
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])

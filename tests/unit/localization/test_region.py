@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import chi2, multivariate_normal
 
 from tactsim.errors import InvalidQuantity
-from tactsim.localization.region import CellRegion, GaussianRegion
+from tactsim.localization.region import CellRegion, GaussianRegion, shadows
 
 AXES = tuple((np.arange(n) + 0.5) * 1e-3 for n in (20, 20, 10))
 MEAN = np.array([10e-3, 9e-3, 5e-3])
@@ -67,7 +67,7 @@ def test_the_shadow_of_a_region_at_the_rim_of_the_grid_is_closed():
     weights[0, 0, 0] = 1.0
     (line,) = CellRegion(AXES, weights).shadow(2)
     np.testing.assert_allclose(line[0], line[-1])
-    assert CellRegion(AXES, weights).shadows().keys() == {"front", "left", "top"}
+    assert shadows(CellRegion(AXES, weights)).keys() == {"front", "left", "top"}
 
 
 def test_what_is_no_region_is_refused():

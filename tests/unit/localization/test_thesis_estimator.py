@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.interfaces import Estimator
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, told
+from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.interface import Estimate, EstimatedInclusion, Estimator, Readings, told
 from tactsim.registry import kinds
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])

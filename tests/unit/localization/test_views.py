@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InvalidQuantity
-from tactsim.localization.readings import checked_readings
+from tactsim.interfaces.readings import checked_readings
 from tactsim.localization.section_image import section_image
 from tactsim.localization.views import joined, pair_images, top_view, views, volume
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from principal_ogden import PrincipalOgden
 
-from tactsim.errors import InputError
 from tactsim.materials.homogeneous import PATHS, nominal_stress, principal_invariants
 from tactsim.materials.library import LIBRARY
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.materials.neo_hookean import NeoHookean
 
 STRETCH = np.array([0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.5, 2.0])
 
@@ -75,6 +74,9 @@ def test_linear_elastic_paths(path, held):
     assert nominal_stress(material, path, np.array(1.001)) == pytest.approx(expected, rel=1e-10)  # 1.001 - 1 loses three digits
 
 
-def test_an_unknown_kind_is_refused():
-    with pytest.raises(InputError, match="'cosserat' are not known"):
-        nominal_stress(SimpleNamespace(kind="cosserat"), "uniaxial", STRETCH)
+@pytest.mark.parametrize("path", PATHS)
+def test_a_law_of_principal_stretches_has_the_states_of_neo_hooke_at_an_exponent_of_two(path):
+    expected = nominal_stress(NeoHookean(c10=500.0), path, STRETCH)
+    np.testing.assert_allclose(nominal_stress(PrincipalOgden(modulus=1e3), path, STRETCH), expected, rtol=1e-10)
+    other = nominal_stress(PrincipalOgden(modulus=1e3, alpha=3.0), path, STRETCH)
+    assert np.abs(other - expected).max() > 0.1 * np.abs(expected).max()

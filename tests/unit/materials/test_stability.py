@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from principal_ogden import PrincipalOgden
 from scipy.spatial.transform import Rotation
 
-from tactsim.errors import InputError
-from tactsim.materials.homogeneous import PATHS
+from tactsim.interfaces import Material
+from tactsim.materials.homogeneous import PATHS, diagonal
+from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.library import named_material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
+from tactsim.materials.sampled_stability import sampled_drucker_margin, sampled_ellipticity_margin
 from tactsim.materials.stability import drucker_margin, ellipticity_margin, principal_stretches, strongly_elliptic
 from tactsim.materials.stability_range import around_rest, lost_intervals, stability_range
+from tactsim.registry import kinds
 
 PRINTED = ("b1a_printed", "icf_printed")
 STABLE = ("b1a_stable", "icf_stable")
@@ -218,11 +220,35 @@ def test_linear_elasticity_is_always_elliptic():
     assert stability_range(LinearElastic.example()).strongly_elliptic
 
 
-def test_a_kind_of_which_nothing_is_known_is_refused():
-    unknown = SimpleNamespace(kind="cosserat")
-    for judge in (lambda: strongly_elliptic(unknown, np.eye(3)), lambda: stability_range(unknown)):
-        with pytest.raises(InputError, match="'cosserat' is not known"):
-            judge()
+@pytest.mark.parametrize("kind", sorted(kind for kind, cls in kinds(Material).items() if issubclass(cls, Hyperelastic)))
+def test_sampled_directions_judge_like_the_exact_conditions(kind):
+    """Q of sampled directions is never below the least one over every direction, and of its sign but close to the border."""
+    material = kinds(Material)[kind].example()
+    logarithm = np.random.default_rng(5).normal(scale=0.5, size=(3, 300))
+    stretches = np.exp(logarithm - logarithm.mean(axis=0))
+    exact, found = ellipticity_margin(material, stretches), sampled_ellipticity_margin(material, diagonal(stretches))
+    assert not (found[exact > 0] <= 0).any()
+    assert ((found > 0) != (exact > 0)).mean() < 0.03
+    np.testing.assert_allclose(
+        sampled_drucker_margin(material, stretches),
+        drucker_margin(material, stretches),
+        rtol=1e-9,  # a difference of two eigenvalues
+        atol=1e-9 * material.shear_modulus,
+    )
+
+
+def test_sampled_directions_find_a_lost_ellipticity():
+    """Twin: the literal set of the liver loses it, a softened law too."""
+    lost = PrincipalOgden(modulus=1e3, alpha=-0.5)
+    stretched = diagonal(np.array([9.0, 1 / 3, 1 / 3]))
+    assert not strongly_elliptic(lost, stretched)
+    assert strongly_elliptic(PrincipalOgden(modulus=1e3), stretched)
+    assert strongly_elliptic(lost, np.eye(3))
+    assert not strongly_elliptic(PrincipalOgden(modulus=1e3), np.diag([1.0, 1.0, -1.0]))
+
+
+def test_the_range_of_a_law_of_principal_stretches_is_that_of_neo_hooke_at_an_exponent_of_two():
+    assert stability_range(PrincipalOgden(modulus=1e3)) == stability_range(NeoHookean(c10=500.0))
 
 
 def test_a_path_beyond_the_scanned_stretches_does_not_condemn_a_material():

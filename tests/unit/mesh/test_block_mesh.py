@@ -9,6 +9,7 @@ from solids import assert_close
 
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.space import TaylorHood
+from tactsim.interfaces.solid import FACES
 from tactsim.mesh import tetrahedra
 from tactsim.mesh.block import FLATNESS, BlockMeshSettings
 from tactsim.mesh.curving import check
@@ -16,7 +17,6 @@ from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.quality import mean_ratio
-from tactsim.mesh.solid import FACES
 from tactsim.mesh.structured_block import morphed_block, structured_block
 from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.outside import processes

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.labelling import Surfaces, interfaces
-from tactsim.mesh.solid import FACES
 from tactsim.mesh.structured_block import structured_block
 from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.mesh.wedges import side_patches, without_wedges

@@ -13,8 +13,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
 

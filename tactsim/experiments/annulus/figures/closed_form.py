@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 COLOUR = "#1f4e79"

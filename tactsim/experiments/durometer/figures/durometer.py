@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.figures.indentation import section_beside
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import png, scale_of
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray

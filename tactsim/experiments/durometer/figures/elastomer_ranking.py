@@ -12,9 +12,9 @@ from scipy.stats import rankdata
 
 from tactsim.experiments.durometer.elastomers import Elastomer
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.film.figures.film_test import COEFFICIENTS
 from tactsim.experiments.film.scene import FilmCreepScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 PER_CENT = 100.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -10,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray
@@ -27,26 +29,31 @@ COEFFICIENTS = (
 
 
 class FilmTestFigures(ResultFigures):
-    """Four panels, and the surface of Fig. 2.10."""
+    """Four panels, and the surface of Fig. 2.10; for a capacitive film the capacitance and its strain."""
 
     kind: Literal["film_test"] = "film_test"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``film_test.png`` and, with at least two times, ``film_surface.png``."""
-        found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result))}
+        """``film_test.png`` and, with at least two times of a piezoresistive film, ``film_surface.png``."""
+        if "capacitance" in result.quantities:
+            return {"film_test.png": lambda: png(capacitive_test_figure(result))}
+        coefficients = result.scene_as(FilmTestScene).coefficients
+        if coefficients is None:
+            return {}
+        found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result, coefficients))}
         if len(result.quantities["times"].value) > 1:
             found["film_surface.png"] = lambda: png(film_surface_figure(result))
         return found
 
 
-def film_test_figure(result: Result) -> Figure:
+def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]) -> Figure:
     """Thesis Fig. 2.5a, 2.5b, 2.9b and 2.6b."""
     with styled():
         figure = new_figure(10.0, 7.0)
         axes = figure.subplots(2, 2)
         _draw_readings(axes[0, 0], axes[0, 1], result)
         _draw_creep(axes[1, 0], result)
-        _draw_coefficients(axes[1, 1], result)
+        _draw_coefficients(axes[1, 1], result.quantities["forces"].array, coefficients)
         for axis in axes.flat:
             despined(axis)
         entitle(figure, result.title or "Piezoresistive film under constant forces")
@@ -99,9 +106,7 @@ def _draw_creep(axis: Axes, result: Result) -> None:
     axis.legend(loc="center right", bbox_to_anchor=(1.0, 0.62), ncols=2)
 
 
-def _draw_coefficients(axis: Axes, result: Result) -> None:
-    forces = result.quantities["forces"].array
-    coefficients = result.scene_as(FilmTestScene).coefficients
+def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:
     for name, label, colour, style in COEFFICIENTS:
         axis.plot(forces, np.array(coefficients[name]) / 1e6, style, color=colour, label=label)
     axis.set(xlabel="force in N", ylabel="coefficient", title="Standard linear solid over force", ylim=(0, None))

@@ -6,8 +6,8 @@ from typing import Literal
 
 from matplotlib.figure import Figure
 
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 READINGS = (

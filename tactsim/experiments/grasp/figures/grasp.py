@@ -15,9 +15,9 @@ from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_volta
 from tactsim.experiments.grasp.figures.view import VIEW, grasp_view
 from tactsim.experiments.localization.figures.parts import has_views
 from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1

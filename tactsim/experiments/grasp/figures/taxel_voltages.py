@@ -9,9 +9,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray

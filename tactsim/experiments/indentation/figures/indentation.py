@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
 from tactsim.experiments.indentation.scene import Indentation3dScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 

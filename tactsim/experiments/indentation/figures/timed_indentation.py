@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
 from tactsim.experiments.indentation.scene import TimedIndentationScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tactsim.experiments.localization.scene import ConfusionScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 DARK = 0.6

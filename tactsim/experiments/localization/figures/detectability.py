@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from tactsim.experiments.localization.scene import DetectabilityScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
 

@@ -7,8 +7,8 @@ from typing import Literal
 from tactsim.experiments.localization.figures.parts import has_views
 from tactsim.experiments.localization.figures.space import SPACE, space_view
 from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import png
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 

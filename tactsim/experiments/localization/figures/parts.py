@@ -10,12 +10,13 @@ import numpy as np
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.readings import shown_change
+from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.localization.readings import shown_change
 from tactsim.localization.views import AWAY
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
-from tactsim.mesh.solid import Inclusion, Solid
 from tactsim.results import Result
 
 Array = np.ndarray

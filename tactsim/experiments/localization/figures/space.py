@@ -18,8 +18,8 @@ from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
 from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
 from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, viewed
+from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mesh.solid import Solid
 from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result

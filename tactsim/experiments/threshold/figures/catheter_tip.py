@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 
 from tactsim.experiments.threshold.scene import CatheterTipScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 
 Array = np.ndarray

@@ -13,9 +13,9 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLo
 
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.result_figures import Drawing, ResultFigures
 from tactsim.results import Result
 from tactsim.units import format_quantity
 

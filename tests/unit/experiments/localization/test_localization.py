@@ -11,7 +11,6 @@ from tactsim.errors import CaseError, InputError, StorageError
 from tactsim.experiments.localization.figures.parts import outline, viewed
 from tactsim.experiments.localization.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.localization import Localization
-from tactsim.experiments.localization.source import true_places
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -165,7 +164,7 @@ def test_what_does_not_fit_is_refused(folders, tmp_path):
 
 def test_an_artery_is_as_near_as_its_centre_line():
     tube = Tube.example()
-    points = true_places(tube, SIZE)
+    points = tube.places(SIZE)
     np.testing.assert_allclose(points[:, 1:], np.broadcast_to([20e-3, 10e-3], (len(points), 2)))
     assert points[:, 0].min() == pytest.approx(0, abs=1e-3)
     assert points[:, 0].max() == pytest.approx(40e-3, abs=1e-3)

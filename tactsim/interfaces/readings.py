@@ -1,16 +1,112 @@
-"""What the matrices of both jaws read, checked, with dead and saturated taxels filled from their neighbours."""
+"""What an estimator takes: forces on the taxels of both jaws, checked, and what is known of the grasp."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.taxel_layout import JAWS as JAWS
+from tactsim.interfaces.taxel_layout import TaxelLayout
 
 Array = np.ndarray
 
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
+RESOLUTION = 0.1
+"""Resolution of a sensor in N: thesis, section 6.2."""
+ROUNDING_NOISE = RESOLUTION / 12**0.5
+"""Standard deviation in N of what rounding to the resolution does to a force."""
+
+
+class TissueResponse(Protocol):
+    """How the forces on all taxels change with a ball in the block, for a contrast of one."""
+
+    @property
+    def axes(self) -> tuple[Array, Array, Array]:
+        """Ascending centres in m along x, y and z at which it is tabulated."""
+
+    @property
+    def radii(self) -> Array:
+        """Ascending radii (R,) in m."""
+
+    @property
+    def values(self) -> Array:
+        """Change of force (R, nx, ny, nz, jaw, row, column) in N."""
+
+    def signal(self, centers: Array, radii: Array) -> Array:
+        """Change of force (n, jaw, row, column) in N for centres (n, 3) and radii (n,) in m.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a ball lies outside the table.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """Forces on the taxels of both jaws, and what is known of the grasp.
+
+    Attributes
+    ----------
+    forces : (jaw, row, column) in N pressing into the taxels, the upper jaw first, row 1 nearest the front, column 1 smallest x
+    layout : of the taxels on each jaw
+    block_size : (3,) of the undeformed tissue in m, which begins at the origin
+    reference : (jaw, row, column) in N, what the same tissue without a lump reads at the same closing; None if not known
+    noise : standard deviation of a reading in N
+    valid : (jaw, row, column), False for a dead or saturated taxel; None if all can be trusted
+    middle : (2,) x and y in m of the middle of both matrices; None for that of the block
+    closing : of each jaw from first touch, in m; None if not known
+    response : fast forward model of lumps in this tissue at this closing; None if not known
+
+    Raises
+    ------
+    InvalidQuantity
+        On construction: a wrong shape, a taxel that is not finite (named), a block or noise out of its range.
+    """
+
+    forces: Array
+    layout: TaxelLayout
+    block_size: Array
+    reference: Array | None = None
+    noise: float = ROUNDING_NOISE
+    valid: Array | None = None
+    middle: Array | None = None
+    closing: float | None = None
+    response: TissueResponse | None = field(default=None, repr=False)
+    filled: Array = field(init=False, repr=False)
+    """The forces with those of invalid taxels interpolated from their neighbours."""
+    difference: Array | None = field(init=False, repr=False)
+    """Forces less reference in N, those of invalid taxels interpolated; None without a reference."""
+
+    def __post_init__(self) -> None:
+        forces = np.asarray(self.forces, dtype=float)
+        allowed = (len(JAWS), self.layout.rows, self.layout.columns)
+        for what, values in (("forces", forces), ("reference", self.reference)):
+            if values is not None and np.shape(values) != allowed:
+                raise InvalidQuantity(f"{what} of shape {np.shape(values)}; the layout needs (jaw, row, column) = {allowed}")
+        size = np.asarray(self.block_size, dtype=float)
+        if size.shape != (3,) or not np.isfinite(size).all() or not (size > 0).all():
+            raise InvalidQuantity(f"the block has the size {size.tolist()} m; allowed: three positive lengths")
+        if not (np.isfinite(self.noise) and self.noise >= 0):
+            raise InvalidQuantity(f"noise {self.noise} N; allowed: finite and not negative")
+        middle = size[:2] / 2 if self.middle is None else np.asarray(self.middle, dtype=float)
+        if middle.shape != (2,) or not np.isfinite(middle).all():
+            raise InvalidQuantity(f"middle of the matrices {middle.tolist()} m; allowed: two finite lengths, x and y")
+        difference = None
+        if self.reference is not None:
+            difference = checked_readings(forces - checked_readings(self.reference, self.valid), self.valid)
+        parts = {"forces": forces, "block_size": size, "middle": middle, "difference": difference}
+        for name, value in (parts | {"filled": checked_readings(forces, self.valid)}).items():
+            object.__setattr__(self, name, value)
+
+    def taxel_places(self) -> tuple[Array, Array]:
+        """Centres of the columns along x and of the rows along y in m, from the corner of the undeformed block."""
+        middle = np.asarray(self.middle)
+        return self.layout.borders("x").mean(axis=1) + middle[0], self.layout.borders("y").mean(axis=1) + middle[1]
 
 
 def taxel_name(jaw: int, row: int, column: int) -> str:

@@ -1,0 +1,119 @@
+"""The weak form for materials without a compiled form: their own stress and tangent, called at the points of their elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.fem.pattern import Pattern
+from tactsim.fem.space import TaylorHood, VolumePoints
+from tactsim.interfaces import Material
+
+Array = np.ndarray
+
+CHUNK = 512
+"""Elements computed at once, so that the tangent of their points takes a few tens of megabytes."""
+SYMMETRIC = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+"""Place of each entry of a symmetric tensor among its six components 11, 22, 33, 12, 23, 13."""
+
+
+@dataclass(frozen=True)
+class PointState:
+    """Deformation and pressure at the points of some elements, and what is left of the past if the material relaxes.
+
+    ``F`` (3, 3, E, Q), ``pressure`` (E, Q) in Pa, ``scale`` (E,) of the isochoric stress, ``past`` (6, E, Q) in Pa.
+    """
+
+    F: Array
+    pressure: Array
+    scale: Array | None = None
+    past: Array | None = None
+
+    def chosen(self, part: slice) -> PointState:
+        """That of a part of the elements."""
+        if self.scale is None or self.past is None:
+            return PointState(self.F[:, :, part], self.pressure[part])
+        return PointState(self.F[:, :, part], self.pressure[part], self.scale[part], self.past[:, part])
+
+
+class InterpretedPart:
+    """The elements (E,) of one material, and their terms of the weak form of `Body`."""
+
+    def __init__(self, material: Material, space: TaylorHood, points: VolumePoints, elements: Array):
+        self.material, self.space, self.points, self.elements = material, space, points, elements
+        self.compliance = 0.0 if material.bulk_modulus is None else 1 / material.bulk_modulus
+        self.unknowns = space.element_unknowns()[elements]
+
+    def add_residual(self, state: PointState, out: Array) -> None:
+        """Add internal forces in N and volume constraints in m^3 to ``out`` (size,)."""
+        for part in self._parts():
+            here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
+            B, stress = self._operator(part), self.stress(here)
+            change = self.material.volume_change(here.F) - self.compliance * here.pressure
+            weighted = np.moveaxis(weights * stress.reshape(9, *weights.shape), 0, -1)
+            forces = np.einsum("ep,epm->em", weighted.reshape(len(B), -1), B)
+            volumes = np.einsum("eq,eq,qv->ev", weights, change, N)
+            out += np.bincount(self.unknowns[part].ravel(), np.hstack([forces, volumes]).ravel(), out.size)
+
+    def add_tangent(self, state: PointState, pattern: Pattern, data: Array) -> None:
+        """Add the derivative of the residual to the entries ``data`` of a pattern."""
+        for part in self._parts():
+            here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
+            B, (count, points) = self._operator(part), weights.shape
+            moduli = np.moveaxis(weights * self.moduli(here).reshape(9, 9, count, points), (0, 1), (-2, -1))
+            slope = np.moveaxis(weights * self.material.volume_change_gradient(here.F).reshape(9, count, points), 0, -1)
+            across = B.transpose(0, 2, 1)
+            K_uu = across @ (moduli @ B.reshape(count, points, 9, -1)).reshape(B.shape)
+            K_up = across @ np.einsum("eqi,qv->eqiv", slope, N).reshape(count, 9 * points, -1)
+            K_pp = -self.compliance * np.einsum("eq,qv,qx->evx", weights, N, N)
+            blocks = np.block([[K_uu, K_up], [K_up.transpose(0, 2, 1), K_pp]])
+            places = self._places(part, pattern)
+            data += np.bincount(places.ravel(), blocks.ravel(), data.size)
+
+    def stress(self, state: PointState) -> Array:
+        """First Piola-Kirchhoff stress (3, 3, E, Q) in Pa, that of the past with it."""
+        stress = self.material.first_piola_kirchhoff(state.F, state.pressure)
+        if state.scale is None or state.past is None:
+            return stress
+        volumetric = state.pressure * self.material.volume_change_gradient(state.F)
+        past = state.past[SYMMETRIC]
+        left = past if self.material.small_strain else np.einsum("iKeq,KJeq->iJeq", state.F, past)
+        return (stress - volumetric) * state.scale[:, None] + volumetric + left
+
+    def moduli(self, state: PointState) -> Array:
+        """dP/dF at fixed pressure (3, 3, 3, 3, E, Q) in Pa."""
+        moduli = self.material.tangent(state.F, state.pressure)
+        if state.scale is None or state.past is None:
+            return moduli
+        volumetric = moduli - self.material.tangent(state.F, 0 * state.pressure)
+        moduli = (moduli - volumetric) * state.scale[:, None] + volumetric
+        return moduli if self.material.small_strain else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.past[SYMMETRIC])
+
+    def _parts(self) -> Iterator[slice]:
+        return (slice(first, first + CHUNK) for first in range(0, len(self.elements), CHUNK))
+
+    def _weights(self, part: slice) -> Array:
+        return self.points.weights[self.elements[part]]
+
+    def _operator(self, part: slice) -> Array:
+        """B = dF/du at the points in 1/m, shape (E, 9 Q, displacements of an element)."""
+        gradients, hoop = (values[self.elements[part]] for values in (self.points.gradients, self.points.hoop))
+        dim = self.space.dim
+        B = np.zeros((*hoop.shape[:2], 3, 3, hoop.shape[2], dim))
+        for k in range(dim):
+            B[:, :, k, :dim, :, k] = np.moveaxis(gradients, -1, -2)
+        if dim == 2:
+            B[:, :, 2, 2, :, 0] = hoop
+        return B.reshape(len(B), 9 * hoop.shape[1], -1)
+
+    def _places(self, part: slice, pattern: Pattern) -> Array:
+        """Places (E, n, n) in the entries of the tangent of the blocks of each element."""
+        dim, width = self.space.dim, self.space.elements.shape[1]
+        corners = self.space.pressures.shape[1]
+        block = np.concatenate([np.repeat(np.arange(width), dim), width + np.arange(corners)])
+        component = np.concatenate([np.tile(np.arange(dim), width), np.zeros(corners, int)])
+        rows = pattern.indptr[self.unknowns[part]]
+        offsets = pattern.offsets[self.elements[part]][:, block[:, None], block]
+        return rows[:, :, None] + offsets + component

@@ -1,0 +1,104 @@
+"""What an estimator gives: inclusions with their uncertainty."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.errors import InvalidQuantity
+from tactsim.units import format_quantity
+
+Array = np.ndarray
+
+PARAMETERS = ("x", "y", "z", "radius", "contrast")
+"""Order of the rows and columns of a covariance."""
+LEVEL = 0.9
+"""Probability of a region where none is named."""
+
+
+class Region(ABC):
+    """Regions of highest density of the centre, one for every probability."""
+
+    @abstractmethod
+    def contains(self, point: Array, probability: float = LEVEL) -> bool:
+        """Whether a point (3,) in m lies in the region of this probability."""
+
+    @abstractmethod
+    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
+        """Width in plan, the diameter of a circle of the same area, and height of the region, both in m."""
+
+    @abstractmethod
+    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
+        """Outline of the region seen along the axis ``away``: closed lines (n, 2) in m along the other two axes."""
+
+
+@dataclass(frozen=True, eq=False)
+class EstimatedInclusion:
+    """A lump or an artery as an estimator sees it.
+
+    Attributes
+    ----------
+    kind : "sphere", "tube", or "unknown" if the estimator does not tell
+    center : (3,) in m in the undeformed block
+    radius : in m; None if not estimated
+    contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
+    covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
+    region : where its centre lies with a stated probability; None if not estimated
+    line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
+    """
+
+    kind: str
+    center: tuple[float, float, float]
+    radius: float | None = None
+    contrast: float | None = None
+    covariance: Array | None = None
+    region: Region | None = None
+    line: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.center).all():
+            raise InvalidQuantity(f"an estimated center {self.center} m is not finite")
+        if self.radius is not None and not (np.isfinite(self.radius) and self.radius > 0):
+            raise InvalidQuantity(f"an estimated radius {self.radius} m; allowed: finite and positive, or none")
+        if self.covariance is None:
+            return
+        found = np.asarray(self.covariance, dtype=float)
+        if found.shape != (len(PARAMETERS),) * 2 or not np.isfinite(found).all():
+            raise InvalidQuantity(f"a covariance of shape {found.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What an estimator found; no inclusions means that nothing is there.
+
+    Attributes
+    ----------
+    present : whether anything is there
+    inclusions : the strongest first; empty exactly if nothing is there
+    reason : why, in words for a user
+    probability : that anything is there, from 0 to 1; None if the estimator does not tell
+    classes : probability of each class by its name, adding up to 1; None if the estimator does not tell classes apart
+    """
+
+    present: bool
+    inclusions: tuple[EstimatedInclusion, ...]
+    reason: str
+    probability: float | None = None
+    classes: dict[str, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.classes is not None and not np.isclose(sum(self.classes.values()), 1.0, rtol=0, atol=1e-6):
+            raise InvalidQuantity(f"the probabilities of the classes add up to {sum(self.classes.values()):g}; needed: 1")
+        if self.present != bool(self.inclusions):
+            raise InvalidQuantity(f"present is {self.present} with {len(self.inclusions)} inclusions; these must agree")
+        if self.probability is not None and not 0 <= self.probability <= 1:
+            raise InvalidQuantity(f"probability {self.probability}; allowed: 0 to 1")
+
+
+def told(inclusion: EstimatedInclusion) -> str:
+    """An inclusion in words."""
+    place = ", ".join(format_quantity(value, "m") for value in inclusion.center)
+    size = "" if inclusion.radius is None else f", radius {format_quantity(inclusion.radius, 'm')}"
+    return f"{inclusion.kind} at ({place}){size}"

@@ -1,0 +1,245 @@
+"""One more kind of every extension point, defined here and named nowhere else: used, told apart from others, and forgotten."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import dedent
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from made_grasps import LAYOUT, SIZE, plain_forces
+
+from tactsim.case.json_schema import case_json_schema
+from tactsim.case.loading import load_case
+from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.errors import AmbiguousKind, CaseError, UnknownName
+from tactsim.experiments.grasp.recorder import inclusion_kinds
+from tactsim.experiments.recording import RecordingSettings, recorder_for
+from tactsim.interfaces import (
+    CaseKind,
+    ContactLaw,
+    Estimator,
+    Experiment,
+    Inclusion,
+    Material,
+    Recorder,
+    ResultFigures,
+    RigidBody,
+    SensorFilm,
+)
+from tactsim.interfaces.readings import Readings
+from tactsim.live.session.choices import offered_choices
+from tactsim.localization.estimators.any_estimator import offered_estimators
+from tactsim.plotting import figures_for
+from tactsim.registry import forget, kind_class, kinds
+
+POINTS = (Material, RigidBody, ContactLaw, Inclusion, SensorFilm, Experiment, Estimator, Recorder, ResultFigures)
+MODULES = {
+    Material: """
+        from typing import Literal
+        from tactsim.materials.neo_hookean import NeoHookean
+        class Added(NeoHookean):
+            kind: Literal["added"] = "added"
+    """,
+    RigidBody: """
+        from typing import Literal
+        from tactsim.contact.plane import Plane
+        class Added(Plane):
+            kind: Literal["added"] = "added"
+    """,
+    ContactLaw: """
+        from typing import Literal
+        from tactsim.contact.coulomb import Coulomb
+        class Added(Coulomb):
+            kind: Literal["added"] = "added"
+    """,
+    Inclusion: """
+        from typing import ClassVar, Literal
+        from tactsim.mesh.inclusions.sphere import Sphere
+        class Added(Sphere):
+            data_set_number: ClassVar[int | None] = None
+            kind: Literal["added"] = "added"
+    """,
+    SensorFilm: """
+        from typing import Literal
+        from tactsim.sensors.capacitive_film import CapacitiveFilm
+        class Added(CapacitiveFilm):
+            kind: Literal["added"] = "added"
+    """,
+    Experiment: """
+        from typing import Literal
+        from tactsim.experiments.film.film_test import FilmTest
+        class Added(FilmTest):
+            kind: Literal["added"] = "added"
+    """,
+    Estimator: """
+        from typing import Literal
+        from tactsim.interfaces import Estimator
+        from tactsim.interfaces.estimate import Estimate
+        class Added(Estimator):
+            kind: Literal["added"] = "added"
+            @classmethod
+            def example(cls):
+                return cls()
+            def estimate(self, readings):
+                return Estimate(False, (), "it never finds anything")
+    """,
+    Recorder: """
+        from typing import ClassVar, Literal
+        from tactsim.interfaces import Recorder
+        class Added(Recorder):
+            kind: Literal["added"] = "added"
+            quantities: ClassVar = {"line_slope": ("S/N", "slope of the line")}
+            def describe(self):
+                return "added"
+    """,
+    ResultFigures: """
+        from typing import Literal
+        from tactsim.interfaces import ResultFigures
+        class Added(ResultFigures):
+            kind: Literal["added"] = "added"
+            def drawings(self, result):
+                return {"added.png": lambda: b"PNG"}
+    """,
+}
+
+
+@pytest.fixture
+def added(tmp_path: Path) -> Iterator[Any]:
+    """Defines the modules of extension points; what they register is forgotten in the end."""
+    defined: list[type[CaseKind]] = []
+
+    def define(base: Any, name: str = "added_kind") -> Any:
+        module = ModuleType(name)
+        exec(compile(dedent(MODULES[base]), f"{name}.py", "exec", dont_inherit=True), module.__dict__)  # noqa: S102  a user's module
+        defined.append(module.Added)  # type: ignore[attr-defined]
+        return defined[-1]
+
+    yield define
+    for cls in defined:
+        forget(cls)
+
+
+def case(tmp_path: Path, experiment: str, changes: dict[str, str]) -> Any:
+    """A case of one experiment in flow style, loaded."""
+    text = f"schema: tactsim/case/1\ntitle: added\nexperiment: {experiment}\n"
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "case.yaml"
+    path.write_text(text, encoding="utf-8")
+    return load_case(path).experiment
+
+
+GRASP = """
+  kind: grasp
+  block: {size: [40 mm, 40 mm, 20 mm], tissue: MATERIAL}
+  inclusions: [{shape: {kind: SHAPE, center: [20 mm, 20 mm, 10 mm], radius: 5 mm}, material: lump}]
+  contact: {kind: LAW, friction: 0.5}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 1 mm, duration: 1 s}]}
+"""
+PRESS = """
+  kind: indentation
+  specimen: {material: icf_stable, radius: 10 mm, thickness: 5 mm}
+  body: {kind: BODY}
+  stop: displacement
+  displacement: 0.2 mm
+"""
+FILM = "{kind: film_test, film: {kind: NAMED}, forces: [1 N, 2 N, 3 N], times: [1 s]}"
+
+
+def test_a_material_is_named_in_a_case(added: Any, tmp_path: Path) -> None:
+    changes = {"MATERIAL": "{kind: added, c10: 3 kPa}", "SHAPE": "sphere", "LAW": "coulomb"}
+    with pytest.raises(CaseError, match="added"):
+        case(tmp_path, GRASP, changes)
+    cls = added(Material)
+    assert type(case(tmp_path, GRASP, changes).block.tissue) is cls
+
+
+def test_a_contact_law_is_named_in_a_case(added: Any, tmp_path: Path) -> None:
+    cls = added(ContactLaw)
+    assert type(case(tmp_path, GRASP, {"MATERIAL": "icf_stable", "SHAPE": "sphere", "LAW": "added"}).contact) is cls
+
+
+def test_a_body_is_pressed_and_tilted_without_a_radius(added: Any, tmp_path: Path) -> None:
+    cls = added(RigidBody)
+    experiment = case(tmp_path, PRESS, {"BODY": "added"})
+    assert type(experiment.body) is cls
+    assert experiment.contact_radius == experiment.specimen.radius  # it has none: it reaches as far as the specimen
+    tilted = kind_class(RigidBody, "tilted").model_validate({"kind": "tilted", "body": {"kind": "added"}, "tilt_x": 0.1})
+    assert type(tilted.body) is cls
+
+
+def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None:
+    cls = added(Inclusion)
+    grasp = case(tmp_path, GRASP, {"MATERIAL": "icf_stable", "SHAPE": "added", "LAW": "coulomb"})
+    assert type(grasp.inclusions[0].shape) is cls
+    assert inclusion_kinds()[:5] == ("none", "sphere", "ellipsoid", "tube", "surface")
+    labels = recorder_for("grasp", RecordingSettings(), 1).labels(grasp)
+    assert labels["inclusion_kind"].tolist() == [5]
+    assert labels["inclusion_radius"][0] == pytest.approx(5e-3, rel=1e-12)
+    np.testing.assert_allclose(labels["inclusion_center"][0], grasp.inclusions[0].shape.center, rtol=1e-12)
+    meshed = case(
+        tmp_path, GRASP.rstrip() + "\n  mesh: {kind: graded}\n", {"MATERIAL": "icf_stable", "SHAPE": "added", "LAW": "coulomb"}
+    )
+    assert (meshed.sourced().block.mesh.regions == 1).any()
+    np.testing.assert_allclose(grasp.inclusions[0].shape.places(np.array(SIZE))[0], [20e-3, 20e-3, 10e-3], rtol=1e-12)
+
+
+def test_a_film_is_tested_by_a_case(added: Any, tmp_path: Path) -> None:
+    cls = added(SensorFilm)
+    experiment = case(tmp_path, FILM, {"NAMED": "added"})
+    assert type(experiment.film) is cls
+    assert "reading_capacitance" in experiment.run(lambda step: None).quantities
+
+
+def test_an_experiment_is_asked_for_by_a_case_and_described(added: Any, tmp_path: Path) -> None:
+    cls = added(Experiment)
+    experiment = case(tmp_path, FILM, {"film_test": "added", "NAMED": "film"})
+    assert type(experiment) is cls
+    assert "Added" in case_json_schema()["$defs"]
+
+
+def test_an_estimator_is_offered_on_the_page_and_in_the_ranking(added: Any) -> None:
+    assert "added" not in offered_estimators()
+    added(Estimator)
+    assert "added" in offered_estimators()
+    choice = {one.name: one for one in offered_choices()}["added"]
+    assert (choice.label, choice.needs_reference) == ("added", False)
+    assert not choice.estimator.estimate(Readings(plain_forces(np.array([1e-3]))[0], LAYOUT, SIZE)).present
+
+
+def test_a_recorder_and_figures_are_found_by_the_kind_of_the_experiment(added: Any, tmp_path: Path) -> None:
+    for base in (Experiment, Recorder, ResultFigures):
+        added(base)
+    path = tmp_path / "sweep.yaml"
+    film = FILM.replace("film_test", "added").replace("NAMED", "film").replace("3 N]", "{uniform: [3 N, 4 N]}]")
+    path.write_text(f"schema: tactsim/sweep/1\ntitle: added\nexperiment: {film}\nsweep: {{samples: 2}}\n", encoding="utf-8")
+    layout = layout_of(load_sweep(path))
+    assert layout.recorder.describe() == "added"
+    assert "line_slope" in {variable.name for variable in layout.variables}
+    result = kinds(Experiment)["added"].example().run(lambda step: None)
+    assert list(figures_for(result)) == ["added.png"]
+
+
+@pytest.mark.parametrize("base", POINTS, ids=lambda base: base.__name__)
+def test_a_kind_is_known_until_it_is_forgotten(base: Any, added: Any) -> None:
+    known = set(kinds(base))
+    cls = added(base)
+    assert set(kinds(base)) == known | {"added"}
+    assert kind_class(base, "added") is cls
+    forget(cls)
+    assert set(kinds(base)) == known
+    with pytest.raises(UnknownName, match="added"):
+        kind_class(base, "added")
+
+
+@pytest.mark.parametrize("base", POINTS, ids=lambda base: base.__name__)
+def test_two_classes_of_one_kind_are_an_error_that_names_both(base: Any, added: Any) -> None:
+    added(base, "one_place")
+    with pytest.raises(AmbiguousKind, match=r"one_place\.Added and another_place\.Added"):
+        added(base, "another_place")
