@@ -20,6 +20,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
 from tactsim.experiments.grasp.scene import SimulatedGrasp, grasp_fields
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
+from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
@@ -103,7 +104,7 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
     file, place, numbers = folder / "sweep.yaml", folder / "lumps.zarr", itertools.count()
     file.write_text(SWEEP, encoding="utf-8")
 
-    def run(experiment: Grasp, progress: object) -> Result:
+    def begin(experiment: Grasp) -> Course:
         number = next(numbers)
         if number >= done:
             raise ConvergenceError("residual <i>1</i>")
@@ -113,9 +114,11 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
         numbers_of = {name: Quantity(0.0, unit, "") for name, (unit, _) in GraspRecorder.quantities.items()}
         units = {"time": "s", "displacement": "m", "reaction_force": "N"}
         quantities = found.quantities | beside | numbers_of
-        return replace(found, quantities=quantities, steps=(StepRecord(1, 1, 0.0, values),), units=units)
+        return Course.computed(
+            Findings("", (StepRecord(1, 1, 0.0, values),), quantities=quantities, units=units, scene=found.scene)
+        )
 
-    with patch.object(Grasp, "run", run):
+    with patch.object(Grasp, "begin", begin):
         run_sweep(load_sweep(file), place)
     group = Store.open(place, writing=True).group
     group["status"][5], group["reason"][5] = PENDING, ""
