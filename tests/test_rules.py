@@ -24,7 +24,7 @@ HOUSEHOLD = {"told", "_told"}
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
     "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
-    "tactsim/mechanics/section_model.py:IndentationModel": "what an indentation asks of its section model",
+    "tactsim/mechanics/pressed_model.py:PressedModel": "what an indentation asks of its model",
     "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case; its checks are public to pydantic only",
 }
 """Classes that may have more public methods, and why."""

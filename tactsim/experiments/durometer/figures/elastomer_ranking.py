@@ -34,7 +34,7 @@ class ElastomerRankingFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``elastomer_ranking.png``, unless no shape was finished."""
-        return {"elastomer_ranking.png": lambda: png(elastomer_ranking_figure(result))} if result.steps and _finished(result) else {}
+        return {"elastomer_ranking.png": lambda: png(elastomer_ranking_figure(result))} if _finished(result) else {}
 
 
 def elastomer_ranking_figure(result: Result) -> Figure:
@@ -135,7 +135,7 @@ def _shapes(result: Result) -> list[str]:
 
 def _finished(result: Result) -> int:
     """Number of shapes of which every elastomer has its step."""
-    return len(result.steps) // max(1, len(_elastomers(result)))
+    return len(result.steps) // max(1, len(_elastomers(result))) if result.steps else 0
 
 
 def _by_shape(result: Result, name: str) -> Array:
