@@ -24,7 +24,7 @@ HOUSEHOLD = {"told", "_told"}
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
     "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
-    "tactsim/mechanics/pressed_model.py:PressedModel": "what the course of an indentation asks of its model in two and three dimensions",
+    "tactsim/mechanics/pressed_model.py:PressedModel": "what the course of an indentation asks of its model",
     "tactsim/mechanics/contact_record.py:ContactRecord": "the hooks by which the record of a kind differs from the others",
     "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case, and the values that follow from them",
     "tactsim/experiments/indentation/setup.py:IndentationSetup": "fields of a case, and the values that follow from them",
