@@ -24,8 +24,12 @@ HOUSEHOLD = {"told", "_told"}
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
     "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
-    "tactsim/mechanics/pressed_model.py:PressedModel": "what an indentation asks of its model",
-    "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case; its checks are public to pydantic only",
+    "tactsim/mechanics/pressed_model.py:PressedModel": "what the course of an indentation asks of its model",
+    "tactsim/mechanics/contact_record.py:ContactRecord": "the hooks by which the record of a kind differs from the others",
+    "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case, and the values that follow from them",
+    "tactsim/experiments/indentation/setup.py:IndentationSetup": "fields of a case, and the values that follow from them",
+    "tactsim/sensors/film.py:Film": "the interface of a film, forwards and backwards, and the constants of its composite",
+    "tactsim/sensors/capacitive_film.py:CapacitiveFilm": "the interface of a film, forwards and backwards, and its capacitance",
 }
 """Classes that may have more public methods, and why."""
 
@@ -111,7 +115,7 @@ def says_raises(found: Definition) -> bool:
 
 def raises(function: Function) -> bool:
     """Whether the function itself raises anything but a signal to its own caller within the module."""
-    return any(isinstance(node, ast.Raise) for node in own_nodes(function))
+    return any(isinstance(node, ast.Raise) and node.exc is not None for node in own_nodes(function))
 
 
 def names_of(node: ast.AST) -> Iterator[str]:
