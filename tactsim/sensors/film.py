@@ -147,21 +147,13 @@ class Film(SensorFilm):
     def assumptions(self) -> tuple[str, ...]:
         """Source of the composite, law of the creep, what another area changes."""
         composite = self.composite
-<<<<<<< HEAD
-        known = (
-=======
         stated = (
->>>>>>> main
             f"film: {composite.source}",
             "creep with coefficients that follow the force (errata E29), which gives eq. 2.3.1 under a constant force",
             f"the coefficients of creep depend on the pressure; they were measured on {composite.reference_area * 1e6:.4g} mm²",
         )
         other = "the unstrained resistance is inverse to the active area, the contact resistance depends on the force alone"
-<<<<<<< HEAD
-        return known if self._magnification == 1 else (*known, other)
-=======
-        return stated if self.magnification == 1 else (*stated, other)
->>>>>>> main
+        return stated if self._magnification == 1 else (*stated, other)
 
     def warnings(self, largest: float) -> tuple[str, ...]:
         """Whether the force goes beyond that of the creep tests."""
