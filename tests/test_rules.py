@@ -28,8 +28,6 @@ LARGE_CLASSES = {
     "tactsim/mechanics/contact_record.py:ContactRecord": "the hooks by which the record of a kind differs from the others",
     "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case, and the values that follow from them",
     "tactsim/experiments/indentation/setup.py:IndentationSetup": "fields of a case, and the values that follow from them",
-    "tactsim/sensors/film.py:Film": "the interface of a film, forwards and backwards, and the constants of its composite",
-    "tactsim/sensors/capacitive_film.py:CapacitiveFilm": "the interface of a film, forwards and backwards, and its capacitance",
 }
 """Classes that may have more public methods, and why."""
 

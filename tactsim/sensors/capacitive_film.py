@@ -71,7 +71,7 @@ class CapacitiveFilm(SensorFilm):
         return self.active_area or REFERENCE_AREA
 
     @property
-    def rest_capacitance(self) -> float:
+    def _rest_capacitance(self) -> float:
         """Capacitance in F without force."""
         return VACUUM_PERMITTIVITY * self.relative_permittivity * self.area / self.thickness
 
@@ -90,7 +90,7 @@ class CapacitiveFilm(SensorFilm):
         """
         times = checked_times(time, after=None if state is None else state.time)
         stretch = self._stretch(checked_forces(force, len(times), LARGEST))
-        return self.rest_capacitance / stretch, CapacitorState(float(times[-1]))
+        return self._rest_capacitance / stretch, CapacitorState(float(times[-1]))
 
     def retreat(self, state: CapacitorState | None, time: ArrayLike, signal: ArrayLike) -> tuple[Array, CapacitorState]:
         """Force in N of the next samples of capacitance in F, and the state after them.
@@ -102,7 +102,7 @@ class CapacitiveFilm(SensorFilm):
         """
         times = checked_times(time, after=None if state is None else state.time)
         values = checked_signal(signal, len(times), self.signal, self.unit)
-        rest, most = self.rest_capacitance, self.rest_capacitance / float(self._stretch(np.array(LARGEST)))
+        rest, most = self._rest_capacitance, self._rest_capacitance / float(self._stretch(np.array(LARGEST)))
         outside = ~((values >= rest * (1 - 1e-12)) & (values <= most * (1 + 1e-12)))
         if outside.any():
             raise InvalidQuantity(
@@ -117,13 +117,13 @@ class CapacitiveFilm(SensorFilm):
     def sensitivity(self, time: ArrayLike, force: ArrayLike) -> Array:
         """Change of the capacitance with the force in F/N, of the shape of ``force``; raises as ``advance`` does."""
         stretch = self._stretch(checked_forces(force, len(checked_times(time)), LARGEST))
-        return self.rest_capacitance / (self.shear_modulus * self.area * (2 / stretch + stretch**2))
+        return self._rest_capacitance / (self.shear_modulus * self.area * (2 / stretch + stretch**2))
 
     def quantities(self) -> dict[str, Quantity]:
         """Capacitance without force and its first rise."""
         slope = float(self.sensitivity([0.0], [0.0])[0])
         return {
-            "rest_capacitance": Quantity(self.rest_capacitance, "F", "without force"),
+            "rest_capacitance": Quantity(self._rest_capacitance, "F", "without force"),
             "initial_sensitivity": Quantity(slope, "F/N", "rise of the capacitance with the first force"),
             "dielectric_shear_modulus": Quantity(self.shear_modulus, "Pa", "small-strain shear modulus of the dielectric"),
         }

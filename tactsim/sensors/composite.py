@@ -79,6 +79,10 @@ class Composite(FrozenModel):
         """gamma s0: how fast the resistance falls with strain."""
         return tunnelling_decay(self.barrier) * particle_separation(self.particle_diameter, self.volume_fraction)
 
+    def magnification(self, active_area: float | None) -> float:
+        """Reference area over an active area in m^2, dimensionless; 1 for None, which is the reference area."""
+        return self.reference_area / (active_area or self.reference_area)
+
     @model_validator(mode="after")
     def _compressible(self) -> Self:
         for name in ("instantaneous", "delayed"):

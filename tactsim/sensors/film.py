@@ -65,15 +65,13 @@ class Film(SensorFilm):
         return cls()
 
     @property
-    def magnification(self) -> float:
-        """Reference area over active area, dimensionless."""
-        reference = self.composite.reference_area
-        return reference / (self.active_area or reference)
+    def _magnification(self) -> float:
+        return self.composite.magnification(self.active_area)
 
     @property
     def largest_force(self) -> float:
         """Force in N up to which the creep was measured."""
-        return self.composite.largest_force / self.magnification
+        return self.composite.largest_force / self._magnification
 
     def conductance(self, time: ArrayLike, force: ArrayLike) -> Array:
         """Conductance in S of the whole film with its contacts, 0 without force.
@@ -137,7 +135,7 @@ class Film(SensorFilm):
         """Constants of the tunnelling and the resistances."""
         composite = self.composite
         separation = particle_separation(composite.particle_diameter, composite.volume_fraction)
-        initial = composite.initial_resistance * self.magnification
+        initial = composite.initial_resistance * self._magnification
         return {
             "tunnelling_decay": Quantity(tunnelling_decay(composite.barrier), "1/m", "gamma of eq. 2.1.4"),
             "particle_separation": Quantity(separation, "m", "s0 of eq. 2.1.8"),
@@ -155,7 +153,7 @@ class Film(SensorFilm):
             f"the coefficients of creep depend on the pressure; they were measured on {composite.reference_area * 1e6:.4g} mm²",
         )
         other = "the unstrained resistance is inverse to the active area, the contact resistance depends on the force alone"
-        return stated if self.magnification == 1 else (*stated, other)
+        return stated if self._magnification == 1 else (*stated, other)
 
     def warnings(self, largest: float) -> tuple[str, ...]:
         """Whether the force goes beyond that of the creep tests."""
@@ -167,7 +165,7 @@ class Film(SensorFilm):
         )
 
     def _strain(self, force: Array, delayed: Array) -> Array:
-        felt = force * self.magnification
+        felt = force * self._magnification
         return felt / (self.composite.reference_area * self.composite.instantaneous.at(felt)) + delayed
 
     def _check(self, force: Array, delayed: Array) -> None:
@@ -184,12 +182,12 @@ class Film(SensorFilm):
     def _conductance(self, force: Array, delayed: Array) -> Array:
         composite, root = self.composite, np.sqrt(force)
         relative = relative_resistance(self._strain(force, delayed), composite.exponent)
-        film = composite.initial_resistance * self.magnification * relative
+        film = composite.initial_resistance * self._magnification * relative
         return root / (composite.contact_resistance + root * film)
 
     def _decay(self, force: Array, duration: Array) -> tuple[Array, Array]:
         """Factor of the delayed strain and what is added to it while a force in N acts for a duration in s."""
-        felt, composite = force * self.magnification, self.composite
+        felt, composite = force * self._magnification, self.composite
         modulus = composite.delayed.at(felt)
         exponent = -duration * modulus / composite.viscosity.at(felt)
         return np.exp(exponent), -np.expm1(exponent) * felt / (composite.reference_area * modulus)

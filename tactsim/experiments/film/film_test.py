@@ -146,6 +146,7 @@ class FilmTest(Experiment):
         """Coefficients of the creep of a film of composite at each force."""
         if not isinstance(self.film, Film):
             return None
-        felt, composite = forces * self.film.magnification, self.film.composite
+        composite = self.film.composite
+        felt = forces * composite.magnification(self.film.active_area)
         names = ("instantaneous", "delayed", "viscosity")
         return {name: getattr(composite, name).at(felt).tolist() for name in names}

@@ -135,7 +135,7 @@ def _shapes(result: Result) -> list[str]:
 
 def _finished(result: Result) -> int:
     """Number of shapes of which every elastomer has its step."""
-    return len(result.steps) // max(1, len(_elastomers(result)))
+    return len(result.steps) // max(1, len(_elastomers(result))) if result.steps else 0
 
 
 def _by_shape(result: Result, name: str) -> Array:

@@ -37,8 +37,7 @@ class FilmTestFigures(ResultFigures):
         """``film_test.png`` and, with at least two times of a piezoresistive film, ``film_surface.png``."""
         if "capacitance" in result.quantities:
             return {"film_test.png": lambda: png(capacitive_test_figure(result))}
-        coefficients = result.scene_as(FilmTestScene).coefficients
-        if coefficients is None:
+        if result.scene is None or (coefficients := result.scene_as(FilmTestScene).coefficients) is None:
             return {}
         found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result, coefficients))}
         if len(result.quantities["times"].value) > 1:
