@@ -7,9 +7,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.units import FrozenModel, Time
-
-Array = np.ndarray
 
 SHORTEST, LONGEST = 1e-12, 1e12
 """Relaxation times in s; beyond, nothing is measured and steps of time drown in round-off."""

@@ -191,6 +191,13 @@ def household_names() -> list[str]:
     return sorted(found)
 
 
+def array_types() -> list[str]:
+    """Modules but ``tactsim.array`` that define a type of arrays of their own."""
+    own = re.compile(r"^Array\b.*=", re.M)
+    texts = {path: path.read_text(encoding="utf-8") for path in modules() if path.name != "array.py"}
+    return [path.relative_to(ROOT).as_posix() for path, text in texts.items() if own.search(text)]
+
+
 def printing() -> list[str]:
     calls = ((path, node) for path in modules() for node in ast.walk(tree(path)) if isinstance(node, ast.Call))
     return [f"{path.relative_to(ROOT)}:{node.lineno}" for path, node in calls if "print" in names_of(node.func)]
@@ -213,6 +220,7 @@ RULES: list[Callable[[], list[str]]] = [
     undocumented,
     silent_about_errors,
     empty_names,
+    array_types,
     household_names,
     printing,
     machine_paths,

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import brentq
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.units import Force, FrozenModel, Length
 
-Array = np.ndarray
 FULL = 100.0
 """Largest reading."""
 LARGEST_MODULUS = 1e15

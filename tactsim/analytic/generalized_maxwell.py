@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tactsim.analytic.spectrum import Array, checked_frequencies, checked_instants, checked_number, checked_spectrum
+from tactsim.analytic.spectrum import checked_frequencies, checked_instants, checked_number, checked_spectrum
+from tactsim.array import Array
 
 
 @dataclass(frozen=True, eq=False)

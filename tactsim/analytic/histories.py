@@ -10,7 +10,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tactsim.analytic.spectrum import Array, checked_instants, checked_number, read_only, real_array
+from tactsim.analytic.spectrum import checked_instants, checked_number, read_only, real_array
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity, shown
 
 

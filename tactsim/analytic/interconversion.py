@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
-from tactsim.analytic.spectrum import Array
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
 

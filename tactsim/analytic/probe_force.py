@@ -9,9 +9,8 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.quasi_linear import quasi_linear
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-
-Array = np.ndarray
 
 
 def quasi_linear(time: Array, elastic: Array, modulus: GeneralizedMaxwell) -> Array:

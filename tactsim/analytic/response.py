@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.histories import History, Pieces
-from tactsim.analytic.spectrum import Array, real_array
+from tactsim.analytic.spectrum import real_array
 from tactsim.analytic.stepping import SERIES, SERIES_END, carry
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
 

@@ -7,9 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity, shown
-
-Array = np.ndarray
 
 
 def checked_spectrum(name: str, strengths: ArrayLike, times: ArrayLike) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
-from tactsim.analytic.spectrum import Array
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
 SERIES_END = 0.5

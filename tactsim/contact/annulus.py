@@ -8,11 +8,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_area import annular_area
+from tactsim.array import Array
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Length, format_quantity
-
-Array = np.ndarray
 
 
 class Annulus(Revolved):

@@ -7,9 +7,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.interfaces import ContactLaw
-
-Array = np.ndarray
 
 
 class Coulomb(ContactLaw):

@@ -7,12 +7,11 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.contact.profile import check_fillet, rounded_box
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.units import Angle, Length
-
-Array = np.ndarray
 
 
 class Jaw(RigidBody):

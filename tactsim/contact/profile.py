@@ -6,10 +6,9 @@ from abc import abstractmethod
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces import RigidBody
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 
 class Revolved(RigidBody):

@@ -7,11 +7,10 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Length
-
-Array = np.ndarray
 
 
 class Punch(Revolved):

@@ -7,11 +7,10 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.interfaces import RigidBody
 from tactsim.interfaces.contact_shape import ContactShape, RoundTip
 from tactsim.units import Length
-
-Array = np.ndarray
 
 
 class Sphere(RigidBody):

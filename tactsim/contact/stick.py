@@ -6,9 +6,8 @@ from typing import Literal, Self
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces import ContactLaw
-
-Array = np.ndarray
 
 
 class Stick(ContactLaw):

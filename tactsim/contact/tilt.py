@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-Array = np.ndarray
+from tactsim.array import Array
 
 
 def tilt_matrix(tilt_x: float, tilt_y: float) -> Array:

@@ -7,14 +7,13 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.registry import Registered
 from tactsim.units import Angle
-
-Array = np.ndarray
 
 TiltableBody = Annotated[RigidBody, Registered(RigidBody, lambda cls: {2, 3} <= set(cls.dimensions))]
 """Any body that is defined by its section and in space, which is a body of revolution."""

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces import ContactLaw, RigidBody
-
-Array = np.ndarray
 
 AT_LIMIT = 1e-9
 """A point slips if its tangential traction is within this part of the limit."""

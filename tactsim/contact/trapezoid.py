@@ -8,11 +8,10 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.contact.profile import Revolved
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.units import Angle, Length, format_quantity
-
-Array = np.ndarray
 
 
 class Trapezoid(Revolved):

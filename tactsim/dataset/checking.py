@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.code_identity import code_identity
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.stored import attributes_of, stored_layout
@@ -22,7 +23,6 @@ from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
-Array = np.ndarray
 COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
 RESUME = "go on with --resume, which computes them again"
 FORM = ("dtype", "shape")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import CaseError
 from tactsim.interfaces import Experiment, Recorder
 from tactsim.interfaces.recording import Recording, Values
@@ -11,8 +12,6 @@ from tactsim.interfaces.variable import Variable, reading
 from tactsim.registry import kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import ForceReading
-
-Array = np.ndarray
 
 
 class RecordingSettings(Recording):

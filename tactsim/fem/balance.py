@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body, Kinematics
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad
 from tactsim.fem.prescribed_force import PrescribedForce
-
-Array = np.ndarray
 
 ROUND_OFF = 128 * np.finfo(float).eps
 """Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""

@@ -15,12 +15,11 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from scipy.sparse.linalg import LinearOperator, gmres
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.body import Body
 from tactsim.fem.linear import LARGEST_RESIDUAL, IterativeSolver, LinearSystem, direct_solver
 from tactsim.fem.two_level import TwoLevel, free_rows
-
-Array = np.ndarray
 
 RESTART = 80
 """Search directions before a restart; the systems of a grasp need 30 to 60 for Newton's accuracy."""

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.fem.interpreted import InterpretedPart, PointState
 from tactsim.fem.kernels import compiled
@@ -17,8 +18,6 @@ from tactsim.fem.pattern import Pattern, build_pattern
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
-
-Array = np.ndarray
 
 NO_PAST = np.empty((6, 0, 0))
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.pattern import Pattern
-
-Array = np.ndarray
 
 
 class Constraints:

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body, Kinematics
 from tactsim.fem.external_forces import AnyInterface
-
-Array = np.ndarray
 
 COLLAPSED = 0.4
 """Part of the volume that the pressure asks for, below which an element is about to turn inside out: the worst elements of grasps

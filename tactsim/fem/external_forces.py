@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Protocol, TypeVar
 
-import numpy as np
-
+from tactsim.array import Array
 from tactsim.fem.surface import SurfaceAssembly
-
-Array = np.ndarray
 
 
 class LinearisedTraction(Protocol):

@@ -21,9 +21,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from tactsim.array import Array
 from tactsim.fem.body import Body
-
-Array = np.ndarray
 
 
 def residual(body: Body, unknowns: Array) -> Array:

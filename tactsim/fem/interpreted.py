@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.pattern import Pattern
 from tactsim.fem.space import TaylorHood, VolumePoints
 from tactsim.interfaces import Material
-
-Array = np.ndarray
 
 CHUNK = 512
 """Elements computed at once, so that the tangent of their points takes a few tens of megabytes."""

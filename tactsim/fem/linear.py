@@ -11,10 +11,9 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
-
-Array = np.ndarray
 
 LARGEST_RESIDUAL = 1e-3
 """Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""

@@ -6,13 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-import numpy as np
 from scipy.optimize import brentq
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.progress import Headway, check_steps
-
-Array = np.ndarray
 
 
 class LoadedState(Protocol):

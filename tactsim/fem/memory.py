@@ -21,9 +21,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body, Kinematics, PastStress
-
-Array = np.ndarray
 
 ROUND_OFF = 128 * np.finfo(float).eps
 """Round-off of the stress over the shear modulus: F is one plus small numbers."""

@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.balance import Balance, ExternalForces, NewtonState, Scales, point_displacements
@@ -17,9 +18,6 @@ from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
 from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.prescribed_force import PrescribedForce
-
-Array = np.ndarray
-
 
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError, OutOfMemory
 from tactsim.fem.threads import SERIAL_UNKNOWNS
-
-Array = np.ndarray
 
 GENERAL, SYMMETRIC_INDEFINITE = 11, -2
 """Pardiso's kinds of matrices."""

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from scipy.sparse import csr_matrix
 
-Array = np.ndarray
+from tactsim.array import Array
 
 
 @dataclass(frozen=True)

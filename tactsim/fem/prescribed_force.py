@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.external_forces import LinearisedContact
 from tactsim.fem.surface import SurfaceAssembly
-
-Array = np.ndarray
 
 TOUCH = 1e-6
 """Penetration at first touch, as a part of the distance of the touching point from the middle of the body."""

@@ -7,10 +7,9 @@ from copy import copy
 import numpy as np
 from skfem.quadrature import get_quadrature
 
+from tactsim.array import Array
 from tactsim.fem.pattern import Pattern
 from tactsim.fem.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood, tabulate
-
-Array = np.ndarray
 
 
 class FollowerPressure:

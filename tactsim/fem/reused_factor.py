@@ -13,10 +13,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator, gcrotmk
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.linear import DirectSolver, IterativeSolver, LinearSystem
-
-Array = np.ndarray
 
 WORTH_A_FACTOR = 30
 """Solutions with a factor that cost as much as a new one; the system after them is factored."""

@@ -10,9 +10,9 @@ import numpy as np
 from skfem import ElementLineP2, ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 
-Array = np.ndarray
 Measure = Literal["axisymmetric", "plane_strain", "solid"]
 
 _ELEMENTS = {2: (ElementTriP2(), ElementTriP1()), 3: (ElementTetP2(), ElementTetP1())}

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.pattern import Pattern
 from tactsim.fem.space import SurfacePoints
-
-Array = np.ndarray
 
 
 class SurfaceAssembly:

@@ -12,12 +12,11 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, diags, hstack
 from skfem import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body
 from tactsim.fem.linear import direct_solver
 from tactsim.fem.space import TaylorHood, tabulate
-
-Array = np.ndarray
 
 ELEMENTS = {2: (ElementTriP2, ElementTriP1), 3: (ElementTetP2, ElementTetP1)}
 """Quadratic and linear functions by dimension."""

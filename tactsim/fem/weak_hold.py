@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body
-
-Array = np.ndarray
 
 WEAKNESS = 1e-8
 """Stiffness of all springs together over that of the body: its shear modulus times its size."""

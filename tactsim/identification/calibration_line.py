@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import t as student
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.interfaces import Array
 from tactsim.sensors.divider import divider_conductance, divider_slope
 
 FEWEST_POINTS = 3

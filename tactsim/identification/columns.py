@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.table import Table, read_table
-from tactsim.interfaces import Array
 from tactsim.outside.text import one_line
 from tactsim.units import parse_quantity
 

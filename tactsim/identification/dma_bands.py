@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_least_squares import DmaFit, fit_least_squares
@@ -16,7 +17,6 @@ from tactsim.identification.dma_spectrum import (
     retardation_basis,
     retardation_grid,
 )
-from tactsim.interfaces import Array
 
 SMALLEST_RATIO = 1e-3
 """A compliance of a replicate below this part of the fitted one counts as this part: its logarithm stays finite."""

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity, shown
 from tactsim.identification.columns import read_columns
-from tactsim.interfaces import Array
 
 FEWEST_FREQUENCIES = 3
 THESIS_FREQUENCIES = (1.0, 6.0, 11.0, 16.0, 21.0, 26.0, 31.0, 36.0)

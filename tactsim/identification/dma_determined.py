@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.identification.dma_least_squares import PRIOR_DEVIATION, DmaFit
 from tactsim.identification.dma_objective import part_sensitivities
 from tactsim.identification.dma_spectrum import relative_noise
-from tactsim.interfaces import Array
 
 DETERMINED = 0.5
 """Assumption: the data tell a constant, or a product of powers of them, if the standard error of its logarithm is below this."""

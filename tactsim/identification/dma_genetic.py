@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_least_squares import DmaFit
 from tactsim.identification.dma_objective import FORMS, KelvinConstants, objective
-from tactsim.interfaces import Array
 
 SOFTEST, STIFFEST = 1e-2, 1e4
 """Assumption: moduli from 1e-2 to 1e4 of the smallest dynamic modulus; the thesis prints no bounds."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_objective import KelvinConstants, compliance_parts, objective, part_sensitivities
@@ -18,7 +19,6 @@ from tactsim.identification.dma_spectrum import (
     retardation_basis,
     retardation_grid,
 )
-from tactsim.interfaces import Array
 
 WEIGHTINGS = ("noise", "objective")
 """``noise``: errors over their standard deviation, equal relative ones if unknown; ``objective``: eq. 4.5.2 itself, squared."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.array import Array
 from tactsim.errors import UnknownName
 from tactsim.identification.dma_data import DmaData
-from tactsim.interfaces import Array
 
 FORMS = ("squared", "as_printed")
 """``squared``: the sum of the squared norms, as the text of thesis 4.5 says; ``as_printed``: the sum of the norms, as 4.5.2."""

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_data import DmaData
-from tactsim.interfaces import Array
 
 COLUMNS = {"time": "s", "load": "N", "displacement": "m"}
 FEWEST_SAMPLES = 12

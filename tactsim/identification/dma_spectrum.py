@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import nnls
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.identification.dma_data import DmaData
-from tactsim.interfaces import Array
 
 POINTS_PER_DECADE = 12
 """Neighbours 1.21 apart: a unit between them is a pair of units to 2.3e-3 of its compliance."""

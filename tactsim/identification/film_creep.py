@@ -12,12 +12,12 @@ from scipy.optimize import OptimizeWarning, curve_fit
 from scipy.stats import linregress
 from scipy.stats import t as student
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.sensors.composite import Composite
 from tactsim.sensors.film_equations import creep_strain
 
-Array = np.ndarray
 COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
 """E0 in Pa, E1 in Pa and mu1 in Pa s."""
 FEWEST_SAMPLES = 6

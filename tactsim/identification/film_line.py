@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.sensors.composite import Composite
 from tactsim.sensors.film import Film
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import ValidationError
 from scipy.optimize import nnls
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.uniaxial_data import UniaxialCurve
-from tactsim.interfaces import Array
 from tactsim.materials.homogeneous import cauchy_stress, nominal_stress, principal_invariants, uniaxial
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.invariant_polynomial import InvariantPolynomial, monomial_derivative, powers_of

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings
@@ -31,7 +32,6 @@ from tactsim.relaxation import Relaxation
 from tactsim.results.result import Quantity, Result
 from tactsim.units import Area
 
-Array = np.ndarray
 Drawing = Callable[[], bytes]
 """Draws one figure and returns it as PNG."""
 

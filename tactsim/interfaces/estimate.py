@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 PARAMETERS = ("x", "y", "z", "radius", "contrast")
 """Order of the rows and columns of a covariance."""

@@ -7,11 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.taxel_layout import JAWS as JAWS
 from tactsim.interfaces.taxel_layout import TaxelLayout
-
-Array = np.ndarray
 
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""

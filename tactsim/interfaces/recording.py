@@ -8,9 +8,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.units import FrozenModel
 
-Array = np.ndarray
 Values = dict[str, Array]
 """Values of variables by name."""
 

@@ -10,10 +10,10 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.units import Length, format_quantity
 
-Array = np.ndarray
 Patch = Callable[[Array], tuple[Array, Array]]
 """A smooth piece of surface: for points (n, 3) in m their nearest points (n, 3) on it and its unit normals (n, 3) there."""
 Triangles = tuple[Array, Array]

@@ -7,9 +7,9 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.units import FrozenModel, Length, format_quantity
 
-Array = np.ndarray
 JAWS = ("upper", "lower")
 """Names of the jaws of a grasp, in the order of the first axis of every array of forces or readings."""
 PositiveLength = Annotated[Length, Field(gt=0)]

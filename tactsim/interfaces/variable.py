@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-Array = np.ndarray
+from tactsim.array import Array
+
 Role = Literal["index", "varied", "label", "reading"]
 
 

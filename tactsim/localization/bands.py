@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
-Array = np.ndarray
 Form = Literal["corrected", "as_printed"]
 """Which equations: corrected by the errata, or as the thesis prints them."""
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
 
-Array = np.ndarray
 LINE_STEP = 1e-3
 """Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
 ANGLES = 12

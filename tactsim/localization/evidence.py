@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
+from tactsim.array import Array
 from tactsim.localization.candidates import Candidates
 
-Array = np.ndarray
 BEGINNINGS = 4
 """Pairs of the coarse grid from which the search on the fine grid begins."""
 DRAWS = 32

@@ -14,9 +14,9 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 from scipy.signal import oaconvolve
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
-Array = np.ndarray
 FINER = 4
 """Parts per side of a voxel by which the share of a voxel in a ball is found."""
 

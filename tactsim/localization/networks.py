@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 from scipy.special import expit
 
+from tactsim.array import Array
 from tactsim.errors import InputError, StorageError
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -17,7 +18,6 @@ from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
 
-Array = np.ndarray
 SCHEMA = "tactsim/learned/1"
 OUTPUTS = ("x", "y", "z", "radius")
 """Order of what the networks tell of a lump."""

@@ -9,11 +9,11 @@ import numpy as np
 from contourpy import contour_generator
 from scipy.stats import chi2
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.estimate import LEVEL, Region
 from tactsim.localization.views import AWAY
 
-Array = np.ndarray
 CORNERS = 48
 """Of the polygon that stands for an ellipse."""
 

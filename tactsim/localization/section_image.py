@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.localization.bands import Array, Form, band_image, check_count
+from tactsim.localization.bands import Form, band_image, check_count
 
 
 def depth_share(upper: Array, lower: Array, form: Form = "corrected") -> Array:

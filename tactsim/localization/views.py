@@ -7,9 +7,10 @@ from typing import Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.readings import checked_readings
-from tactsim.localization.bands import Array, Form, band_weights, check_count
+from tactsim.localization.bands import Form, band_weights, check_count
 from tactsim.localization.section_image import corrected_profile, image_between
 
 Join = Literal["shared_once", "stacked", "added"]

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tactsim.interfaces import Array, Material
+from tactsim.array import Array
+from tactsim.interfaces import Material
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.linear_elastic import LinearElastic
 

@@ -8,7 +8,8 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from tactsim.interfaces import Array, Material
+from tactsim.array import Array
+from tactsim.interfaces import Material
 from tactsim.materials.kinematics import (
     cofactor,
     determinant,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tactsim.interfaces import Array
+from tactsim.array import Array
 from tactsim.materials.hyperelastic import Hyperelastic
 
 COEFFICIENT_NAME = re.compile(r"c(\d)(\d)")

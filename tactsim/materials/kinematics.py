@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.interfaces import Array
+from tactsim.array import Array
 
 IDENTITY = np.eye(3)
 

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.interfaces import Array, Material
+from tactsim.array import Array
+from tactsim.interfaces import Material
 from tactsim.materials.moduli import check_moduli
 from tactsim.units import Pressure
 

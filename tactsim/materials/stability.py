@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.interfaces import Array, Material
+from tactsim.array import Array
+from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import diagonal, principal_invariants
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.kinematics import determinant

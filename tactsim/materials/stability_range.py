@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from tactsim.interfaces import Array, Material
+from tactsim.array import Array
+from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.stability import drucker_margin, ellipticity_margin

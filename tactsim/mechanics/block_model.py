@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
@@ -27,8 +28,6 @@ from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-Array = np.ndarray
 
 CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0])}
 """Directions in which the jaws close."""

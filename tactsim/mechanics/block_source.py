@@ -25,7 +25,6 @@ from tactsim.mesh.wholeness import check_whole
 from tactsim.outside.input_path import InputPath
 from tactsim.units import FrozenModel, format_quantity
 
-Array = np.ndarray
 Size = tuple[float, float, float]
 FITS = 1e-6
 """Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""

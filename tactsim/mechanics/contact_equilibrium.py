@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.fem.body import Kinematics, PastStress
@@ -16,8 +17,6 @@ from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.mechanics.posed_contact import PosedContact
-
-Array = np.ndarray
 
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""

@@ -9,6 +9,7 @@ from typing import ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body
 from tactsim.fem.newton import Problem
 from tactsim.fem.space import TaylorHood
@@ -22,7 +23,6 @@ from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
 from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body, Kinematics
 from tactsim.materials.stability import strongly_elliptic
-
-Array = np.ndarray
 
 
 def elliptic_in(body: Body, kinematics: Kinematics) -> Array:

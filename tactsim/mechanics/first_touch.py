@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from tactsim.array import Array
 from tactsim.interfaces import RigidBody
-
-Array = np.ndarray
 
 TOUCH = 1e-15
 """Gap at touch over the size of what is touched."""

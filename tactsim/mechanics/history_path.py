@@ -9,14 +9,13 @@ from typing import Protocol
 import numpy as np
 
 from tactsim.analytic.histories import History, Segment
+from tactsim.array import Array
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.loading import Event, PathFollower, StepControl
 from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
 from tactsim.fem.progress import check_steps
 from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-
-Array = np.ndarray
 
 JUMP = StepControl(first=1.0, largest=1.0, smallest=1e-5)
 """Steps of a sudden change, as parts of it: at once if Newton can."""

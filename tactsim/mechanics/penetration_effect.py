@@ -20,8 +20,6 @@ from tactsim.contact.traction import ContactIterate
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.posed_contact import PosedContact
 
-Array = np.ndarray
-
 LEAST_SHARE = 0.01
 """Last step over the whole displacement below which the growth of the pressure over it is more round-off than growth."""
 

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction
 from tactsim.fem.surface import SurfaceAssembly
-
-Array = np.ndarray
 
 ROUND_OFF = 4 * np.finfo(float).eps
 """Relative error of a position after interpolation and subtraction."""

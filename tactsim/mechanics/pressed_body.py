@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-import numpy as np
-
+from tactsim.array import Array
 from tactsim.fem.body import Body, PastStress
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.pressure import FollowerPressure
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-
-Array = np.ndarray
 
 
 class Pressed(Protocol):

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.errors import InputError
@@ -22,8 +23,6 @@ from tactsim.mechanics.first_touch import first_touch
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-Array = np.ndarray
 
 FAR = 2.0
 """Height from which a body approaches, over the size of the tissue."""

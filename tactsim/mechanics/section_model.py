@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.space import Measure
 from tactsim.interfaces import Material
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -16,8 +17,6 @@ from tactsim.mesh.adaptation import Refinement, refined
 from tactsim.mesh.axisymmetric import Size
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-Array = np.ndarray
 
 
 class SectionModel(PressedModel):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body
 from tactsim.fem.memory import mean_stress
 from tactsim.materials.stability import principal_stretches
@@ -12,7 +13,6 @@ from tactsim.mechanics.ellipticity import elliptic_in
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
-Array = np.ndarray
 EDGES = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]
 
 

@@ -8,6 +8,7 @@ from enum import Enum
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.newton import NewtonOptions
 from tactsim.interfaces import Material
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -17,8 +18,6 @@ from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_peaks import surface_peaks
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-Array = np.ndarray
 
 PATIENCE = NewtonOptions(max_iterations=40, patience=12)
 """Friction in space settles more slowly than in a section: the direction of slip is an unknown too."""

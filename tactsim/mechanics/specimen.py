@@ -7,14 +7,12 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.interfaces import Material
 from tactsim.materials import AnyMaterial
 from tactsim.mesh.axisymmetric import Size, section_mesh
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.units import FrozenModel, Length, format_quantity
-
-Array = np.ndarray
-
 
 LARGEST_CAP = 0.9
 """Largest difference of height of a curved surface, as a part of the thickness."""

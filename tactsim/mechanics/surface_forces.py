@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.taxel_layout import TaxelLayout
-
-Array = np.ndarray
 
 AFFINE = 1e-9
 """A facet whose mid-side nodes are off the middles by less than this part of its size is taken as straight."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-Array = np.ndarray
+from tactsim.array import Array
 
 _EDGES = ((0, 1, 3), (1, 2, 4), (0, 2, 5))
 _TINY = 1e-300

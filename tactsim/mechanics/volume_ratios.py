@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.fem.body import Body
 from tactsim.fem.diagnosis import element_in_words
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-
-Array = np.ndarray
 
 POOR_RATIO = 0.1
 """Difference of a volume ratio from what the pressure asks for that counts as poor: a tenth, far beyond the few per cent that

@@ -8,9 +8,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from skfem import MeshTri
 
+from tactsim.array import Array
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
-
-Array = np.ndarray
 
 _ENDS = np.array([[0, 1], [1, 2], [0, 2]])
 

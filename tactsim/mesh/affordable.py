@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.block import BlockMeshSettings
 
-Array = np.ndarray
 MOST_UNKNOWNS = 3_000_000
 """Unknowns of the largest model: beyond 600 000, where a factor takes 12 GiB, the iteration takes 8 kB each, so
 24 GiB (``fem.solver_choice``)."""

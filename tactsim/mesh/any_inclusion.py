@@ -9,9 +9,10 @@ from typing import Annotated
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Array, Solid
+from tactsim.interfaces.solid import Solid
 from tactsim.registry import Registered
 from tactsim.units import format_quantity
 

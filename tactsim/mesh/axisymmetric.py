@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from skfem import MeshTri
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 
-Array = np.ndarray
 Size = Callable[[Array], Array]
 """Wanted element size in m at points (n, 2)."""
 SLENDER = 4.0

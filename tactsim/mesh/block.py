@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.interfaces.solid import Positive
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.units import FrozenModel, Time
 
-Array = np.ndarray
 VOLUME_TOLERANCE = 5e-3
 """Largest relative error of the volume of a region."""
 FLATNESS = 1e-9

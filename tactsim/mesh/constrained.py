@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import FACES, Patch
 from tactsim.mesh.solid import plane_patch
 
-Array = np.ndarray
 STEPS = 40
 ROUND_OFF = 1e-12
 """Distance from a patch, over the size of the block, at which a node counts as on it."""

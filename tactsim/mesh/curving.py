@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import FACES
@@ -20,7 +21,6 @@ from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.smoothing import smoothed
 from tactsim.mesh.wedges import side_patches, without_wedges
 
-Array = np.ndarray
 LEAST_CURVATURE = 0.2
 """Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""
 SMALLEST_SHARE = 0.25

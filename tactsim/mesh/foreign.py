@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.outside.files import OutsideFile, opened
 from tactsim.outside.mesh_files import MeshArrays, read_mesh_file
 
-Array = np.ndarray
 LARGEST_COORDINATE = 1e9
 """In the unit of the file: beyond it squares of lengths overflow long before any tissue is so large."""
 

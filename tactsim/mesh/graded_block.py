@@ -12,6 +12,7 @@ from functools import partial
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import BallImage
@@ -23,7 +24,6 @@ from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
-Array = np.ndarray
 ATTEMPTS = 3
 """Numbers of cells across that are tried, each larger than the last, until the shapes suit."""
 

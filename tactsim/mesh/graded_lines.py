@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 
-Array = np.ndarray
 EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that of the cells far from them, if none is given."""
 ROOM = 0.4

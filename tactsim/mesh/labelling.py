@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces.solid import FACES, Patch, Solid
 from tactsim.mesh.constrained import Constraints, block_patches
 
-Array = np.ndarray
 OUTSIDE = -1
 """Label outside the block; the tissue is 0, inclusion k is k, and the space in a hollow inclusion k is -1 - k."""
 _SIDES = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))

@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError, StorageError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.any_inclusion import check_inclusions
@@ -30,7 +31,6 @@ from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
 from tactsim.user_cache import user_cache
 
-Array = np.ndarray
 _DAMAGE = (OSError, ValueError, LookupError, RuntimeError)
 
 

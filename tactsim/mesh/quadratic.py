@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import Mesh
 
+from tactsim.array import Array
 from tactsim.errors import InputError
-
-Array = np.ndarray
 
 FLAT = 1e-12
 """Determinant of an element's sides over a power of the longest below which it is flat: round-off of its coordinates."""

@@ -8,9 +8,8 @@ import numpy as np
 from skfem import ElementTetP2
 from skfem.quadrature import get_quadrature
 
+from tactsim.array import Array
 from tactsim.mesh.quadratic import QuadraticMesh
-
-Array = np.ndarray
 
 TO_REGULAR = np.linalg.inv(np.array([[1.0, 0.5, 0.5], [0.0, np.sqrt(3) / 2, np.sqrt(3) / 6], [0.0, 0.0, np.sqrt(2 / 3)]]))
 _EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))

@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
+from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
 from tactsim.mesh.foreign import ForeignMesh, read_foreign
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio
 
-Array = np.ndarray
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 TAGS = ("gmsh:physical", "medit:ref", "region", "cell_tags", "gmsh:geometrical")
 """Names under which programs keep the region of a cell, the likeliest first."""

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
-
-Array = np.ndarray
 
 LARGEST_SECTOR = np.pi / 4
 """Wider sectors turn the elements beside the axis nearly inside out."""

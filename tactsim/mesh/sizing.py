@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from skfem import MeshTet
 
+from tactsim.array import Array
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.block import BlockMeshSettings
 
-Array = np.ndarray
 EDGE_SHARE = 2 / 3
 """Element size at the edges of the jaws over that far away, where none is given."""
 MOST_CELLS = 60

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize
 
+from tactsim.array import Array
 from tactsim.mesh.quality import TO_REGULAR, mean_ratio, regular_map
 
-Array = np.ndarray
 ROUNDS = 6
 STEPS = 20
 SHARES = (1.0, 0.5, 0.25, 0.1)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.interfaces.solid import Array, Patch
+from tactsim.array import Array
+from tactsim.interfaces.solid import Patch
 
 
 def plane_patch(axis: int, value: float) -> Patch:

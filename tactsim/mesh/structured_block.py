@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_along, check_unknowns, unknowns_of_cells
@@ -18,7 +19,6 @@ from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.quadratic import quadratic_mesh
 from tactsim.mesh.tetrahedra import mesh_key
 
-Array = np.ndarray
 CORE, ROUNDNESS = 0.5, 0.7
 """Half width of the cube of cells in the lump, over its radius, and how far the cube is blown up towards a ball."""
 LEAST_AROUND = 4

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.deadline import check_time, seconds_left
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.interfaces import Inclusion
@@ -34,7 +35,6 @@ from tactsim.mesh.solid import outward
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.processes import Ended, run_child
 
-Array = np.ndarray
 ENVELOPE = 0.03
 """Distance that the mesher's surface may keep from the given one, in element sizes; projection then removes it."""
 FACET_SIZE = 0.6

@@ -6,13 +6,12 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import FLATNESS
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.quadratic import QuadraticMesh
-
-Array = np.ndarray
 
 NEAR = 1.0
 """Distance of a boundary facet from the wall of an empty space of the case, over its longest edge, up to which it may be that

@@ -15,11 +15,11 @@ from typing import IO
 import numpy as np
 from numpy.lib import format as npy
 
+from tactsim.array import Array
 from tactsim.errors import StorageError
 from tactsim.outside.processes import machine_memory
 from tactsim.outside.text import one_line
 
-Array = np.ndarray
 LARGEST_FOREIGN = 2**30
 """Bytes that the arrays of a file of others may take together, or of any file where the memory of the machine is not known."""
 KINDS = frozenset("biufcUS")

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import StorageError
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.environment import ONE_THREAD
@@ -22,7 +23,6 @@ from tactsim.outside.files import MEBIBYTE, OutsideFile
 from tactsim.outside.processes import run_child
 from tactsim.outside.text import one_line
 
-Array = np.ndarray
 TIME, TIME_PER_MEBIBYTE = 8.0, 2.0
 """Time in s in which a file must be read, and how much more for each MiB: ten times what the slowest reader of text takes."""
 UNPACKED = 50

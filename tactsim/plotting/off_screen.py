@@ -17,11 +17,10 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.processes import run_child
-
-Array = np.ndarray
 
 PATIENCE = 120.0
 """Time in s after which a renderer that does not answer is given up."""

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.results import FieldFrame
-
-Array = np.ndarray
 
 FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 """Nodes of the faces of a quadratic tetrahedron, as quadratic triangles seen from outside, in the order of VTK."""

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.results.result import Quantity
 from tactsim.sensors.force_history import checked_forces, checked_signal, checked_times
 from tactsim.units import Area, Length, Pressure, format_quantity
 
-Array = np.ndarray
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """In F/m: CODATA 2018, doi:10.1103/RevModPhys.93.025010."""
 MEASURED_STRETCH, MEASURED_STRESS = 1.5, 16e3

@@ -7,8 +7,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Array
 from tactsim.units import Capacitance, FrozenModel, Voltage
 
 

@@ -7,8 +7,8 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Array
 from tactsim.units import FrozenModel, Voltage, format_quantity
 
 LEAST_RANGE, MOST_RANGE = 1e-6, 1e6

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Array
 
 LARGEST = 1e12
 """Largest conductance in S, far beyond any sensor, so that no product overflows."""

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.results.result import Quantity
@@ -25,7 +26,6 @@ from tactsim.sensors.force_history import checked_forces, checked_signal, checke
 from tactsim.sensors.tunnelling import particle_separation, relative_resistance, tunnelling_decay
 from tactsim.units import Area, format_quantity
 
-Array = np.ndarray
 HOLM = 100.0
 """Largest force in N of Holm's contact resistance (thesis, before eq. 2.1.12)."""
 INVERSION = 1e-12

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import linregress
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.sensors.calibration import LinearCalibration
-
-Array = np.ndarray
 
 
 def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:

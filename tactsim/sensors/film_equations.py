@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tactsim.array import Array
 from tactsim.sensors.composite import Composite
 
-Array = np.ndarray
 Reading = Literal["corrected", "eq_2_3_1", "eq_2_1_17"]
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.interfaces import SensorFilm
 from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
@@ -18,8 +19,6 @@ from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, FrozenModel, check_increasing
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

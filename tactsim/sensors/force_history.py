@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
-Array = np.ndarray
 LARGEST = 1e30
 """Largest number in SI units that is taken, so that no difference or product overflows."""
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces.recording import ForceReader
 from tactsim.sensors.force_electronics import ForceElectronics
-
-Array = np.ndarray
-
 
 CLEAN = "_clean"
 """How the names of readings without noise end."""

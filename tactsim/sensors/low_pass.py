@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field
 from scipy.signal import butter, lfilter, sosfilt_zi, sosfreqz
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Array
 from tactsim.units import Frequency, FrozenModel, format_quantity
 
 INVERTIBLE = 1

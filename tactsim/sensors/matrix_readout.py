@@ -8,13 +8,13 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.sensors.calibration import LinearCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
 from tactsim.sensors.force_electronics import ForceElectronics
 
-Array = np.ndarray
 MOST_NUMBERS = 2_000_000
 """Samples of all channels together that one reading may hold."""
 

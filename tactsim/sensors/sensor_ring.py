@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_area import annular_area
-from tactsim.interfaces import Array
+from tactsim.array import Array
 from tactsim.units import Angle, FrozenModel, Length, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]

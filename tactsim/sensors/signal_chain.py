@@ -8,8 +8,8 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.interfaces import Array
 from tactsim.sensors.converter import Converter
 from tactsim.sensors.divider import divider_conductance, divider_slope, divider_voltage
 from tactsim.sensors.low_pass import LowPass

@@ -7,10 +7,9 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.units import Force, FrozenModel, Length, format_quantity
-
-Array = np.ndarray
 
 Formula = Literal["corrected", "as_printed"]
 MARGIN = 2.0

@@ -6,10 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.sensors.switch_array import SwitchArray, rising
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from tactsim.interfaces import Array
+from tactsim.array import Array
 from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.low_pass import LowPass

@@ -9,10 +9,10 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.units import Force, FrozenModel
 
-Array = np.ndarray
 UNTRIGGERED = -1
 """Index of a recording in which the small sensor never exceeded its level."""
 

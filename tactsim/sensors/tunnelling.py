@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import constants
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
-Array = np.ndarray
 LOOSEST_PACKING = np.pi / 6
 """Volume fraction of a simple cubic packing: spheres touch, the separation of eq. 2.1.8 is zero."""
 

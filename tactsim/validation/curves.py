@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from tactsim.interfaces import Array
+from tactsim.array import Array
 
 Data = dict[str, Any]
 """Text, numbers, lists and mappings, which JSON can hold."""

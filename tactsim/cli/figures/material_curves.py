@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
 from tactsim.identification.uniaxial import UniaxialFit, relative_errors, uniaxial_nominal_stress
 from tactsim.identification.uniaxial_data import UniaxialCurve
-from tactsim.interfaces import Array, Material
+from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
 from tactsim.materials.stability_range import PathStability, stability_range
 from tactsim.units import format_quantity

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset import load
 from tactsim.plotting.canvas import despined, new_figure, png, scale_of, styled
 
 if TYPE_CHECKING:
     import xarray
 
-Array = np.ndarray
 Drawing = Callable[[], bytes]
 MOST_PANELS = 12
 COLUMNS = 4

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
 from tactsim.plotting.canvas import despined, new_figure, png, styled
 
-Array = np.ndarray
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Of the estimators, told apart by the colour-blind: Okabe & Ito 2008."""

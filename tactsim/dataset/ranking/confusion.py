@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
@@ -23,7 +24,6 @@ from tactsim.units import format_quantity
 if TYPE_CHECKING:
     import xarray
 
-Array = np.ndarray
 SCHEMA = "tactsim/confusion/1"
 
 

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from scipy.stats import binomtest
 
+from tactsim.array import Array
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import LEVEL, Estimate
 from tactsim.localization.lump_response import LumpResponse
 
-Array = np.ndarray
 NOISES = (1.0, 2.0, 4.0)
 """Noise of a reading over the stated one."""
 DRAWN = 1000

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import readings_of, stored_grasp
 from tactsim.interfaces.readings import Readings
@@ -15,7 +16,6 @@ from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 BEYOND = 1e-3
 """Closing beyond that of the reference, as a share of the latter, that still counts as the same."""
 

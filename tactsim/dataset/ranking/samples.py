@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.ranking.reference import PlainGrasp, check_same
 from tactsim.dataset.sampling.drawing import drawn_specimen
 from tactsim.dataset.sampling.layout import TRIED_SPECIMENS
@@ -27,7 +28,6 @@ from tactsim.sensors.matrix_readout import MatrixReadout
 if TYPE_CHECKING:
     import xarray
 
-Array = np.ndarray
 SPHERE = 1
 """Number of a ball among the kinds of inclusions of a store."""
 REPEATED = 16

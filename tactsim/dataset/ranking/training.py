@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2
 
+from tactsim.array import Array
 from tactsim.dataset.ranking.samples import JudgedSamples
 from tactsim.errors import InputError
 from tactsim.interfaces.estimate import LEVEL
@@ -17,7 +18,6 @@ from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import OUTPUTS, LearnedWeights, Network, inputs
 
-Array = np.ndarray
 HIDDEN = (64, 64)
 NETWORKS = 4
 PASSES = 40

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.sampling.drawing import Drawn, drawn_specimen, noise_generator, used_seed
 from tactsim.dataset.sampling.layout import Layout, layout_of, split_of
 from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
@@ -19,7 +20,6 @@ from tactsim.experiments.recording import numbers as numbers_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.results.result import Status
 
-Array = np.ndarray
 LONGEST_REASON = 500
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
+from tactsim.array import Array
 from tactsim.case.loading import validated_case
 from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Path
@@ -18,7 +19,6 @@ from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
 from tactsim.errors import InputError
 from tactsim.experiments.recording import seed_place
 
-Array = np.ndarray
 SAME_REFUSALS = 4
 SPECIMENS, SAMPLES, NOISE = 0, 1, 2
 """Streams of random numbers of a sweep."""

@@ -21,7 +21,6 @@ from tactsim.interfaces import Recorder
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
 
-Array = np.ndarray
 SPLITTING = 3
 """Stream of random numbers that deals specimens to splits."""
 TRIED_SPECIMENS, TRIED_OF_GRID = 3, 1000

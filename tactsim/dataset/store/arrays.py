@@ -38,7 +38,6 @@ IN_WORDS = ("units", "long_name", "role")
 """Attributes in words that every variable has."""
 BYTES, TEXT, PACKED = "bytes", "vlen-utf8", "zstd"
 """Codecs of numbers and of text, and the compression of both."""
-Array = np.ndarray
 MOST_SAMPLES = 10_000_000
 """Samples of a data set: a month of a thousand processes at a sample in four minutes, or a day of the closed form."""
 STATUS = ("pending", "done", "failed")

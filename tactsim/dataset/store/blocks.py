@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import CHECKSUM_BYTES
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
@@ -18,7 +19,6 @@ from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.text import one_line
 from tactsim.storage.files import naming, sync
 
-Array = np.ndarray
 Block = dict[str, Array]
 """Variable -> values (samples in the block, ...); ``sample`` holds the numbers of the samples."""
 NOT_SUMMED = ("checksum", "wall_time", "code")

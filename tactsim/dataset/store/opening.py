@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, described, index_fault, read_json, refuse_link
 from tactsim.errors import StorageError
 from tactsim.outside.files import Unreadable, opened_folder
@@ -24,7 +25,6 @@ from tactsim.outside.text import one_line
 if TYPE_CHECKING:
     import zarr
 
-Array = np.ndarray
 STORE_SCHEMA = "tactsim/dataset/1"
 KINDS = {
     "title": str,

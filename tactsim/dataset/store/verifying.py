@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING
 from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, checksum
 from tactsim.dataset.store.opening import Store
@@ -16,7 +17,6 @@ from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 from tactsim.storage.files import naming
 
-Array = np.ndarray
 CHANGED = "the content is not what was written"
 UNKNOWN = "the status is unknown"
 SHOWN = 10

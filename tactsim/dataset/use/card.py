@@ -26,7 +26,6 @@ GENERAL_LIMITS = (
     "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
 )
-Array = np.ndarray
 MOST_REASONS = 50
 """Reasons of failures that are listed; the rest are counted."""
 

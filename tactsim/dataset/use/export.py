@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import FAILED, refuse_link
 from tactsim.dataset.store.files import CARD
 from tactsim.dataset.store.opening import Store
@@ -27,7 +28,6 @@ from tactsim.storage.locking import only_one
 if TYPE_CHECKING:
     import xarray
 
-Array = np.ndarray
 SHARD_SAMPLES = 1000
 INDEX = "index.parquet"
 META = "dataset.json"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
 
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     import xarray
 
     from tactsim.dataset.store.opening import Store
-
-Array = np.ndarray
 
 
 def load(

@@ -17,7 +17,6 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import FrozenModel, Time, check_increasing, format_quantity
 
-Array = np.ndarray
 SMALL_DISPLACEMENT = 0.1
 """Displacement over the outer radius beyond which small-displacement theory is not to be trusted; a convention."""
 

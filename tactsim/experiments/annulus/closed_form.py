@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.array import Array
 from tactsim.interfaces import Experiment, Material
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials import AnyMaterial
@@ -19,7 +20,6 @@ from tactsim.mechanics.success import within_layer
 from tactsim.results.result import Quantity, rows
 from tactsim.units import Length, format_quantity
 
-Array = np.ndarray
 SMALL = 0.1
 """Displacement over the outer radius beyond which the result warns; materials that stiffen leave linear theory before."""
 DECADES, PER_DECADE = 6, 10

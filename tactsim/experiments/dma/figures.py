@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
+from tactsim.array import Array
 from tactsim.experiments.dma.scene import DmaScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result, Status
 
-Array = np.ndarray
 PARTS = ("elastic", "viscous")
 METHODS = {"least_squares": ("least squares", "#1f4e79", "-"), "genetic": ("genetic algorithm", "#b8540a", "--")}
 PER_MEGAPASCAL = 1e6

@@ -19,7 +19,6 @@ from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 
-Array = np.ndarray
 TIMES = (1e-6, 1e6)
 """Times in s between which the atrium is asked when its modulus is that of the reading."""
 

@@ -10,11 +10,10 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from tactsim.analytic.durometer import DurometerScale
+from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True)

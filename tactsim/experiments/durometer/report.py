@@ -16,7 +16,6 @@ from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 APART = 0.95
 """The slope of the force is taken from the last step at most this part as deep as the reading."""
 WIDE = 12e-3

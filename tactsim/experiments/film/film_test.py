@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 from scipy.stats import linregress
 
+from tactsim.array import Array
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
@@ -18,7 +19,6 @@ from tactsim.sensors.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.film import HOLM, Film
 from tactsim.units import Force, Time, check_increasing
 
-Array = np.ndarray
 LEAST_FORCE, LONGEST = 1e-9, 1e12
 """Range in N and s that is far wider than any test and in which no quotient or product leaves the floats."""
 PositiveForce = Annotated[Force, Field(ge=LEAST_FORCE, le=HOLM)]

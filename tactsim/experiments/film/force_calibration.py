@@ -8,10 +8,11 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
 from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
-from tactsim.interfaces import Array, Experiment
+from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.signal_chain import SignalChain

@@ -7,9 +7,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
-from tactsim.interfaces import Array
 from tactsim.outside.input_path import InputPath
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter

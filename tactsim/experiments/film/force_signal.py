@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 from scipy.signal import chirp, square
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.mechanics.loading import ForceLoading
@@ -18,7 +19,6 @@ from tactsim.sensors.film import HOLM
 from tactsim.sensors.force_history import checked_forces, checked_times
 from tactsim.units import Force, Frequency, FrozenModel, Time, format_quantity
 
-Array = np.ndarray
 PositiveTime = Annotated[Time, Field(gt=0)]
 PositiveFrequency = Annotated[Frequency, Field(gt=0)]
 SensorForce = Annotated[Force, Field(ge=0)]

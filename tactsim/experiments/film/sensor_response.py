@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.film.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment
@@ -19,7 +20,6 @@ from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_
 from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, check_increasing, format_quantity
 
-Array = np.ndarray
 MOST_SAMPLES = 100_000
 """Longest recording, in samples: the inverse of the film takes about a minute for it."""
 

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
@@ -16,8 +17,6 @@ from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status, rows
 from tactsim.sensors.matrix_readout import MatrixReadout
-
-Array = np.ndarray
 
 
 class MatrixReadoutRun(Experiment):

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-
-Array = np.ndarray
 
 COVERED = 1 - 1e-9
 """Part of a taxel that is all of it up to round-off."""

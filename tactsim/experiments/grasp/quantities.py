@@ -10,7 +10,6 @@ from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.results.result import Quantity
 
-Array = np.ndarray
 Values = Sequence[dict[str, float]]
 
 LAST = ", at the last accepted step"

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
@@ -18,7 +19,6 @@ from tactsim.registry import kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import CLEAN, latest, read_variables
 
-Array = np.ndarray
 PER_INCLUSION = {
     "inclusion_radius": ("m", "radius of a sphere, outer radius of a tube, that of a ball of equal volume of others"),
     "inclusion_wall": ("m", "wall of a tube"),

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator
 
+from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
@@ -14,7 +15,6 @@ from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
 from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import FrozenModel
 
-Array = np.ndarray
 Point = tuple[float, float, float]
 
 

@@ -29,8 +29,6 @@ from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, FrozenModel, Length, format_quantity
 
-Array = np.ndarray
-
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
 PENETRATION = 2e-4

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import Embedded, GraspSetup
-
-Array = np.ndarray
 
 SAMPLES = 400
 """Points in the block at which distances from surfaces are compared: two shapes that agree at so many are one."""

@@ -10,7 +10,6 @@ from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 AT_END = "at the end; [row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
 OVER_TIME = "at each of readout_time, [time][row][column]"
 

@@ -27,8 +27,6 @@ from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity
 
-Array = np.ndarray
-
 SMALL = 0.01
 """Displacement over the body's radius up to which a linear closed form is meant."""
 LAST = ", at the last accepted step"

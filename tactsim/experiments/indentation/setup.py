@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
@@ -27,8 +28,6 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.registry import Registered
 from tactsim.results.result import Status
 from tactsim.units import FrozenModel, Length, format_quantity
-
-Array = np.ndarray
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody, lambda cls: 2 in cls.dimensions)]
 LARGEST_RATIO = 1e5

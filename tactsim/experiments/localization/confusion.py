@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
@@ -30,7 +31,6 @@ from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, format_quantity
 
-Array = np.ndarray
 TUBE = "tube"
 
 

@@ -24,7 +24,6 @@ from tactsim.mechanics.loading import DisplacementLoading
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, Length, format_quantity
 
-Array = np.ndarray
 RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])
 """Radii in m of the tabulated balls."""
 SPACING = 2e-3

@@ -15,10 +15,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
+from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.localization.lump_response import LumpResponse
 
-Array = np.ndarray
 BLOCK_OF_DRAWS = 250
 FEWEST = 1e-4
 """Least radius in m that is sought: a tenth of a millimetre."""

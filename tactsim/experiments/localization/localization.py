@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.scene import GraspScene, grasp_fields
 from tactsim.experiments.localization.response_store import stored_response
@@ -32,7 +33,6 @@ from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
 
-Array = np.ndarray
 Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
+from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
@@ -28,7 +29,6 @@ from tactsim.localization.lump_response import LumpResponse
 from tactsim.mechanics.block_model import CLOSING, GraspModel
 from tactsim.mechanics.block_source import StructuredSource
 
-Array = np.ndarray
 CELLS = (14, 14, 8)
 """Cells of the block, each of six tetrahedra: 45 000 unknowns."""
 RADII = np.linspace(1.5e-3, 8e-3, 14)

@@ -24,8 +24,6 @@ from tactsim.results.reading import read_result
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 
-Array = np.ndarray
-
 
 def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
     """Response of the tissue of a grasp whose result lies in a folder, its inclusions left out.

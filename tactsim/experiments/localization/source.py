@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
@@ -18,7 +19,6 @@ from tactsim.results.reading import read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 Source = Literal["taxel_force", "read_force"]
 """Forces of the solution, or those read through film, electronics and calibration."""
 SAME_CLOSING = 1e-3

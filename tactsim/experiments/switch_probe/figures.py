@@ -15,8 +15,6 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
-
 COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f", "#795548")
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
 FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))

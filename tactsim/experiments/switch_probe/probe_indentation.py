@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.course import HistoryPath
 from tactsim.experiments.indentation.record import IndentationRecord
@@ -18,8 +19,6 @@ from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
-
-Array = np.ndarray
 
 SAMPLES = 20_000
 """Points between which the contact along the surface is interpolated, so that a strip's ends fall between them."""

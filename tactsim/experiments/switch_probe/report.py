@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.experiments.switch_probe.setup import COUNT, SwitchProbeSetup
@@ -15,8 +16,6 @@ from tactsim.mechanics.success import judged
 from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.sensors.switch_reading import Touch
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 HISTORY_UNITS = {
     "tissue": "1",

@@ -9,6 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.analytic.probe_force import ProbeForces, probe_forces
+from tactsim.array import Array
 from tactsim.experiments.switch_probe.probe_indentation import ProbeState, probe_states
 from tactsim.experiments.switch_probe.setup import ProbeTissue, SwitchProbeSetup
 from tactsim.materials.viscoelasticity import shear_relaxation
@@ -16,8 +17,6 @@ from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 from tactsim.sensors.switch_reading import Touch, read_switches
-
-Array = np.ndarray
 
 REST = 0.2
 """Time in s before the touch, in which the electronics see no force."""

@@ -8,12 +8,12 @@ from typing import Self
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.valve_tissue import SensorContact
-from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import format_quantity

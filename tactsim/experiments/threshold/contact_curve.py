@@ -11,13 +11,13 @@ from scipy.interpolate import PchipInterpolator
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
+from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.results.result import Result, Status
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 RECESS_TOLERANCE = 0.01
 """Difference of the rise at the touch from the recess, over the recess, beyond which a curve is that of another sensor."""
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.experiments.threshold.trial_case import TrialCase
-from tactsim.interfaces import Array
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.low_pass import LowPass

@@ -8,9 +8,9 @@ from typing import Self
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.experiments.threshold.contact_curve import Approach
-from tactsim.interfaces import Array
 from tactsim.sensors.converter import Converter
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise

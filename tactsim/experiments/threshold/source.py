@@ -8,12 +8,13 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import History, Segment
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.annulus.closed_form import check_closed_form
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach, ContactCurve, SensorShape
 from tactsim.identification.columns import read_columns
-from tactsim.interfaces import Array, Experiment
+from tactsim.interfaces import Experiment
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.outside.input_path import InputPath

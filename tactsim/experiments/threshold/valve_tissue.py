@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.array import Array
 from tactsim.experiments.threshold.contact_curve import Approach
-from tactsim.interfaces import Array
 from tactsim.sensors.sensor_ring import SensorRing
 from tactsim.units import FrozenModel, Length, Pressure, check_increasing
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, with_reference
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
@@ -17,7 +18,6 @@ from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.localization.region import shadows
 
-Array = np.ndarray
 DIGITS = 3
 """Decimals in mm of an outline."""
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.experiments.localization.figures.views import ESTIMATE, colour_table
 from tactsim.interfaces.readings import Readings
@@ -20,7 +21,6 @@ from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.localization.views import SHAPE, views
 from tactsim.outside.text import one_line
 
-Array = np.ndarray
 VIEWS = ("front", "left", "top")
 TRUE_COLOUR = "#009e73"
 """Of the true inclusions; with the estimate's it is told apart by colour-blind users, and the one is filled, the other lines."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName
 from tactsim.live.session.choices import Choice
@@ -17,7 +18,6 @@ from tactsim.live.sources.recorded import SOURCES
 from tactsim.live.sources.samples import ANY, Samples
 from tactsim.live.sources.scene import Frame, Recording
 
-Array = np.ndarray
 MOST_RANGED = 64
 """Steps of a recording from which the ends of the colour scales are taken beforehand."""
 

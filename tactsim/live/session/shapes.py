@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from contourpy import contour_generator
 
+from tactsim.array import Array
 from tactsim.errors import InputError, TactsimError
 from tactsim.experiments.localization.figures.parts import outline
 from tactsim.interfaces.solid import Solid
@@ -15,7 +16,6 @@ from tactsim.localization.views import AWAY
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.outside.text import one_line
 
-Array = np.ndarray
 ACROSS = 14
 """Triangles along the shortest extent of a body."""
 FINEST = 300

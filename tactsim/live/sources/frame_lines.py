@@ -25,13 +25,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, ValidationError
 
+from tactsim.array import Array
 from tactsim.errors import InputError, shown
 from tactsim.interfaces.taxel_layout import JAWS, PositiveLength, TaxelLayout
 from tactsim.live.sources.scene import LARGEST_FORCE, Frame, PageScene, plain_scene
 from tactsim.outside.text import one_line
 from tactsim.units import FrozenModel
 
-Array = np.ndarray
 SCHEMA = "tactsim/frames/1"
 LONGEST_LINE = 8 * 2**20
 """Bytes of the longest line that is read: two matrices of 256 x 256 numbers take less."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
@@ -18,7 +19,6 @@ from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
 from tactsim.results.scene import UnreadableScene
 
-Array = np.ndarray
 SOURCES = {"taxel_force": "forces of the solution", "read_force": "forces read through the sensors"}
 """Name of the forces -> what they are, in words."""
 _TIMES = {"taxel_force": "time_history", "read_force": "readout_time"}

@@ -18,8 +18,6 @@ from tactsim.live.sources.scene import Frame, PageScene, Recording
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
 
-Array = np.ndarray
-
 
 @dataclass(eq=False)
 class PlainResult:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.sampling.drawing import drawn_specimen
 from tactsim.dataset.sampling.stored import stored_sweep
 from tactsim.dataset.sampling.sweep import Sweep
@@ -22,7 +23,6 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import SOURCES, checked_validity
 from tactsim.live.sources.scene import PageScene, Recording
 
-Array = np.ndarray
 OTHER_CASE = (
     "this sample was made from another case than this version of tactsim draws: block and jaws are drawn as of now, "
     "inclusions are not; the version that made the data set shows them"

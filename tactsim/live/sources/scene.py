@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
@@ -13,7 +14,6 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, named_taxels, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 
-Array = np.ndarray
 LARGEST_FORCE = 1e6
 """In N; a larger number is not a force on a taxel but a mistaken unit."""
 

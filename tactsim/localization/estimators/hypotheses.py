@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 from scipy.special import logsumexp
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
@@ -16,7 +17,6 @@ from tactsim.localization.candidates import Candidates, ball_candidates, tube_ca
 from tactsim.localization.evidence import Change, Found, nothing
 from tactsim.units import Length
 
-Array = np.ndarray
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
 CLASSES: tuple[str, ...] = ("none", "lump", "two_lumps", "artery", "two_arteries")
 """The classes, in the order of every table."""

@@ -15,7 +15,6 @@ from tactsim.localization.networks import inputs, read_weights
 from tactsim.localization.region import GaussianRegion
 from tactsim.outside.input_path import InputPath
 
-Array = np.ndarray
 LEAST_RADIUS = 0.1e-3
 """Radius in m that an estimate is raised to: a network may tell one below zero."""
 

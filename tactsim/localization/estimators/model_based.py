@@ -10,14 +10,13 @@ from pydantic import Field
 from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.region import CellRegion
 from tactsim.units import Length
-
-Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
@@ -14,8 +15,6 @@ from tactsim.interfaces.readings import Readings, rising
 from tactsim.localization.bands import Form
 from tactsim.localization.section_image import depth_share
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 
 class ThesisEstimator(Estimator):

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-Array = np.ndarray
+from tactsim.array import Array
+
 SAMPLES = 2000
 NEWTON_STEPS = 12
 

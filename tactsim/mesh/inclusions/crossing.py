@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-Array = np.ndarray
+from tactsim.array import Array
+
 MOST_PAIRS = 3_000_000
 """Pairs of near triangles that are tested at most; a surface of very uneven triangles is tested only in part."""
 

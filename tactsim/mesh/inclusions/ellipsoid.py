@@ -8,8 +8,9 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
+from tactsim.array import Array
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Array, BallImage, Point, Positive, Solid, Triangles
+from tactsim.interfaces.solid import BallImage, Point, Positive, Solid, Triangles
 from tactsim.mesh.solid import outward
 from tactsim.units import Angle
 

@@ -6,8 +6,9 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Array, Point, Positive, Solid
+from tactsim.interfaces.solid import Point, Positive, Solid
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 
 

@@ -10,9 +10,10 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Array, Point, Solid, Triangles
+from tactsim.interfaces.solid import Point, Solid, Triangles
 from tactsim.mesh.foreign import read_foreign
 from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
 from tactsim.outside.files import OutsideFile, opened

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.interfaces.solid import Array, Patch, Solid, Triangles
+from tactsim.array import Array
+from tactsim.interfaces.solid import Patch, Solid, Triangles
 from tactsim.mesh.inclusions.centre_line import CentreLine
 
 RADIAL_POINTS, ANGLES = 12, 96

@@ -7,8 +7,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.interfaces.solid import Array, Solid, Triangles
+from tactsim.interfaces.solid import Solid, Triangles
 from tactsim.mesh.inclusions.crossing import crossing_pair
 
 FIRST_CANDIDATES = 12

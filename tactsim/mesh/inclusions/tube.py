@@ -8,9 +8,10 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import FACES, Array, Measures, Point, Positive, Solid
+from tactsim.interfaces.solid import FACES, Measures, Point, Positive, Solid
 from tactsim.mesh.inclusions.centre_line import CentreLine
 from tactsim.mesh.inclusions.swept import SweptSolid
 from tactsim.units import format_quantity

@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.analytic.atrial import TAU, TIMES, E, table_4_1
+from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.interfaces import Array, drawing, quantity
+from tactsim.interfaces import drawing, quantity
 from tactsim.units import Frequency, NonNegative, Positive, Time
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 

@@ -9,8 +9,9 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
-from tactsim.interfaces import Array, quantity
+from tactsim.interfaces import quantity
 from tactsim.units import Length, NonNegative, Time, format_quantity
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome

@@ -12,8 +12,9 @@ from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.histories import harmonic, step
 from tactsim.analytic.response import response
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.array import Array
 from tactsim.errors import UnknownName
-from tactsim.interfaces import Array, drawing, quantity
+from tactsim.interfaces import drawing, quantity
 from tactsim.units import Force, NonNegative, Positive, Time
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.annulus import OUTER_RADIUS, OuterRadius, Ratios

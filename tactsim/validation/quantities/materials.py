@@ -9,10 +9,11 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import brentq
 
+from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
 from tactsim.identification.uniaxial import UniaxialFit, fit_uniaxial, uniaxial_nominal_stress, uniaxial_stress_as_printed
 from tactsim.identification.uniaxial_data import UniaxialCurve
-from tactsim.interfaces import Array, Material, drawing, quantity
+from tactsim.interfaces import Material, drawing, quantity
 from tactsim.materials.library import named_material
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 

@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.analytic.annular_punch import solve_annular_punch
+from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.interfaces import Array, drawing, quantity
+from tactsim.interfaces import drawing, quantity
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.units import FrozenModel, Length, Positive, parse_quantity
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series

@@ -12,13 +12,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 PANELS = 3
 """Times that are shown: the shortest, the middle and the longest of more."""
 LIMIT_COLOURS, POINT_COLOUR = ("#000000", "#ff9d5c"), "#d62728"

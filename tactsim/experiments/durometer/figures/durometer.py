@@ -14,7 +14,6 @@ from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import png, scale_of
 from tactsim.results import Result
 
-Array = np.ndarray
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
 ROOM = 1.25
 """The force axis ends at this many times the larger of spring and tissue."""

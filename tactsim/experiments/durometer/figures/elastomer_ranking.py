@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.stats import rankdata
 
+from tactsim.array import Array
 from tactsim.experiments.durometer.elastomers import Elastomer
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.interfaces import Drawing, ResultFigures
@@ -17,7 +18,6 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.results import Result
 
-Array = np.ndarray
 LINE_COLOUR = "0.6"
 MARKERS = "os^Dv<>P"
 KILO = 1e3

@@ -11,13 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.results import Result
 
-Array = np.ndarray
 DATA, LINE = "#1f4e79", "#b8540a"
 MOST_CURVES = 6
 """Forces whose creep is drawn."""

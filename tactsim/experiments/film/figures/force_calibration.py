@@ -14,7 +14,6 @@ from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.results import Result
 
-Array = np.ndarray
 LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
 MILLISIEMENS = 1e3
 COLUMNS = ("force", "line", "line_lower", "line_upper", "conductance", "used")

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
-
-Array = np.ndarray
 
 MOST_TAXELS = 9
 FROM_ZERO = 0.5

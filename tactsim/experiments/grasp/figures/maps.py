@@ -12,13 +12,12 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
 from tactsim.plotting.plane_cut import QUARTERS, interfaces
 from tactsim.results import FieldFrame, Result
-
-Array = np.ndarray
 
 COLOURS = "plasma"
 MOST_NAMED = 5

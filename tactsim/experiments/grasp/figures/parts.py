@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.plane_cut import regions_of
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""

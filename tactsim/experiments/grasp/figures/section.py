@@ -9,14 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
-
-Array = np.ndarray
 
 JAW_SHOWN = 2.6
 """Height in mm of the jaws in the picture."""

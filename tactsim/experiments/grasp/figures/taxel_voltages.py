@@ -14,7 +14,6 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.results import Result
 
-Array = np.ndarray
 VOLTAGES = "taxel_voltages.png"
 MOST_NAMED = 16
 """Taxels of a matrix up to which each curve is named."""

@@ -13,6 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
+from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
@@ -23,8 +24,6 @@ from tactsim.plotting.off_screen import Camera, Surface, pictures
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
 from tactsim.results import FieldFrame, Result, Status
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 FROM_ABOVE, FROM_BELOW = (0.55, -1.0, 0.5), (0.55, -1.0, -0.5)
 """From the block to the eye."""

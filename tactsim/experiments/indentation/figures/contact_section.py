@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from tactsim.array import Array
 from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
 from tactsim.results import Result
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 SHOWN_RADII = 2.4
 """Half width of the picture in radii of the body: farther out the tissue is at rest."""

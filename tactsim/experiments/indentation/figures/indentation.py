@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
 from tactsim.interfaces import Drawing, ResultFigures
@@ -16,8 +17,6 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 FORCE_COLOUR, RISE_COLOUR = "#1f4e79", "#b8540a"
 

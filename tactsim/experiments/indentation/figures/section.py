@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
+from tactsim.array import Array
 from tactsim.results import FieldFrame
-
-Array = np.ndarray
 
 _CORNERS_OF_QUARTERS = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
 _EDGES = [[0, 3, 1], [1, 4, 2], [2, 5, 0]]

@@ -9,14 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
+from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, SHOWN_RADII
 from tactsim.experiments.indentation.figures.section import Section
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
-
-Array = np.ndarray
 
 GRID = 700
 """Points per direction on which the body's outline is traced."""

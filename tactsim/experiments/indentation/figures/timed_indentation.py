@@ -8,14 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
 from tactsim.experiments.indentation.scene import TimedIndentationScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
-
-Array = np.ndarray
 
 FOUND_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
 DECADES = 1e3

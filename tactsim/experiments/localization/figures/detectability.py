@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tactsim.array import Array
 from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 PANELS = {"smallest_radius": "same noise on every taxel", "smallest_radius_by_area": "noise in proportion to the taxel's area"}
 STYLES: tuple[Any, ...] = ("-", "--", ":", "-.")
 FILLS: tuple[Any, ...] = ("full", "none", "left", "top")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
@@ -19,7 +20,6 @@ from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.results import Result
 
-Array = np.ndarray
 SAMPLES = 40
 """Points along each side of an inclusion's bounds from which its outline in a view is traced."""
 NO_LINE = [[np.nan] * 3] * 2

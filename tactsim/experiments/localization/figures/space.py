@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import Patch
 
+from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
@@ -24,7 +25,6 @@ from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result
 
-Array = np.ndarray
 SPACE = "space.png"
 """File name of the view."""
 TRUE_COLOUR, ESTIMATE_COLOUR = "#009e73", "#d1242f"

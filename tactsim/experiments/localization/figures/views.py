@@ -16,13 +16,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
+from tactsim.array import Array
 from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, outline, viewed
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
 
-Array = np.ndarray
 VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
 Shown = Literal["force", "pressure"]
 """Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""

@@ -11,13 +11,13 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 
+from tactsim.array import Array
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
-Array = np.ndarray
 TINTS = ("#ffffff", "#d9d9d9", "#f0f0f0", "#c4c4c4", "#e4e4e4")
 HATCHES = ("", "///", "..", "xx", "--")
 HARDEST_COLOUR, TRUE_COLOUR = "#d62728", "#000000"

@@ -11,6 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
@@ -19,7 +20,6 @@ from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
-Array = np.ndarray
 PARTS = {
     "level_error": ("level of the trigger", "#1f4e79", "o-"),
     "film_error": ("film against its line", "#555555", "D-"),
