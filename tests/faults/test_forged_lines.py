@@ -11,7 +11,7 @@ import pretence
 import pytest
 
 from tactsim.cli import main
-from tactsim.results import Result
+from tactsim.interfaces.run import Course
 from tactsim.storage.own_files import MANIFEST
 
 FORGED = "ok\x1b[31m\nconverged: FAKE\r\x07\x9b2J\u202e"
@@ -73,14 +73,14 @@ def test_thousands_of_faults_are_counted(case_file: Path, capsys: pytest.Capture
 def test_warnings_of_libraries_are_those_of_the_run(
     case_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    calm = pretence.Pretence.run
+    calm = pretence.Pretence.begin
 
-    def warned(self: pretence.Pretence, progress: object) -> Result:
+    def warned(self: pretence.Pretence) -> Course:
         warnings.warn(f"from a library {FORGED}", RuntimeWarning, stacklevel=1)
         np.float64(1e308) * np.float64(10)
-        return calm(self, progress)
+        return calm(self)
 
-    monkeypatch.setattr(pretence.Pretence, "run", warned)
+    monkeypatch.setattr(pretence.Pretence, "begin", warned)
     with warnings.catch_warnings():
         warnings.simplefilter("always")
         assert main(["run", str(case_file), "--out", str(tmp_path / "out")]) == 0
