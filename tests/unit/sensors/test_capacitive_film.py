@@ -40,7 +40,7 @@ def test_the_capacitance_is_the_closed_form():
     expected = [closed_form(FILM, force) for force in FORCES]
     np.testing.assert_allclose(FILM.read([0.0], FORCES[None])[0], expected, rtol=1e-12)
     by_hand = 5.31251e-12  # 8.854 pF/m x 3 x 1e-4 / 0.5e-3 m
-    assert REST == pytest.approx(by_hand, rel=1e-5, abs=0)
+    assert pytest.approx(by_hand, rel=1e-5, abs=0) == REST
     mutants = {"thickness": 0.51e-3, "relative_permittivity": 3.03, "shear_modulus": 15.2e3, "active_area": 1.01e-4}
     for name, value in mutants.items():
         wrong = FILM.model_copy(update={name: value}).read([0.0], FORCES[None])[0]
