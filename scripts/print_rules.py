@@ -11,13 +11,19 @@ FIGURES = "tactsim.**.figures"
 
 
 def printed_rules() -> str:
-    """The layers from top to bottom, and a line for each fence, as Markdown."""
+    """The layers of rooms and of families of experiments from top to bottom, and a line for each fence, as Markdown."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
-    layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
+    rooms, families = (contract["layers"] for contract in contracts if contract["type"] == "layers")
     lines = [
         BEGIN,
         "```text",
-        *(layer.replace("tactsim.", "") for layer in layers),
+        *(layer.replace("tactsim.", "") for layer in rooms),
+        "```",
+        "",
+        "Within `experiments`, a family stands above those that it builds on; one that is not named here builds on none:",
+        "",
+        "```text",
+        *families,
         "```",
         "",
         "| fenced | imported only in |",
@@ -25,11 +31,11 @@ def printed_rules() -> str:
     ]
     for contract in contracts:
         if contract["type"] == "protected":
-            rooms = (
+            allowed = (
                 "modules and packages named `figures`" if name == FIGURES else f"`{name}`"
                 for name in contract["allowed_importers"]
             )
-            lines.append(f"| {contract['name']} | {', '.join(rooms)} |")
+            lines.append(f"| {contract['name']} | {', '.join(allowed)} |")
     return "\n".join([*lines, END])
 
 

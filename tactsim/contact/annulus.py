@@ -52,7 +52,8 @@ class Annulus(Revolved):
     @property
     def contact_shape(self) -> ContactShape:
         """The face, its hole and the rounding of both edges."""
-        return ContactShape(self.outer_radius, self.inner_radius, self.fillet)
+        radii = {"inner_radius": self.inner_radius, "outer_radius": self.outer_radius}
+        return ContactShape(self.outer_radius, self.inner_radius, self.fillet, radii=radii)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

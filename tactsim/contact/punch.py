@@ -45,7 +45,7 @@ class Punch(Revolved):
     @property
     def contact_shape(self) -> ContactShape:
         """The face and the rounding of its edge."""
-        return ContactShape(self.radius, fillet=self.fillet)
+        return ContactShape(self.radius, fillet=self.fillet, radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded rectangle of the section."""

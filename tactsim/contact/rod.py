@@ -31,7 +31,7 @@ class Rod(Revolved):
     @property
     def contact_shape(self) -> ContactShape:
         """The hemisphere at its end."""
-        return ContactShape(self.radius, tip=RoundTip(elements=9, within_radius=True))
+        return ContactShape(self.radius, tip=RoundTip(elements=9, within_radius=True), radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the half-line of the centres above the end, minus the radius."""

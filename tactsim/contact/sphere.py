@@ -31,7 +31,7 @@ class Sphere(RigidBody):
     @property
     def contact_shape(self) -> ContactShape:
         """The sphere."""
-        return ContactShape(self.radius, tip=RoundTip(elements=20))
+        return ContactShape(self.radius, tip=RoundTip(elements=20), radii={"radius": self.radius})
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance, normal and Hessian at points (d, n)."""

@@ -63,7 +63,7 @@ class Trapezoid(Revolved):
     @property
     def contact_shape(self) -> ContactShape:
         """The face and the rounding of its corners."""
-        return ContactShape(self.radius, fillet=self.fillet)
+        return ContactShape(self.radius, fillet=self.fillet, radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
         """Distance to the rounded trapezoid: its faces moved in by the fillet, then grown by it."""

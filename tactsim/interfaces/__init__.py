@@ -20,6 +20,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.interfaces.estimate import Estimate
+from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.recording import Recording, Values
 from tactsim.interfaces.run import Runnable
@@ -29,7 +30,7 @@ from tactsim.interfaces.table_functions import quantity as quantity
 from tactsim.interfaces.variable import Variable
 from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
-from tactsim.results.result import Quantity, Result
+from tactsim.results.result import Result
 from tactsim.units import Area
 
 Drawing = Callable[[], bytes]
@@ -184,8 +185,8 @@ class SensorFilm(CaseKind):
         """Immediate change of the signal with the force, in its unit per N, of the shape of ``force``."""
 
     @abstractmethod
-    def quantities(self) -> dict[str, Quantity]:
-        """Derived numbers of the film, for the result."""
+    def report(self, force: Array, signal: Array) -> FilmReport:
+        """Numbers of the film for the result, and under constant forces (n,) in N that give these signals (n,)."""
 
     @abstractmethod
     def assumptions(self) -> tuple[str, ...]:
@@ -205,10 +206,7 @@ class SensorFilm(CaseKind):
 
 
 class Experiment(Runnable):
-    """What a case can ask for, as ``experiment``: receives its parts, computes step by step, says what it found.
-
-    A kind gives `begin`, which has an example; how a run is timed, limited, ended and made a result is decided by `Runnable`.
-    """
+    """What a case can ask for, as ``experiment``: a kind gives `begin`; `Runnable` times, limits and ends its run."""
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$|scene$)\w+"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -29,9 +31,16 @@ class ContactShape:
     hole : radius of a hole in its middle
     fillet : radius of the rounding of its edges
     tip : how a body without edges ends; None if it has a face
+    radii : by the names that a case gives them, for messages
     """
 
     radius: float | None = None
     hole: float = 0.0
     fillet: float | None = None
     tip: RoundTip | None = None
+    radii: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def reach(self) -> float:
+        """The radius in m, infinite where there is none."""
+        return math.inf if self.radius is None else self.radius

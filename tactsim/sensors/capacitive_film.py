@@ -12,6 +12,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
+from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.result import Quantity
 from tactsim.sensors.force_history import checked_forces, checked_signal, checked_times
 from tactsim.units import Area, Length, Pressure, format_quantity
@@ -119,14 +120,16 @@ class CapacitiveFilm(SensorFilm):
         stretch = self._stretch(checked_forces(force, len(checked_times(time)), LARGEST))
         return self._rest_capacitance / (self.shear_modulus * self.area * (2 / stretch + stretch**2))
 
-    def quantities(self) -> dict[str, Quantity]:
-        """Capacitance without force and its first rise."""
+    def report(self, force: Array, signal: Array) -> FilmReport:
+        """Capacitance without force and its first rise; the signals tell nothing else of the film."""
         slope = float(self.sensitivity([0.0], [0.0])[0])
-        return {
-            "rest_capacitance": Quantity(self._rest_capacitance, "F", "without force"),
-            "initial_sensitivity": Quantity(slope, "F/N", "rise of the capacitance with the first force"),
-            "dielectric_shear_modulus": Quantity(self.shear_modulus, "Pa", "small-strain shear modulus of the dielectric"),
-        }
+        return FilmReport(
+            {
+                "rest_capacitance": Quantity(self._rest_capacitance, "F", "without force"),
+                "initial_sensitivity": Quantity(slope, "F/N", "rise of the capacitance with the first force"),
+                "dielectric_shear_modulus": Quantity(self.shear_modulus, "Pa", "small-strain shear modulus of the dielectric"),
+            }
+        )
 
     def assumptions(self) -> tuple[str, ...]:
         """What was measured and what was not."""

@@ -20,6 +20,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import SensorFilm
+from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.result import Quantity
 from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.force_history import checked_forces, checked_signal, checked_times
@@ -31,6 +32,8 @@ HOLM = 100.0
 INVERSION = 1e-12
 """Relative accuracy of a force found from its conductance."""
 ITERATIONS = 60
+CREEP = ("instantaneous", "delayed", "viscosity")
+"""Coefficients of the creep as a composite names them."""
 COMPLEX_STEP = 1e-30
 """Imaginary part of the logarithm of the force, with which a slope is exact to round-off."""
 
@@ -131,8 +134,16 @@ class Film(SensorFilm):
         assert state is not None  # there is at least one sample
         return found, state
 
-    def quantities(self) -> dict[str, Quantity]:
-        """Constants of the tunnelling and the resistances."""
+    def report(self, force: Array, signal: Array) -> FilmReport:
+        """Constants of the tunnelling and the resistances, the resistance without the contacts, and the coefficients of creep."""
+        alone = 1 / signal - self.composite.contact_resistance / np.sqrt(force)
+        words = "the same without the contacts at the electrodes"
+        felt = force * self._magnification
+        coefficients = {name: getattr(self.composite, name).at(felt).tolist() for name in CREEP}
+        readings = {"reading_film_resistance": Quantity(alone.tolist(), "ohm", words)}
+        return FilmReport(self._constants(), readings, coefficients)
+
+    def _constants(self) -> dict[str, Quantity]:
         composite = self.composite
         separation = particle_separation(composite.particle_diameter, composite.volume_fraction)
         initial = composite.initial_resistance * self._magnification

@@ -12,6 +12,7 @@ from scipy.stats import linregress
 from tactsim.array import Array
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.any_film import AnyFilm
@@ -87,14 +88,15 @@ class FilmTest(Experiment):
             reached = (forces[j], times[i], *(values[i, j] for values in shown.values()))
             steps.append(StepRecord(number, 0, 0.0, dict(zip(units, map(float, reached), strict=True))))
         read = self.film.read([0.0, self.reading_time], np.tile(forces, (2, 1)))[-1]
+        report = self.film.report(forces, read)
         return Course.computed(
             Findings(
                 "all forces held",
                 steps,
-                quantities=self.film.quantities() | self._readings(times, signal) | self._at_reading(forces, read),
+                quantities={**report.constants, **self._readings(times, signal), **self._at_reading(forces, read, report)},
                 assumptions=self.film.assumptions(),
                 warnings=self.film.warnings(float(forces.max())),
-                scene=FilmTestScene(reading_time=self.reading_time, coefficients=self._coefficients(forces)),
+                scene=FilmTestScene(reading_time=self.reading_time, coefficients=report.coefficients),
                 units=units,
             )
         )
@@ -116,7 +118,7 @@ class FilmTest(Experiment):
         told = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
         return found | told
 
-    def _at_reading(self, forces: Array, read: Array) -> dict[str, Quantity]:
+    def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""
         fit, symbol = linregress(forces, read), self.film.signal
         slope, intercept = float(fit.slope), float(fit.intercept)
@@ -126,7 +128,7 @@ class FilmTest(Experiment):
             for name, values in self._shown(read).items()
             if name != "conductance"
         }
-        found |= self._film_alone(forces, read)
+        found |= report.readings
         words = f"m of the least-squares line of the {symbol}, C = m F + n, at the reading time"
         found["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
         found["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
@@ -134,19 +136,3 @@ class FilmTest(Experiment):
             words = f"largest {sign} error of the force that the line reads, over the largest force"
             found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
         return found
-
-    def _film_alone(self, forces: Array, read: Array) -> dict[str, Quantity]:
-        """What a film of composite has without its electrodes."""
-        if not isinstance(self.film, Film):
-            return {}
-        alone = 1 / read - self.film.composite.contact_resistance / np.sqrt(forces)
-        return {"reading_film_resistance": Quantity(alone.tolist(), "ohm", "the same without the contacts at the electrodes")}
-
-    def _coefficients(self, forces: Array) -> dict[str, list[float]] | None:
-        """Coefficients of the creep of a film of composite at each force."""
-        if not isinstance(self.film, Film):
-            return None
-        composite = self.film.composite
-        felt = forces * composite.magnification(self.film.active_area)
-        names = ("instantaneous", "delayed", "viscosity")
-        return {name: getattr(composite, name).at(felt).tolist() for name in names}

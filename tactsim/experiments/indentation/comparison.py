@@ -19,7 +19,7 @@ class Comparison:
         specimen, radius = setup.specimen, setup.contact_radius
         self._annulus = ViscoelasticAnnulus(
             outer_radius=radius,
-            radius_ratio=float(getattr(setup.body, "inner_radius", 0.0)) / radius,
+            radius_ratio=setup.body.contact_shape.hole / radius,
             shear_compliance=shear_compliance(specimen.material),
             radius_over_thickness=radius / specimen.thickness if drive.compare == "layer" else 0.0,
             base="bonded" if specimen.base == "fixed" else "slipping",

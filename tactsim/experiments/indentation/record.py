@@ -240,22 +240,22 @@ def history_units(*, clock: bool, space: bool) -> dict[str, str]:
 
 def contact_oddities(setup: IndentationSetup) -> list[str]:
     """What in the case looks like a wrong unit."""
-    specimen, body = setup.specimen, setup.body
+    specimen, shape = setup.specimen, setup.body.contact_shape
     layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(specimen.layers)}
     materials = {f"{name}.material": layer.material for name, layer in layers.items()} | {"specimen.material": specimen.material}
     tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
     tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
-    bodies = {f"body.{name}": getattr(body, name) for name in ("radius", "inner_radius", "outer_radius") if hasattr(body, name)}
+    bodies = {f"body.{name}": radius for name, radius in shape.radii.items()}
     return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
 
 
 def contact_assumptions(setup: IndentationSetup) -> list[str]:
     """What the thesis does not print and every case with contact chose."""
-    specimen = setup.specimen
+    specimen, fillet = setup.specimen, setup.body.contact_shape.fillet
     radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
     told = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
-    if hasattr(setup.body, "fillet"):
-        told.append(f"edges of the body filleted by {format_quantity(setup.body.fillet, 'm')} (not printed)")
+    if fillet is not None:
+        told.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} (not printed)")
     if any(material.bulk_modulus is None for material in specimen.materials):
         told.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
     told.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")

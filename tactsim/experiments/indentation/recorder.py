@@ -42,10 +42,10 @@ class IndentationRecorder(Recorder):
 
     def labels(self, experiment: Any) -> Values:
         """Values of the same."""
-        body, recess = experiment.body, experiment.recess
+        shape, recess = experiment.body.contact_shape, experiment.recess
         told = (
-            getattr(body, "inner_radius", 0.0),
-            getattr(body, "outer_radius", getattr(body, "radius", np.nan)),
+            shape.hole,
+            np.nan if shape.radius is None else shape.radius,
             np.nan if recess is None else recess,
             experiment.specimen.thickness,
             experiment.specimen.material.shear_modulus,

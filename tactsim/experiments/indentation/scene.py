@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+from tactsim.contact.tilted import Tilted
 from tactsim.interfaces import RigidBody
 from tactsim.registry import Registered
 from tactsim.results.scene import Scene, SolverReport
@@ -42,6 +43,8 @@ class Indentation3dScene(PressedBodyScene):
     """An indentation in three dimensions."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"
+    body: Tilted
+    """The body as it leans."""
     symmetry: Literal["quarter", "half", "whole"]
     """Part of the specimen that was computed."""
     offset: float

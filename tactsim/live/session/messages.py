@@ -12,7 +12,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import TactsimError
-from tactsim.experiments.localization.figures.views import ESTIMATE, colour_table
+from tactsim.experiments.grasp.figures.views import ESTIMATE, colour_table
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.session.estimating import shown_signal

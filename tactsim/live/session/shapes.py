@@ -9,7 +9,7 @@ from contourpy import contour_generator
 
 from tactsim.array import Array
 from tactsim.errors import InputError, TactsimError
-from tactsim.experiments.localization.figures.parts import outline
+from tactsim.experiments.grasp.figures.viewed import outline
 from tactsim.interfaces.solid import Solid
 from tactsim.live.sources.scene import PageScene
 from tactsim.localization.views import AWAY

@@ -13,8 +13,8 @@ from tactsim.experiments.grasp.figures.parts import loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, grasp_view
-from tactsim.experiments.localization.figures.parts import has_views
-from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.experiments.grasp.figures.viewed import has_views, viewed
+from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
 from tactsim.plotting.failure import mark_failure
@@ -41,8 +41,8 @@ class GraspFigures(ResultFigures):
         if has_history(result):
             drawings["grasp_history.png"] = lambda: png(history_figure(result))
         if has_views(result):
-            drawings[VIEWS] = lambda: png(views_figure(moment))
-            drawings[VIEWS_PRESSURE] = lambda: png(views_figure(moment, "pressure"))
+            drawings[VIEWS] = lambda: png(views_figure(viewed(moment), result.title))
+            drawings[VIEWS_PRESSURE] = lambda: png(views_figure(viewed(moment), result.title, "pressure"))
         if has_voltages(result):
             drawings[VOLTAGES] = lambda: png(voltages_figure(result))
         if result.frames:

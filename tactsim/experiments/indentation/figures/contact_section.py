@@ -59,7 +59,7 @@ def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[
 
 def _window(section: Section, body: RigidBody, height: float) -> tuple[float, float, float]:
     """Half width, bottom and top of the picture in mm."""
-    radius = 1e3 * float(getattr(body, "outer_radius", getattr(body, "radius", np.inf)))
+    radius = 1e3 * body.contact_shape.reach
     widest = float(section.places[:, 0].max())
     half = min(1.03 * widest, SHOWN_RADII * radius)
     bottom, top = max(section.places[:, 1].min(), -half), section.places[section.places[:, 0] <= half, 1].max()
@@ -69,8 +69,8 @@ def _window(section: Section, body: RigidBody, height: float) -> tuple[float, fl
 
 def _draw_sensor(axis: Axes, scene: PressedBodyScene, height: float) -> None:
     """The inner sensor's plane across the hole."""
-    recess, inner = scene.recess, getattr(scene.body, "inner_radius", None)
-    if recess is None or inner is None:
+    recess, inner = scene.recess, scene.body.contact_shape.hole
+    if recess is None or not inner:
         return
     level, edge = height + 1e3 * recess, 1e3 * inner
     axis.plot([-edge, edge], [level, level], color=SENSOR_COLOUR, linewidth=1.8, zorder=4)

@@ -10,6 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
+from tactsim.contact.tilted import Tilted
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, SHOWN_RADII
 from tactsim.experiments.indentation.figures.section import Section
 from tactsim.experiments.indentation.scene import Indentation3dScene
@@ -44,8 +45,7 @@ def draw_cut(axis: Axes, result: Result) -> None:
     frame = result.frames[-1]
     section = Section(cut(frame))
     scene = result.scene_as(Indentation3dScene)
-    body: Any = scene.body
-    height = 1e3 * (scene.starting_height - frame.time)
+    body, height = scene.body, 1e3 * (scene.starting_height - frame.time)
     sides = (-1.0, 1.0) if scene.symmetry == "quarter" else (1.0,)
     limits = _window(section, body, height, mirrored=len(sides) > 1)
     _draw_pressure(axis, section, sides, limits)
@@ -69,10 +69,10 @@ def _in_plane(points: Array) -> Array:
     return np.stack([points[:, 0], points[:, 2], np.zeros(len(points))], axis=1)
 
 
-def _window(section: Section, body: Any, height: float, *, mirrored: bool) -> tuple[tuple[float, float], tuple[float, float]]:
+def _window(section: Section, body: Tilted, height: float, *, mirrored: bool) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits in mm of the picture along x and z."""
     x, z = section.places.T
-    radius = 1e3 * float(getattr(body.body, "outer_radius", getattr(body.body, "radius", np.inf)))
+    radius = 1e3 * body.contact_shape.reach
     right = min(1.03 * float(x.max()), SHOWN_RADII * radius)
     left = -right if mirrored else max(1.03 * float(x.min()), -SHOWN_RADII * radius)
     deepest = max(float(z.min()), -SHOWN_RADII * radius)
@@ -99,10 +99,10 @@ def _draw_pressure(axis: Axes, section: Section, sides: tuple[float, ...], limit
     bar.outline.set_linewidth(0.5)
 
 
-def _draw_sensor(axis: Axes, recess: float | None, body: Any, height: float) -> None:
+def _draw_sensor(axis: Axes, recess: float | None, body: Tilted, height: float) -> None:
     """The inner sensor's plane across the hole."""
-    inner = getattr(body.body, "inner_radius", None)
-    if recess is None or inner is None:
+    inner = body.contact_shape.hole
+    if recess is None or not inner:
         return
     ends = body.rotation @ np.array([[-inner, inner], [0.0, 0.0], [recess, recess]])
     axis.plot(1e3 * ends[0], 1e3 * ends[2] + height, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tactsim.experiments.localization.figures.parts import has_views
+from tactsim.experiments.grasp.figures.viewed import has_views
+from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.figures.space import SPACE, space_view
-from tactsim.experiments.localization.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import png
 from tactsim.results import Result
@@ -21,7 +22,7 @@ class LocalizationFigures(ResultFigures):
         """``views.png``, ``views_pressure.png`` and ``space.png``; the last needs a renderer."""
         if not has_views(result):
             return {}
-        drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(result))}
-        drawings[VIEWS_PRESSURE] = lambda: png(views_figure(result, "pressure"))
+        drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(localized(result), result.title))}
+        drawings[VIEWS_PRESSURE] = lambda: png(views_figure(localized(result), result.title, "pressure"))
         drawings[SPACE] = lambda: space_view(result)
         return drawings

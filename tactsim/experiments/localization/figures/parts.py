@@ -1,123 +1,50 @@
-"""What the three views of a result show: the signal of the taxels, where they lie, the true and the estimated inclusions."""
+"""What the figures of a localization show: the grasp that was read, with the estimated inclusions and what was found."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.errors import TactsimError
-from tactsim.experiments.grasp.scene import GraspScene
-from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
-from tactsim.interfaces import Inclusion
-from tactsim.interfaces.readings import shown_change
-from tactsim.interfaces.solid import Solid
-from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
+from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.localization.views import AWAY
-from tactsim.mesh.inclusions.sphere import Sphere
-from tactsim.mesh.inclusions.tube import Tube
 from tactsim.results import Result
 
-SAMPLES = 40
-"""Points along each side of an inclusion's bounds from which its outline in a view is traced."""
 NO_LINE = [[np.nan] * 3] * 2
 
 
-@dataclass(frozen=True, eq=False)
-class ViewedGrasp:
-    """What is drawn.
-
-    Attributes
-    ----------
-    scene : block, jaws and true inclusions
-    signal : (jaw, row, column) in N
-    meaning : what the signal is, in words
-    valid : (jaw, row, column), False for interpolated taxels
-    true : bodies of the true inclusions
-    estimates : (n, 3) of estimated centres in m
-    radii : (n,) of estimated radii in m, NaN where there is none
-    lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
-    regions : by the axis of the view, closed lines (m, 2) in mm around where the estimated centres lie with a probability of 90 %
-    """
-
-    scene: GraspScene
-    signal: Array
-    meaning: str
-    valid: Array
-    true: tuple[Solid, ...]
-    estimates: Array
-    radii: Array
-    lines: Array
-    regions: dict[int, list[Array]]
-
-
-def has_views(result: Result) -> bool:
-    """Whether a result has taxels."""
-    return "taxel_force_upper" in result.quantities
-
-
-def viewed(result: Result) -> ViewedGrasp:
-    """The grasp or localization that a result describes; with a reference, what the taxels read beyond it."""
-    scene = result.scene_as(GraspScene)
-    name = "taxel_difference" if "taxel_difference_upper" in result.quantities else "taxel_force"
-    signal, meaning = np.array([result.quantities[f"{name}_{side}"].array for side in JAWS]), "force"
-    if name == "taxel_difference":
-        signal, meaning = shown_change(signal)
-    estimates: tuple[EstimatedShape, ...] = ()
-    valid = np.ones(signal.shape, bool)
-    if isinstance(scene, LocalizedGrasp):
-        estimates, valid = scene.estimates, valid if scene.valid is None else np.array(scene.valid)
-    return ViewedGrasp(
-        scene,
-        signal,
-        meaning,
-        valid,
-        tuple(_bodies(scene)),
-        np.array([found.center for found in estimates], dtype=float).reshape(-1, 3),
-        np.array([np.nan if found.radius is None else found.radius for found in estimates], dtype=float),
-        np.array([found.line or NO_LINE for found in estimates], dtype=float).reshape(-1, 2, 3),
-        {
-            away: [1e3 * np.array(line) for found in estimates for line in (found.region or {}).get(view, ())]
+def localized(result: Result) -> ViewedGrasp:
+    """The grasp that was read, with the estimates."""
+    grasp, scene = viewed(result), result.scene_as(LocalizedGrasp)
+    centers = np.array([found.center for found in scene.estimates], dtype=float).reshape(-1, 3)
+    return replace(
+        grasp,
+        valid=grasp.valid if scene.valid is None else np.array(scene.valid),
+        estimates=centers,
+        radii=np.array([np.nan if found.radius is None else found.radius for found in scene.estimates], dtype=float),
+        lines=np.array([found.line or NO_LINE for found in scene.estimates], dtype=float).reshape(-1, 2, 3),
+        regions={
+            away: [1e3 * np.array(line) for found in scene.estimates for line in (found.region or {}).get(view, ())]
             for view, away in AWAY.items()
         },
+        findings=_findings(centers, result) if "present" in result.quantities else grasp.findings,
     )
 
 
-def _bodies(scene: GraspScene) -> Iterator[Solid]:
-    """Bodies of the inclusions that are not tissue themselves; one whose surface file is not at hand is left out."""
-    for shape in scene.true_inclusions:
-        try:
-            yield shape.solids(scene.size)[0]
-        except (TactsimError, OSError):
-            continue
-
-
-def estimated_bodies(grasp: ViewedGrasp, unknown: float | None = None) -> Iterator[Solid]:
-    """Balls and tubes as estimated; one of unknown radius is a ball of the radius ``unknown`` in m, or left out."""
-    for center, radius, line in zip(grasp.estimates, grasp.radii, grasp.lines, strict=True):
-        size = float(radius) if np.isfinite(radius) else unknown
-        if size is None:
-            continue
-        x, y, z = map(float, center)
-        body: Inclusion = Sphere(center=(x, y, z), radius=size)
-        if np.isfinite(line).all():
-            first, last = (tuple(map(float, end)) for end in line)
-            body = Tube(centre_line=(first, last), inner_radius=size / 2, wall=size / 2)
-        yield body.solids(grasp.scene.size)[0]
-
-
-def outline(body: Solid, size: Array, away: int) -> tuple[Array, Array, Array]:
-    """Outline of a body in the block, seen along the axis ``away``: where the last of three arrays is zero.
-
-    Coordinates in mm along the other two axes, and least distance (second, first) in m from the body, negative where it lies.
-    """
-    low, high = np.clip(body.bounds(), 0.0, size)
-    step = (high - low) / SAMPLES
-    grid = [low[k] + step[k] * np.arange(-1.5, SAMPLES + 1.5) for k in range(3)]
-    points = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1)
-    beyond_block = (np.abs(points - size / 2) - size / 2).max(axis=-1)
-    distance = np.maximum(body.signed_distance(points.reshape(-1, 3)).reshape(points.shape[:3]), beyond_block)
-    first, second = (k for k in range(3) if k != away)
-    return 1e3 * grid[first], 1e3 * grid[second], distance.min(axis=away).T
+def _findings(centers: Array, result: Result) -> tuple[str, ...]:
+    """What was found in words, of estimates centred at ``centers`` (n, 3) in m."""
+    quantities = result.quantities
+    if not quantities["present"].value:
+        return ("Nothing there.",)
+    places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in centers]
+    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    told += [f"Estimated at {place}" for place in places]
+    if "center_deviation" in quantities:
+        deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
+        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+    if "lateral_error" in quantities:
+        lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
+        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+    return tuple(told)

@@ -18,7 +18,8 @@ from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
 from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
-from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, viewed
+from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies
+from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
@@ -52,7 +53,7 @@ def space_view(result: Result) -> bytes:
 
 def space_figure(result: Result) -> Figure:
     """What is truly there beside what was found, in the undeformed tissue, seen from the front, right and above."""
-    shown = viewed(result)
+    shown = localized(result)
     grasp = _grasp(shown)
     outside = [_tissue(shown.scene.size), *(surface for side in JAWS for surface in jaw_surfaces(grasp, side))]
     scenes = {"true inclusions": list(_true(shown)), "estimated inclusions": list(_estimated(shown))}

@@ -8,8 +8,9 @@ from scenes import grasp_scene
 
 from tactsim.case.loading import load_case
 from tactsim.errors import CaseError, InputError, StorageError
-from tactsim.experiments.localization.figures.parts import outline, viewed
-from tactsim.experiments.localization.figures.views import VIEWS, views_figure
+from tactsim.experiments.grasp.figures.viewed import outline
+from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
+from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.localization import Localization
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
@@ -90,7 +91,7 @@ def test_plain_tissue_has_nothing_in_it(folders):
 
 def test_the_views_show_the_true_and_the_estimated_place(folders):
     result = run(folders)
-    grasp_seen = viewed(result)
+    grasp_seen = localized(result)
     np.testing.assert_allclose(grasp_seen.signal, BALL, atol=1e-12)
     np.testing.assert_allclose(grasp_seen.estimates[0], value(result, "estimated_center"))
     first, second, distance = outline(grasp_seen.true[0], SIZE, away=1)
@@ -99,7 +100,7 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     within = 1e3 * np.array([SPHERE.center[0], SPHERE.center[2]])
     covered = np.hypot(first[None] - within[0], second[:, None] - within[1]) < 4.9
     assert (distance[covered] < 0).all()
-    figure = views_figure(result)
+    figure = views_figure(localized(result), result.title)
     titles = [axis.get_title(loc="left") for axis in figure.axes]
     assert sum("view" in title for title in titles) == 3
     front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))

@@ -17,11 +17,11 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.localization.figures.parts import ViewedGrasp, estimated_bodies, outline, viewed
+from tactsim.experiments.grasp.figures.parts import LETTERS
+from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies, outline
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
-from tactsim.results import Result
 
 VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
 Shown = Literal["force", "pressure"]
@@ -36,7 +36,6 @@ REGION_DASHES: Any = (0, (1.5, 1.5))
 """Of the line around where an estimated centre may lie."""
 INK, GREY = "#30363d", "#57606a"
 ESTIMATE = "#d1242f"
-LETTERS = {"upper": "U", "lower": "L"}
 MOST_NAMED = 8
 """Taxels along a jaw up to which each is numbered."""
 
@@ -72,13 +71,12 @@ def colour_table(levels: int) -> list[int]:
     return np.round(255 * colormaps[COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
 
 
-def views_figure(result: Result, shown: Shown = "force") -> Figure:
+def views_figure(grasp: ViewedGrasp, title: str, shown: Shown = "force") -> Figure:
     """The top view above the front view, the left view beside it; every picture has its colour scale.
 
     The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
-    grasp = viewed(result)
     found, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
     front = View(found.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
     left = View(found.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
@@ -90,8 +88,8 @@ def views_figure(result: Result, shown: Shown = "force") -> Figure:
         for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
             _draw(axis, view, grasp, shown)
         axes[1, 0].invert_xaxis()
-        _legend(axes[0, 0], grasp, result, shown)
-        entitle(figure, result.title or "Three views of the grasp")
+        _legend(axes[0, 0], grasp, shown)
+        entitle(figure, title or "Three views of the grasp")
     return figure
 
 
@@ -184,7 +182,7 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         first, second, distance = outline(body, grasp.scene.size, view.away)
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
         axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
-    for line in grasp.regions[view.away]:
+    for line in grasp.regions.get(view.away, ()):
         axis.plot(*line.T, color="w", linewidth=2.4, zorder=7)
         axis.plot(*line.T, color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, zorder=8)
     for center in 1e3 * grasp.estimates:
@@ -192,7 +190,7 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
 
 
-def _legend(axis: Axes, grasp: ViewedGrasp, result: Result, shown: Shown) -> None:
+def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
     """What the lines mean, and what was found."""
     axis.axis("off")
     added = "sums" if shown == "force" else "means"
@@ -212,26 +210,4 @@ def _legend(axis: Axes, grasp: ViewedGrasp, result: Result, shown: Shown) -> Non
         words = "its centre lies in here with a probability of 90 %"
         handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
     axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)
-    axis.text(0.0, 0.68, "\n".join(_findings(grasp, result)), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
-
-
-def _findings(grasp: ViewedGrasp, result: Result) -> list[str]:
-    quantities = result.quantities
-    if "present" not in quantities:
-        return [
-            "Thesis 6.3 on the bare forces: plain tissue, too, is bright",
-            "in the middle, and shows a row of maxima in the top view.",
-            "Pictures reach from centre to centre of the outer taxels.",
-        ]
-    if not quantities["present"].value:
-        return ["Nothing there."]
-    places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in grasp.estimates]
-    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
-    told += [f"Estimated at {place}" for place in places]
-    if "center_deviation" in quantities:
-        deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
-        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
-    if "lateral_error" in quantities:
-        lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
-    return told
+    axis.text(0.0, 0.68, "\n".join(grasp.findings), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)

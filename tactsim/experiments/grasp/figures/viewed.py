@@ -1,0 +1,110 @@
+"""What the three views of a grasp show: the signal of the taxels, where they lie, true inclusions, and estimates if there are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces import Inclusion
+from tactsim.interfaces.readings import shown_change
+from tactsim.interfaces.solid import Solid
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
+from tactsim.results import Result
+
+SAMPLES = 40
+"""Points along each side of an inclusion's bounds from which its outline in a view is traced."""
+BARE_FORCES = (
+    "Thesis 6.3 on the bare forces: plain tissue, too, is bright",
+    "in the middle, and shows a row of maxima in the top view.",
+    "Pictures reach from centre to centre of the outer taxels.",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ViewedGrasp:
+    """What is drawn.
+
+    Attributes
+    ----------
+    scene : block, jaws and true inclusions
+    signal : (jaw, row, column) in N
+    meaning : what the signal is, in words
+    valid : (jaw, row, column), False for interpolated taxels
+    true : bodies of the true inclusions
+    estimates : (n, 3) of estimated centres in m
+    radii : (n,) of estimated radii in m, NaN where there is none
+    lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
+    regions : by the axis of the view, closed lines (m, 2) in mm around where the estimated centres lie with a probability of 90 %
+    findings : lines of text on what was found
+    """
+
+    scene: GraspScene
+    signal: Array
+    meaning: str
+    valid: Array
+    true: tuple[Solid, ...]
+    estimates: Array = field(default_factory=lambda: np.empty((0, 3)))
+    radii: Array = field(default_factory=lambda: np.empty(0))
+    lines: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
+    regions: Mapping[int, list[Array]] = field(default_factory=dict)
+    findings: tuple[str, ...] = BARE_FORCES
+
+
+def has_views(result: Result) -> bool:
+    """Whether a result has taxels."""
+    return "taxel_force_upper" in result.quantities
+
+
+def viewed(result: Result) -> ViewedGrasp:
+    """The grasp that a result describes; with a reference, what the taxels read beyond it."""
+    scene = result.scene_as(GraspScene)
+    name = "taxel_difference" if "taxel_difference_upper" in result.quantities else "taxel_force"
+    signal, meaning = np.array([result.quantities[f"{name}_{side}"].array for side in JAWS]), "force"
+    if name == "taxel_difference":
+        signal, meaning = shown_change(signal)
+    return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(_bodies(scene)))
+
+
+def _bodies(scene: GraspScene) -> Iterator[Solid]:
+    """Bodies of the inclusions that are not tissue themselves; one whose surface file is not at hand is left out."""
+    for shape in scene.true_inclusions:
+        try:
+            yield shape.solids(scene.size)[0]
+        except (TactsimError, OSError):
+            continue
+
+
+def estimated_bodies(grasp: ViewedGrasp, unknown: float | None = None) -> Iterator[Solid]:
+    """Balls and tubes as estimated; one of unknown radius is a ball of the radius ``unknown`` in m, or left out."""
+    for center, radius, line in zip(grasp.estimates, grasp.radii, grasp.lines, strict=True):
+        size = float(radius) if np.isfinite(radius) else unknown
+        if size is None:
+            continue
+        x, y, z = map(float, center)
+        body: Inclusion = Sphere(center=(x, y, z), radius=size)
+        if np.isfinite(line).all():
+            first, last = (tuple(map(float, end)) for end in line)
+            body = Tube(centre_line=(first, last), inner_radius=size / 2, wall=size / 2)
+        yield body.solids(grasp.scene.size)[0]
+
+
+def outline(body: Solid, size: Array, away: int) -> tuple[Array, Array, Array]:
+    """Outline of a body in the block, seen along the axis ``away``: where the last of three arrays is zero.
+
+    Coordinates in mm along the other two axes, and least distance (second, first) in m from the body, negative where it lies.
+    """
+    low, high = np.clip(body.bounds(), 0.0, size)
+    step = (high - low) / SAMPLES
+    grid = [low[k] + step[k] * np.arange(-1.5, SAMPLES + 1.5) for k in range(3)]
+    points = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1)
+    beyond_block = (np.abs(points - size / 2) - size / 2).max(axis=-1)
+    distance = np.maximum(body.signed_distance(points.reshape(-1, 3)).reshape(points.shape[:3]), beyond_block)
+    first, second = (k for k in range(3) if k != away)
+    return 1e3 * grid[first], 1e3 * grid[second], distance.min(axis=away).T
