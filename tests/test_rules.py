@@ -19,7 +19,7 @@ MOST_POSITIONAL, MOST_METHODS = 5, 10
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 ENGINE = tuple(f"tactsim/{room}/" for room in ("analytic", "contact", "fem", "identification", "materials", "mesh", "sensors"))
-HOUSEHOLD = {"told", "_told"}
+HOUSEHOLD = {"told", "_told", "WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push"}
 """Names that say nothing in the rooms of the engine, where the field has a word."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {

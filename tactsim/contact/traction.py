@@ -111,7 +111,7 @@ class ContactPair:
     unknowns of Newton, updated by their linearisation and condensed point by point (the mixed integration point
     method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
     against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
-    doi:10.1137/060671061). ``grip`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
+    doi:10.1137/060671061). ``friction_mask`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
     ``held_limit`` (n,) in Pa, if given, limits the tangential traction independently of the pressure (Tresca friction).
     """
 
@@ -120,7 +120,7 @@ class ContactPair:
     penalty: Array | float = 1.0
     tangential_penalty: Array | float = 1.0
     switch_stiffness: float = 1.0
-    grip: Array | float = 1.0
+    friction_mask: Array | float = 1.0
     held_limit: Array | None = None
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
@@ -131,10 +131,10 @@ class ContactPair:
         """Largest tangential traction (n,) in Pa under pressures (n,) in Pa."""
         if self.held_limit is not None:
             return self.held_limit
-        return np.where(self.grip == 0, 0.0, self.law.traction_limit(pressure))
+        return np.where(self.friction_mask == 0, 0.0, self.law.traction_limit(pressure))
 
     @property
-    def rubs(self) -> bool:
+    def has_friction(self) -> bool:
         """Whether friction may act at any point."""
         return bool(self.traction_limit(np.ones(1)).any())
 
@@ -142,7 +142,7 @@ class ContactPair:
         """Derivative (n,) of the limit with respect to the pressure, dimensionless."""
         if self.held_limit is not None:
             return np.zeros_like(pressure)
-        return self.grip * self.law.traction_limit_slope(pressure)
+        return self.friction_mask * self.law.traction_limit_slope(pressure)
 
     def with_held_limit(self, pressure: Array) -> ContactPair:
         """The same pair with the limits at pressures (n,) in Pa kept whatever the pressure becomes."""

@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.balance import Balance, ExternalForces, NewtonState, Scales, point_displacements
-from tactsim.fem.body import Body, Kinematics, PastStress
+from tactsim.fem.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
@@ -84,9 +84,9 @@ class Problem:
         interfaces: Sequence[AnyInterface] = (),
         loads: Sequence[FollowerLoad] = (),
         nodal_force: Array | None = None,
-        push: PrescribedForce | None = None,
+        load_control: PrescribedForce | None = None,
         travel: float = 0.0,
-        past: PastStress | None = None,
+        relaxation: RelaxationStep | None = None,
         coarse: float = 0.0,
     ) -> Equilibrium:
         """Equilibrium nearest to the guess, which holds the prescribed values.
@@ -95,9 +95,9 @@ class Problem:
         ----------
         guess : (size,) unknowns
         interfaces, loads, nodal_force : what acts on the body; nodal forces (size,) in N
-        push : load control: the force that the interfaces must exert, if it is prescribed instead of their displacement
+        load_control : the force that the interfaces must exert, if it is prescribed instead of their displacement
         travel : first guess of their displacement in m under load control
-        past : history variables of materials that relax
+        relaxation : coefficients of the time step of materials that relax
         coarse : a residual that suffices, if it is above the tolerance of the options
 
         Raises
@@ -107,16 +107,16 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        body = self.body if past is None else self.body.with_past(past)
-        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, push)
+        body = self.body if relaxation is None else self.body.with_relaxation(relaxation)
+        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
         balance = Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
         return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(guess.copy(), travel)
 
     def displacements(
-        self, unknowns: Array, interfaces: Sequence[AnyInterface], push: PrescribedForce | None, travel: float
+        self, unknowns: Array, interfaces: Sequence[AnyInterface], load_control: PrescribedForce | None, travel: float
     ) -> list[Array]:
         """Displacement (d, n) in m of the points of each interface, relative to its travel under load control."""
-        return point_displacements(self.body, unknowns, interfaces, push, travel)
+        return point_displacements(self.body, unknowns, interfaces, load_control, travel)
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import numpy as np
 
 from tactsim.analytic.histories import History, Segment
 from tactsim.array import Array
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
+from tactsim.fem.history_variables import HistoryVariables, elastic_stress, series_of, step_error
 from tactsim.fem.loading import Event, PathFollower, StepControl
-from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
 from tactsim.fem.progress import check_steps
 from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -94,7 +94,7 @@ class Answer(Protocol):
         """The body that deforms."""
 
     def equilibrium(
-        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, past: PastStress | None
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; raises ConvergenceError.
 
@@ -117,20 +117,20 @@ class Pace(Protocol):
 
 @dataclass(frozen=True)
 class TimedState:
-    """An accepted state at a time in s; ``loads`` are prescribed. ``memory`` is None if nothing relaxes."""
+    """An accepted state at a time in s; ``loads`` are prescribed. ``history_variables`` is None if nothing relaxes."""
 
     time: float
     loads: tuple[float, ...]
     contact: ContactEquilibrium
-    memory: Memory | None
-    past: PastStress | None = None
+    history_variables: HistoryVariables | None
+    relaxation: RelaxationStep | None = None
     """What the step that led here remembered."""
 
     @classmethod
     def at_rest(cls, body: Body, contact: ContactEquilibrium, count: int) -> TimedState:
         """The beginning: ``count`` prescribed values that are zero."""
         series = series_of(body)
-        return cls(0.0, (0.0,) * count, contact, None if series is None else Memory.at_rest(body, series))
+        return cls(0.0, (0.0,) * count, contact, None if series is None else HistoryVariables.at_rest(body, series))
 
     @property
     def unknowns(self) -> Array:
@@ -205,8 +205,8 @@ class TimedPath:
         def advance(now: TimedState, time: float, guess: Array) -> TimedState:
             return self._reached(now, time, stretch.at(time), guess)
 
-        if start.memory is not None:
-            start = replace(start, memory=start.memory.at_kink())
+        if start.history_variables is not None:
+            start = replace(start, history_variables=start.history_variables.at_slope_change())
         marcher = TimeMarcher(advance, self._error, self._pace.control(stretch))
         stops, largest = self._pace.stops(stretch), self._pace.largest(stretch)
         for state, happened in marcher.march(start, stops, largest=largest, event=event):
@@ -217,16 +217,16 @@ class TimedPath:
     def _reached(self, now: TimedState, time: float, loads: tuple[float, ...], guess: Array) -> TimedState:
         """The equilibrium at a time and prescribed values."""
         step = time - now.time
-        past = None if now.memory is None else now.memory.past(step)
-        contact = self._answer.equilibrium(now.contact, loads, guess, past)
-        memory = None
-        if now.memory is not None:
-            memory = now.memory.advanced(elastic_stress(self._answer.body, contact.kinematics), step)
-        return TimedState(time, loads, contact, memory, past)
+        relaxation = None if now.history_variables is None else now.history_variables.relaxation_step(step)
+        contact = self._answer.equilibrium(now.contact, loads, guess, relaxation)
+        history_variables = None
+        if now.history_variables is not None:
+            history_variables = now.history_variables.advanced(elastic_stress(self._answer.body, contact.kinematics), step)
+        return TimedState(time, loads, contact, history_variables, relaxation)
 
     def _error(self, state: TimedState) -> float:
         """Estimated relative error of the stress."""
-        return 0.0 if state.memory is None else step_error(self._answer.body, state.memory)
+        return 0.0 if state.history_variables is None else step_error(self._answer.body, state.history_variables)
 
 
 @dataclass(frozen=True)

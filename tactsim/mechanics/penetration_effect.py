@@ -1,7 +1,7 @@
 r"""How much force the penetration that is left costs, from what the contact itself knows.
 
-The solution with penetration is the exact contact of a body whose surface is set back by the penetration, and whose grip is set
-back by the way that points crept along it. By reciprocity for the next increment of the motion d (Betti 1872),
+The solution with penetration is the exact contact of a body whose surface is set back by the penetration, and whose sticking
+points are set back by the distance that they crept along it. By reciprocity for the next increment of the motion d (Betti 1872),
 
 .. math:: F_{exact} - F = \int \delta \frac{\partial p}{\partial d} - s \cdot \frac{\partial \tau}{\partial d}\, dA
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from tactsim.array import Array
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.pressure import FollowerPressure
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -26,7 +26,7 @@ class Pressed(Protocol):
         guess: Array,
         *,
         force: float | None = None,
-        past: PastStress | None = None,
+        relaxation: RelaxationStep | None = None,
         loads: Sequence[FollowerLoad] = (),
     ) -> ContactEquilibrium:
         """The equilibrium at a travel ``load`` in m, or on from there until the bodies press with a ``force`` in N."""
@@ -62,7 +62,7 @@ class PressedBody:
         return self._model.body
 
     def equilibrium(
-        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, past: PastStress | None
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; bodies without a force stay where they are.
 
@@ -76,8 +76,8 @@ class PressedBody:
             unknowns = guess[:-1]
             if self._first_guess is not None and loads[0] > now.load and not now.unknowns.any():
                 unknowns = self._first_guess(loads[0])
-            return model.equilibrium(now, loads[0], unknowns, past=past, loads=pressures)
+            return model.equilibrium(now, loads[0], unknowns, relaxation=relaxation, loads=pressures)
         if loads[0] == 0:
-            return model.equilibrium(now, now.load, guess[:-1], past=past, loads=pressures)
+            return model.equilibrium(now, now.load, guess[:-1], relaxation=relaxation, loads=pressures)
         travel = guess[-1] if guess[-1] > 0 else self._first_travel
-        return model.equilibrium(now, travel, guess[:-1], force=loads[0], past=past, loads=pressures)
+        return model.equilibrium(now, travel, guess[:-1], force=loads[0], relaxation=relaxation, loads=pressures)
