@@ -73,7 +73,7 @@ class ContactTraction:
 
     def commit(self, before: ContactState, pair: ContactPair) -> ContactState:
         """The state that an accepted step from ``before`` leaves behind."""
-        crept = np.where(self.pressure > 0, before.crept + self._held_travel(before, pair), 0.0)
+        crept = np.where(self.pressure > 0, before.crept + self._sticking_displacement(before, pair), 0.0)
         return ContactState(self.pressure, self.tangential, self.points, self.normal, crept=crept)
 
     def iterate(self) -> ContactIterate:
@@ -82,16 +82,16 @@ class ContactTraction:
 
     def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
         """Distance (n,) in m that sticking points have moved along the body since a state."""
-        return np.asarray(np.linalg.norm(self._held_travel(state, pair), axis=0))
+        return np.asarray(np.linalg.norm(self._sticking_displacement(state, pair), axis=0))
 
-    def _held_travel(self, state: ContactState, pair: ContactPair) -> Array:
+    def _sticking_displacement(self, state: ContactState, pair: ContactPair) -> Array:
         """That displacement (d, n) in m, zero where a point does not stick."""
-        travel = self.points - state.points
-        along = np.einsum("in,in->n", self.normal, travel)
+        displacement = self.points - state.points
+        along = np.einsum("in,in->n", self.normal, displacement)
         held = (self.pressure > 0) & (
             np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * pair.traction_limit(self.pressure)
         )
-        return np.where(held, travel - along * self.normal, 0.0)
+        return np.where(held, displacement - along * self.normal, 0.0)
 
 
 @dataclass(frozen=True)
@@ -203,26 +203,27 @@ class ContactPair:
         )
         return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
 
-    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
+    def _decider(self, previous: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
         """Traction (d, n) whose size decides between stick and slip, and its derivative.
 
-        It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
+        It is the ``previous`` iterate's traction turned to the tangent plane, moved towards the elastic trial as the switch
+        stiffness weighs it.
         """
         share = np.minimum(1.0, self.switch_stiffness / self.tangential_penalty)
-        across = np.einsum("in,in->n", carried, normal)
-        plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
-        in_plane = carried - across * normal
+        across = np.einsum("in,in->n", previous, normal)
+        plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", previous, hessian)[None, :]
+        in_plane = previous - across * normal
         return in_plane + share * (trial - in_plane), (1 - share) * plane_slope + share * trial_slope
 
     def _elastic_trial(self, points: Array, normal: Array, hessian: Array, state: ContactState) -> tuple[Array, Array]:
         """Trial traction (d, n) if nothing slipped, and its derivative: the old one turned to the new tangent plane, minus
         the tangential penalty times the slip since then."""
         identity = np.eye(len(points))[:, :, None]
-        travel = points - state.points
-        along = np.einsum("in,in->n", normal, travel)
-        slip = travel - along * normal
+        displacement = points - state.points
+        along = np.einsum("in,in->n", normal, displacement)
+        slip = displacement - along * normal
         slip_slope = identity - normal[:, None] * normal[None, :]
-        slip_slope = slip_slope - along * hessian - normal[:, None] * np.einsum("in,ijn->jn", travel, hessian)[None, :]
+        slip_slope = slip_slope - along * hessian - normal[:, None] * np.einsum("in,ijn->jn", displacement, hessian)[None, :]
         old, both = state.tangential, normal + state.normals
         cosine = np.maximum(1.0 + np.einsum("in,in->n", normal, state.normals), 1e-3)
         out_of_plane = np.einsum("in,in->n", old, normal)

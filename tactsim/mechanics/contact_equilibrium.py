@@ -110,7 +110,7 @@ def _equilibrium(
         except ConvergenceError as error:
             error.solutions += iterations
             raise
-        load += solved.travel
+        load += solved.rigid_displacement
         contacts = _moved(before, load - state.load, directions, regularisation)
         iterations += solved.iterations
         if solved.iterations == 0:
@@ -145,19 +145,23 @@ def _solved(
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    begun, travel = contacts, 0.0
+    begun, rigid_displacement = contacts, 0.0
     for held_round in range(HELD_ROUNDS + 1):
         try:
-            return problem.solve(guess, interfaces=begun, load_control=load_control, travel=travel, **settings)
+            return problem.solve(
+                guess, interfaces=begun, load_control=load_control, rigid_displacement=rigid_displacement, **settings
+            )
         except ConvergenceError as stalled:
             if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
-        moves = problem.displacements(guess, contacts, load_control, travel)
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
         held = [contact.holding(move) for contact, move in zip(contacts, moves, strict=True)]
-        between = problem.solve(guess, interfaces=held, load_control=load_control, travel=travel, **settings)
-        guess, travel = between.unknowns, between.travel
-        moves = problem.displacements(guess, contacts, load_control, travel)
-        begun = [contact.resumed(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+        between = problem.solve(
+            guess, interfaces=held, load_control=load_control, rigid_displacement=rigid_displacement, **settings
+        )
+        guess, rigid_displacement = between.unknowns, between.rigid_displacement
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
     raise AssertionError("the last round returns or raises")
 
 

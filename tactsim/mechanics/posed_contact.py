@@ -61,15 +61,15 @@ class PosedContact:
             tangential = np.where(pressure > 0, tangential + way * self.growth.tangential, 0.0)
         return replace(self, state=replace(self.state, pressure=pressure, tangential=tangential, multiplier=pressure))
 
-    def resumed(self, now: ContactTraction) -> PosedContact:
-        """The pair for a solution that goes on from forces found already."""
+    def warm_started(self, now: ContactTraction) -> PosedContact:
+        """The pair for a solution whose first iterate has these forces."""
         return replace(self, begin=now.iterate())
 
     def holding(self, displacement: Array) -> PosedContact:
         """The pair with its forces and limits of friction at displacements (d, n) of the points: Newton starts from the forces,
         the limits stay."""
         now = self.at(displacement)
-        return replace(self.resumed(now), pair=self.pair.with_held_limit(now.pressure))
+        return replace(self.warm_started(now), pair=self.pair.with_held_limit(now.pressure))
 
     def augmented(self, now: ContactTraction, share: float = 1.0) -> PosedContact:
         """The pair before the step, with a ``share`` of the forces that were found for it in its multipliers."""
@@ -98,7 +98,7 @@ class PosedContact:
         """Newton starts from the forces of the last accepted step, or those of a solution to be made exact."""
         return self.pair.iterate(self.state) if self.begin is None else self.begin
 
-    def settled(self, displacement: Array) -> ContactIterate:
+    def iterate_at(self, displacement: Array) -> ContactIterate:
         """The forces that hold at displacements (d, n) of the points."""
         return self.at(displacement).iterate()
 
@@ -113,16 +113,16 @@ class PosedContact:
         lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
         return np.where((gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
 
-    def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
-        """Traction and derivative as the carried forces decide."""
-        return self.pair.linearised(self._points(displacement), self.state, carried)
+    def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
+        """Traction and derivative as the iterated forces decide."""
+        return self.pair.linearised(self._points(displacement), self.state, iterate)
 
-    def advanced(self, now: ContactTraction, carried: ContactIterate, step: Array, damping: float) -> ContactIterate:
-        """The carried forces after a damped step."""
+    def advanced(self, now: ContactTraction, iterate: ContactIterate, step: Array, damping: float) -> ContactIterate:
+        """The iterated forces after a damped step."""
         full = self.pair.advanced(now, step)
         return ContactIterate(
-            carried.pressure + damping * (full.pressure - carried.pressure),
-            carried.tangential + damping * (full.tangential - carried.tangential),
+            iterate.pressure + damping * (full.pressure - iterate.pressure),
+            iterate.tangential + damping * (full.tangential - iterate.tangential),
         )
 
     def _points(self, displacement: Array) -> Array:

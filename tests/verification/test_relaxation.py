@@ -90,12 +90,16 @@ class Block:
         if height is not None:
             self.place = height * np.eye(self.dim)[-1]
         contact = self.contact.moved(self.place, self.scale.applied(self.contact.pair))
-        travel = 0.0 if force is None else 1e-8
+        rigid_displacement = 0.0 if force is None else 1e-8
         relaxation = self.variables.relaxation_step(time_step)
         solved = self.problem.solve(
-            self.unknowns, interfaces=[contact], load_control=load_control, travel=travel, relaxation=relaxation
+            self.unknowns,
+            interfaces=[contact],
+            load_control=load_control,
+            rigid_displacement=rigid_displacement,
+            relaxation=relaxation,
         )
-        self.place = self.place - solved.travel * np.eye(self.dim)[-1]
+        self.place = self.place - solved.rigid_displacement * np.eye(self.dim)[-1]
         self._accept(solved, time_step)
         displacement = self.surface.points.interpolate(self.space.split(self.unknowns)[0])
         moved = contact.moved(self.place, contact.pair)
