@@ -26,14 +26,14 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.estimate import Estimate, told
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
-from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
 
-Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 
 class Localization(Experiment):
