@@ -69,9 +69,9 @@ def contact_equilibrium(
     try:
         return _equilibrium(problem, state, load, guess, **settings)
     except ConvergenceError as error:
-        if told := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
+        if collapsed := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
             raise Collapsed(
-                f"{told}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
+                f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
         raise
 

@@ -23,7 +23,7 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.estimate import Estimate, told
+from tactsim.interfaces.estimate import Estimate, inclusion_in_words
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
@@ -99,7 +99,7 @@ class Localization(Experiment):
             estimator=self.estimator.kind,
             noise=self.noise,
             valid=None if readings.valid is None else readings.valid.tolist(),
-            words=tuple(map(told, estimate.inclusions)),
+            words=tuple(map(inclusion_in_words, estimate.inclusions)),
         )
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:
