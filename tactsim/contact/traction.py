@@ -23,7 +23,7 @@ class ContactState:
     """What the last accepted step left at n surface points, in the body's frame.
 
     ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
-    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``crept`` (d, n)
+    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``creep`` (d, n)
     elastic slip in m since the point touched, summed over the steps in which friction held it; exact stick has none.
     """
 
@@ -32,7 +32,7 @@ class ContactState:
     points: Array
     normals: Array
     multiplier: Array | float = 0.0
-    crept: Array | float = 0.0
+    creep: Array | float = 0.0
 
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
@@ -48,7 +48,7 @@ class ContactState:
         if share < 1:
             pressure = share * pressure + (1 - share) * self.pressure
             tangential = share * tangential + (1 - share) * self.tangential
-        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.crept)
+        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.creep)
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class ContactTraction:
 
     def commit(self, before: ContactState, pair: ContactPair) -> ContactState:
         """The state that an accepted step from ``before`` leaves behind."""
-        crept = np.where(self.pressure > 0, before.crept + self._sticking_displacement(before, pair), 0.0)
-        return ContactState(self.pressure, self.tangential, self.points, self.normal, crept=crept)
+        creep = np.where(self.pressure > 0, before.creep + self._sticking_displacement(before, pair), 0.0)
+        return ContactState(self.pressure, self.tangential, self.points, self.normal, creep=creep)
 
     def iterate(self) -> ContactIterate:
         """Its tractions, as the first iterate of Newton."""

@@ -166,10 +166,10 @@ def _solved(
 
 
 def _moved(
-    contacts: Sequence[PosedContact], way: float, directions: Sequence[Array], regularisation: Regularisation
+    contacts: Sequence[PosedContact], distance: float, directions: Sequence[Array], regularisation: Regularisation
 ) -> list[PosedContact]:
-    """The contacts with their bodies moved on by ``way`` in m."""
+    """The contacts with their bodies moved on by ``distance`` in m."""
     return [
-        contact.moved(contact.place + way * direction, regularisation.applied(contact.pair, contact.state))
+        contact.moved(contact.place + distance * direction, regularisation.applied(contact.pair, contact.state))
         for contact, direction in zip(contacts, directions, strict=True)
     ]

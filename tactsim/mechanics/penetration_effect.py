@@ -83,7 +83,7 @@ def _missing(contact: PosedContact, growth: ContactIterate | None) -> float:
         return 0.0
     state, weights = contact.state, contact.surface.points.weights
     penetration = np.where(state.pressure > 0, -contact.pair.body.signed_distance(state.points)[0], 0.0)
-    creep = state.crept * growth.tangential
+    creep = state.creep * growth.tangential
     return abs(float(weights @ (penetration * growth.pressure))) + abs(float(weights @ creep.sum(axis=0)))
 
 
