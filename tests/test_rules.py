@@ -19,8 +19,9 @@ MOST_POSITIONAL, MOST_METHODS = 5, 10
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 ENGINE = tuple(f"tactsim/{room}/" for room in ("analytic", "contact", "fem", "identification", "materials", "mesh", "sensors"))
-HOUSEHOLD = {"told", "_told"}
-"""Names that say nothing in the rooms of the engine, where the field has a word."""
+HOUSEHOLD = {"told", "_told", "WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push"}
+HOUSEHOLD |= {"Stretch", "Answer", "Pace", "pace", "_pace", "carried", "_carried", "resumed"}
+"""Names that say nothing in the rooms of the engine and in mechanics, where the field has a word."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
     "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
@@ -181,11 +182,11 @@ def empty_names() -> list[str]:
 
 
 def household_names() -> list[str]:
-    """Functions, arguments and variables of the engine by a household word."""
+    """Functions, arguments and variables of the engine and of mechanics by a household word."""
     found = set()
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
-        for node in ast.walk(tree(path)) if place.startswith(ENGINE) else ():
+        for node in ast.walk(tree(path)) if place.startswith((*ENGINE, "tactsim/mechanics/")) else ():
             names = [getattr(node, field, None) for field in ("name", "id", "attr", "arg")]
             found |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
     return sorted(found)

@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.contact.profile import check_fillet, rounded_box
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
+from tactsim.interfaces.taxel_layout import JawName
 from tactsim.units import Angle, Length
 
 
@@ -30,7 +31,7 @@ class Jaw(RigidBody):
     """Along z, away from the tissue."""
     fillet: Annotated[Length, Field(ge=0)] = 1e-3
     """Radius of the edges."""
-    side: Literal["upper", "lower"] = "upper"
+    side: JawName = "upper"
     """Whether the tissue is below or above the face."""
     tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
     """Rotation about the x axis, right-handed, before that about y."""

@@ -23,7 +23,7 @@ class ContactState:
     """What the last accepted step left at n surface points, in the body's frame.
 
     ``pressure`` (n,) and ``tangential`` (d, n) traction in Pa, ``points`` (d, n) positions in m,
-    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``crept`` (d, n)
+    ``normals`` (d, n) of the rigid body there, ``multiplier`` (n,) pressure in Pa without any penetration, ``creep`` (d, n)
     elastic slip in m since the point touched, summed over the steps in which friction held it; exact stick has none.
     """
 
@@ -32,7 +32,7 @@ class ContactState:
     points: Array
     normals: Array
     multiplier: Array | float = 0.0
-    crept: Array | float = 0.0
+    creep: Array | float = 0.0
 
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
@@ -48,7 +48,7 @@ class ContactState:
         if share < 1:
             pressure = share * pressure + (1 - share) * self.pressure
             tangential = share * tangential + (1 - share) * self.tangential
-        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.crept)
+        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.creep)
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class ContactTraction:
 
     def commit(self, before: ContactState, pair: ContactPair) -> ContactState:
         """The state that an accepted step from ``before`` leaves behind."""
-        crept = np.where(self.pressure > 0, before.crept + self._held_travel(before, pair), 0.0)
-        return ContactState(self.pressure, self.tangential, self.points, self.normal, crept=crept)
+        creep = np.where(self.pressure > 0, before.creep + self._sticking_displacement(before, pair), 0.0)
+        return ContactState(self.pressure, self.tangential, self.points, self.normal, creep=creep)
 
     def iterate(self) -> ContactIterate:
         """Its tractions, as the first iterate of Newton."""
@@ -82,16 +82,16 @@ class ContactTraction:
 
     def elastic_slip(self, state: ContactState, pair: ContactPair) -> Array:
         """Distance (n,) in m that sticking points have moved along the body since a state."""
-        return np.asarray(np.linalg.norm(self._held_travel(state, pair), axis=0))
+        return np.asarray(np.linalg.norm(self._sticking_displacement(state, pair), axis=0))
 
-    def _held_travel(self, state: ContactState, pair: ContactPair) -> Array:
+    def _sticking_displacement(self, state: ContactState, pair: ContactPair) -> Array:
         """That displacement (d, n) in m, zero where a point does not stick."""
-        travel = self.points - state.points
-        along = np.einsum("in,in->n", self.normal, travel)
+        displacement = self.points - state.points
+        along = np.einsum("in,in->n", self.normal, displacement)
         held = (self.pressure > 0) & (
             np.linalg.norm(self.tangential, axis=0) < (1 - AT_LIMIT) * pair.traction_limit(self.pressure)
         )
-        return np.where(held, travel - along * self.normal, 0.0)
+        return np.where(held, displacement - along * self.normal, 0.0)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class ContactPair:
     unknowns of Newton, updated by their linearisation and condensed point by point (the mixed integration point
     method, Magisano, Leonetti & Garcea 2017, doi:10.1002/nme.5491); ``switch_stiffness`` in Pa/m weighs violated kinematics
     against forces when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008,
-    doi:10.1137/060671061). ``grip`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
+    doi:10.1137/060671061). ``friction_mask`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere.
     ``held_limit`` (n,) in Pa, if given, limits the tangential traction independently of the pressure (Tresca friction).
     """
 
@@ -120,7 +120,7 @@ class ContactPair:
     penalty: Array | float = 1.0
     tangential_penalty: Array | float = 1.0
     switch_stiffness: float = 1.0
-    grip: Array | float = 1.0
+    friction_mask: Array | float = 1.0
     held_limit: Array | None = None
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
@@ -131,10 +131,10 @@ class ContactPair:
         """Largest tangential traction (n,) in Pa under pressures (n,) in Pa."""
         if self.held_limit is not None:
             return self.held_limit
-        return np.where(self.grip == 0, 0.0, self.law.traction_limit(pressure))
+        return np.where(self.friction_mask == 0, 0.0, self.law.traction_limit(pressure))
 
     @property
-    def rubs(self) -> bool:
+    def has_friction(self) -> bool:
         """Whether friction may act at any point."""
         return bool(self.traction_limit(np.ones(1)).any())
 
@@ -142,7 +142,7 @@ class ContactPair:
         """Derivative (n,) of the limit with respect to the pressure, dimensionless."""
         if self.held_limit is not None:
             return np.zeros_like(pressure)
-        return self.grip * self.law.traction_limit_slope(pressure)
+        return self.friction_mask * self.law.traction_limit_slope(pressure)
 
     def with_held_limit(self, pressure: Array) -> ContactPair:
         """The same pair with the limits at pressures (n,) in Pa kept whatever the pressure becomes."""
@@ -203,26 +203,27 @@ class ContactPair:
         )
         return ContactIterate(np.maximum(pressure, 0.0), now.tangential + change)
 
-    def _decider(self, carried: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
+    def _decider(self, previous: Array, normal: Array, hessian: Array, trial: Array, trial_slope: Array) -> tuple[Array, Array]:
         """Traction (d, n) whose size decides between stick and slip, and its derivative.
 
-        It is the carried traction turned to the tangent plane, moved towards the elastic trial as the switch stiffness weighs it.
+        It is the ``previous`` iterate's traction turned to the tangent plane, moved towards the elastic trial as the switch
+        stiffness weighs it.
         """
         share = np.minimum(1.0, self.switch_stiffness / self.tangential_penalty)
-        across = np.einsum("in,in->n", carried, normal)
-        plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", carried, hessian)[None, :]
-        in_plane = carried - across * normal
+        across = np.einsum("in,in->n", previous, normal)
+        plane_slope = -across * hessian - normal[:, None] * np.einsum("in,ijn->jn", previous, hessian)[None, :]
+        in_plane = previous - across * normal
         return in_plane + share * (trial - in_plane), (1 - share) * plane_slope + share * trial_slope
 
     def _elastic_trial(self, points: Array, normal: Array, hessian: Array, state: ContactState) -> tuple[Array, Array]:
         """Trial traction (d, n) if nothing slipped, and its derivative: the old one turned to the new tangent plane, minus
         the tangential penalty times the slip since then."""
         identity = np.eye(len(points))[:, :, None]
-        travel = points - state.points
-        along = np.einsum("in,in->n", normal, travel)
-        slip = travel - along * normal
+        displacement = points - state.points
+        along = np.einsum("in,in->n", normal, displacement)
+        slip = displacement - along * normal
         slip_slope = identity - normal[:, None] * normal[None, :]
-        slip_slope = slip_slope - along * hessian - normal[:, None] * np.einsum("in,ijn->jn", travel, hessian)[None, :]
+        slip_slope = slip_slope - along * hessian - normal[:, None] * np.einsum("in,ijn->jn", displacement, hessian)[None, :]
         old, both = state.tangential, normal + state.normals
         cosine = np.maximum(1.0 + np.einsum("in,in->n", normal, state.normals), 1e-3)
         out_of_plane = np.einsum("in,in->n", old, normal)

@@ -41,8 +41,8 @@ def _scalars(recorder: Recorder) -> list[Variable]:
     if recorder.settings.quantities is not None:
         named = recorder.settings.quantities.items()
         return [reading(name, unit, name.replace("_", " "), optional=True) for name, unit in named]
-    told = recorder.quantities.items()
-    return [reading(name, unit, words, optional=name in recorder.optional) for name, (unit, words) in told]
+    quantities = recorder.quantities.items()
+    return [reading(name, unit, words, optional=name in recorder.optional) for name, (unit, words) in quantities]
 
 
 def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
@@ -54,8 +54,8 @@ def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
         return np.array(np.nan)
     value = np.asarray(found.value, dtype=float)
     if value.size != 1 or found.unit != variable.unit:
-        told = f"{value.size} values in {found.unit}"
-        raise CaseError(f"sweep.quantities.{variable.name}: {told}; needed: one number in {variable.unit}")
+        shape = f"{value.size} values in {found.unit}"
+        raise CaseError(f"sweep.quantities.{variable.name}: {shape}; needed: one number in {variable.unit}")
     return value.reshape(())
 
 

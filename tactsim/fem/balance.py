@@ -52,11 +52,12 @@ class Scales:
 @dataclass(frozen=True)
 class NewtonState:
     """Where Newton is: ``internal`` less external nodal forces in N, displacements of the interfaces' points relative to their
-    travel in m, tractions in Pa, the relative ``residual``, and the root of the sum of all squared ``unbalanced`` forces in N."""
+    rigid displacement in m, tractions in Pa, the relative ``residual``, and the root of the sum of all
+    squared ``unbalanced`` forces in N."""
 
     unknowns: Array
     kinematics: Kinematics
-    travel: float
+    rigid_displacement: float
     internal: Array
     displacements: list[Array]
     tractions: tuple[Array, ...]
@@ -74,8 +75,8 @@ class Balance:
     scales: Scales
     tolerance: float
 
-    def at(self, unknowns: Array, kinematics: Kinematics, travel: float) -> NewtonState:
-        """The state at these unknowns (size,) and this travel in m of the interfaces.
+    def at(self, unknowns: Array, kinematics: Kinematics, rigid_displacement: float) -> NewtonState:
+        """The state at these unknowns (size,) and this rigid displacement in m of the interfaces.
 
         Raises
         ------
@@ -86,14 +87,14 @@ class Balance:
         internal = self.body.residual(unknowns, kinematics)
         largest = float(np.abs(internal[: self.body.space.displacement_size]).max())
         internal -= self.forces.nodal(self.body.space.split(unknowns)[0], self.body.space.size)
-        moved = point_displacements(self.body, unknowns, interfaces, control, travel)
+        moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
         rounding = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
         residual, unbalanced = self._norms(internal, largest, tractions, rounding)
         if control is not None:
             surfaces = [interface.surface for interface in interfaces]
             residual = max(residual, control.error(surfaces, tractions, rounding, self.tolerance))
-        return NewtonState(unknowns, kinematics, travel, internal, moved, tractions, residual, unbalanced)
+        return NewtonState(unknowns, kinematics, rigid_displacement, internal, moved, tractions, residual, unbalanced)
 
     def _norms(
         self, internal: Array, largest: float, tractions: Sequence[Array], rounding: Sequence[Array]
@@ -114,10 +115,10 @@ class Balance:
 
 
 def point_displacements(
-    body: Body, unknowns: Array, interfaces: Sequence[AnyInterface], control: PrescribedForce | None, travel: float
+    body: Body, unknowns: Array, interfaces: Sequence[AnyInterface], control: PrescribedForce | None, rigid_displacement: float
 ) -> list[Array]:
-    """Displacement (d, n) in m of the points of each interface, relative to its travel under load control."""
+    """Displacement (d, n) in m of the points of each interface, relative to its rigid displacement under load control."""
     moved = [interface.surface.points.interpolate(body.space.split(unknowns)[0]) for interface in interfaces]
     if control is None:
         return moved
-    return [displacement - travel * e[:, None] for displacement, e in zip(moved, control.directions, strict=True)]
+    return [displacement - rigid_displacement * e[:, None] for displacement, e in zip(moved, control.directions, strict=True)]

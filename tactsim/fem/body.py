@@ -19,7 +19,7 @@ from tactsim.fem.space import TaylorHood
 from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
 
-NO_PAST = np.empty((6, 0, 0))
+ELASTIC_STEP = np.empty((6, 0, 0))
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Kinematics:
 
 
 @dataclass(frozen=True)
-class PastStress:
+class RelaxationStep:
     """The present step of materials that relax: S = scale * S_iso(F) + stress.
 
     ``scale`` (E,) dimensionless; ``stress`` (6, E, Q), second Piola-Kirchhoff in Pa, components 11, 22, 33, 12, 23, 13.
@@ -67,8 +67,8 @@ class Body:
         If there is not one region per element, or a region has no material.
     """
 
-    past: PastStress | None = None
-    """What the points remember of the time before the present step, for materials that relax."""
+    relaxation: RelaxationStep | None = None
+    """Coefficients of the present time step, for materials that relax."""
 
     def __init__(self, space: TaylorHood, materials: Sequence[Material], regions: Array, *, quadrature_order: int | None = None):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
@@ -82,10 +82,10 @@ class Body:
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self._kernels = compiled(space.dim)
 
-    def with_past(self, past: PastStress | None) -> Body:
-        """The same body in a step of time with this past."""
+    def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
+        """The same body in a time step of materials that relax."""
         body = copy.copy(self)
-        body.past = past
+        body.relaxation = relaxation
         return body
 
     @cached_property
@@ -123,7 +123,7 @@ class Body:
                     slot[mine] = value
             elif self.forms[index] == "small_strain":
                 slopes[0, mine] = material.shear_modulus
-        return slopes if self.past is None else slopes * self.past.scale[:, None]
+        return slopes if self.relaxation is None else slopes * self.relaxation.scale[:, None]
 
     def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
         """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
@@ -132,7 +132,7 @@ class Body:
         out = np.zeros(self.space.size)
         slopes, pattern = self.energy_slopes(state, second=False), self.pattern
         with loop_threads(len(self.regions)):
-            self._kernels.residual(u, p, self._tables, slopes, self._past(), pattern.order, pattern.color_starts, out)
+            self._kernels.residual(u, p, self._tables, slopes, self._history_stress(), pattern.order, pattern.color_starts, out)
         for part in self._interpreted:
             part.add_residual(self._at(part, unknowns, state), out)
         return out
@@ -146,7 +146,7 @@ class Body:
         slopes = self.energy_slopes(state, second=True)
         with loop_threads(len(self.regions)):
             places = (pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets)
-            self._kernels.tangent(u, p, self._tables, slopes, self._past(), *places, data)
+            self._kernels.tangent(u, p, self._tables, slopes, self._history_stress(), *places, data)
         for part in self._interpreted:
             part.add_tangent(self._at(part, unknowns, state), pattern, data)
         return data
@@ -168,12 +168,12 @@ class Body:
 
     def _at(self, part: InterpretedPart, unknowns: Array, state: Kinematics) -> PointState:
         """What a part is computed from."""
-        mine, past = part.elements, self.past
-        history = (None, None) if past is None else (past.scale[mine], past.stress[:, mine])
+        mine, relaxation = part.elements, self.relaxation
+        history = (None, None) if relaxation is None else (relaxation.scale[mine], relaxation.stress[:, mine])
         return PointState(state.F[:, :, mine], self.pressure(unknowns)[mine], *history)
 
-    def _past(self) -> Array:
-        return NO_PAST if self.past is None else self.past.stress
+    def _history_stress(self) -> Array:
+        return ELASTIC_STEP if self.relaxation is None else self.relaxation.stress
 
     @cached_property
     def _tables(self) -> tuple[Array, ...]:

@@ -41,17 +41,17 @@ Now = TypeVar("Now", bound=LinearisedTraction)
 
 
 class Interface(Protocol[Iterate, Now]):
-    """Forces at the points of one surface that depend on where the points are, and on forces that Newton carries as unknowns."""
+    """Forces at the points of one surface that depend on where the points are, and on forces that Newton iterates as unknowns."""
 
     @property
     def surface(self) -> SurfaceAssembly:
         """The surface that the forces act on."""
 
     def start(self) -> Iterate:
-        """The carried forces at the beginning."""
+        """The iterated forces at the beginning."""
 
-    def settled(self, displacement: Array) -> Iterate:
-        """The carried forces in equilibrium with displacements (d, n) of the points."""
+    def iterate_at(self, displacement: Array) -> Iterate:
+        """The iterated forces in equilibrium with displacements (d, n) of the points."""
 
     def converged(self, displacement: Array) -> Array:
         """Traction (d, n) in Pa in equilibrium with displacements (d, n) of the points."""
@@ -59,15 +59,15 @@ class Interface(Protocol[Iterate, Now]):
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa that is lost in the round-off of the positions."""
 
-    def linearised(self, displacement: Array, carried: Iterate) -> Now:
-        """Traction and derivative at displacements (d, n), as the carried forces decide the state of each point."""
+    def linearised(self, displacement: Array, iterate: Iterate) -> Now:
+        """Traction and derivative at displacements (d, n), as the iterated forces decide the state of each point."""
 
-    def advanced(self, now: Now, carried: Iterate, step: Array, damping: float) -> Iterate:
-        """The carried forces after the points moved by ``damping * step``."""
+    def advanced(self, now: Now, iterate: Iterate, step: Array, damping: float) -> Iterate:
+        """The iterated forces after the points moved by ``damping * step``."""
 
 
 AnyInterface = Interface[Any, Any]
-"""An interface whatever it carries: Newton only hands the carried forces back to it."""
+"""An interface whatever forces it iterates: Newton only hands them back to it."""
 
 
 class FollowerLoad(Protocol):

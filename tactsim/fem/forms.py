@@ -30,8 +30,8 @@ def residual(body: Body, unknowns: Array) -> Array:
     B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
     weights, N = body.points.weights, body.points.pressure_values
     stress = _at_points(body, (3, 3), lambda material, mine: material.first_piola_kirchhoff(F[:, :, mine], p[mine]))
-    if body.past is not None:
-        stress = _relaxed(body, stress, _at_points(body, (3, 3), _pressure_stress(F, p))) + _past_stress(body, F)
+    if body.relaxation is not None:
+        stress = _relaxed(body, stress, _at_points(body, (3, 3), _pressure_stress(F, p))) + _history_term(body, F)
     change = _at_points(body, (), lambda material, mine: material.volume_change(F[:, :, mine]))
     forces = np.einsum("eq,iJeq,iJeqak->eak", weights, stress, B, optimize=True)
     volumes = np.einsum("eq,eq,qv->ev", weights, change - p * body.compliance[:, None], N)
@@ -44,9 +44,9 @@ def tangent(body: Body, unknowns: Array) -> csr_matrix:
     B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
     weights, N = body.points.weights, body.points.pressure_values
     moduli = _at_points(body, (3, 3, 3, 3), lambda material, mine: material.tangent(F[:, :, mine], p[mine]))
-    if body.past is not None:
+    if body.relaxation is not None:
         without = lambda material, mine: material.tangent(F[:, :, mine], 0 * p[mine])  # noqa: E731
-        moduli = _relaxed(body, moduli, moduli - _at_points(body, (3, 3, 3, 3), without)) + _past_tangent(body)
+        moduli = _relaxed(body, moduli, moduli - _at_points(body, (3, 3, 3, 3), without)) + _history_tangent(body)
     slope = _at_points(body, (3, 3), lambda material, mine: material.volume_change_gradient(F[:, :, mine]))
     B = B.reshape(*B.shape[:4], -1)
     K_uu = np.einsum("eq,iJeqm,iJkLeq,kLeqn->emn", weights, B, moduli, B, optimize=True)
@@ -78,27 +78,27 @@ def deformation_gradient(body: Body, unknowns: Array) -> Array:
 
 def _relaxed(body: Body, whole: Array, pressure_part: Array) -> Array:
     """The isochoric part scaled as the step of time asks, the pressure's part as it is."""
-    return (whole - pressure_part) * body.past.scale[:, None] + pressure_part  # type: ignore[union-attr]
+    return (whole - pressure_part) * body.relaxation.scale[:, None] + pressure_part  # type: ignore[union-attr]
 
 
 def _pressure_stress(F: Array, p: Array) -> Callable[..., Array]:
     return lambda material, mine: p[mine] * material.volume_change_gradient(F[:, :, mine])
 
 
-def _past_tensor(body: Body) -> Array:
-    """The stress of the past as a full symmetric tensor (3, 3, E, Q)."""
-    return body.past.stress[np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])]  # type: ignore[union-attr]
+def _history_tensor(body: Body) -> Array:
+    """The stress of the history as a full symmetric tensor (3, 3, E, Q)."""
+    return body.relaxation.stress[np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])]  # type: ignore[union-attr]
 
 
-def _past_stress(body: Body, F: Array) -> Array:
-    """First Piola-Kirchhoff stress of the past: F H, or H where the material is linear."""
-    H = _past_tensor(body)
+def _history_term(body: Body, F: Array) -> Array:
+    """First Piola-Kirchhoff stress of the history: F H, or H where the material is linear."""
+    H = _history_tensor(body)
     return np.where(body.linear[:, None], H, np.einsum("iKeq,KJeq->iJeq", F, H))
 
 
-def _past_tangent(body: Body) -> Array:
+def _history_tangent(body: Body) -> Array:
     """Its derivative delta_ik H_JL, zero where the material is linear."""
-    moduli = np.einsum("ik,JLeq->iJkLeq", np.eye(3), _past_tensor(body))
+    moduli = np.einsum("ik,JLeq->iJkLeq", np.eye(3), _history_tensor(body))
     return np.where(body.linear[:, None], 0.0, moduli)
 
 

@@ -20,21 +20,21 @@ SYMMETRIC = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
 
 @dataclass(frozen=True)
 class PointState:
-    """Deformation and pressure at the points of some elements, and what is left of the past if the material relaxes.
+    """Deformation and pressure at the points of some elements, and the coefficients of a time step if the material relaxes.
 
-    ``F`` (3, 3, E, Q), ``pressure`` (E, Q) in Pa, ``scale`` (E,) of the isochoric stress, ``past`` (6, E, Q) in Pa.
+    ``F`` (3, 3, E, Q), ``pressure`` (E, Q) in Pa, ``scale`` (E,) of the isochoric stress, ``history_stress`` (6, E, Q) in Pa.
     """
 
     F: Array
     pressure: Array
     scale: Array | None = None
-    past: Array | None = None
+    history_stress: Array | None = None
 
     def chosen(self, part: slice) -> PointState:
         """That of a part of the elements."""
-        if self.scale is None or self.past is None:
+        if self.scale is None or self.history_stress is None:
             return PointState(self.F[:, :, part], self.pressure[part])
-        return PointState(self.F[:, :, part], self.pressure[part], self.scale[part], self.past[:, part])
+        return PointState(self.F[:, :, part], self.pressure[part], self.scale[part], self.history_stress[:, part])
 
 
 class InterpretedPart:
@@ -72,23 +72,27 @@ class InterpretedPart:
             data += np.bincount(places.ravel(), blocks.ravel(), data.size)
 
     def stress(self, state: PointState) -> Array:
-        """First Piola-Kirchhoff stress (3, 3, E, Q) in Pa, that of the past with it."""
+        """First Piola-Kirchhoff stress (3, 3, E, Q) in Pa, with that of the history."""
         stress = self.material.first_piola_kirchhoff(state.F, state.pressure)
-        if state.scale is None or state.past is None:
+        if state.scale is None or state.history_stress is None:
             return stress
         volumetric = state.pressure * self.material.volume_change_gradient(state.F)
-        past = state.past[SYMMETRIC]
-        left = past if self.material.small_strain else np.einsum("iKeq,KJeq->iJeq", state.F, past)
+        history_stress = state.history_stress[SYMMETRIC]
+        left = history_stress if self.material.small_strain else np.einsum("iKeq,KJeq->iJeq", state.F, history_stress)
         return (stress - volumetric) * state.scale[:, None] + volumetric + left
 
     def moduli(self, state: PointState) -> Array:
         """dP/dF at fixed pressure (3, 3, 3, 3, E, Q) in Pa."""
         moduli = self.material.tangent(state.F, state.pressure)
-        if state.scale is None or state.past is None:
+        if state.scale is None or state.history_stress is None:
             return moduli
         volumetric = moduli - self.material.tangent(state.F, 0 * state.pressure)
         moduli = (moduli - volumetric) * state.scale[:, None] + volumetric
-        return moduli if self.material.small_strain else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.past[SYMMETRIC])
+        return (
+            moduli
+            if self.material.small_strain
+            else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[SYMMETRIC])
+        )
 
     def _parts(self) -> Iterator[slice]:
         return (slice(first, first + CHUNK) for first in range(0, len(self.elements), CHUNK))

@@ -15,7 +15,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from tactsim.fem.point import add_past_stress, add_past_tangent, hyperelastic_stress, point_stress, point_tangent
+from tactsim.fem.point import add_history_stress, add_history_tangent, hyperelastic_stress, point_stress, point_tangent
 
 BLOCK = 32
 """Elements per task of a thread."""
@@ -137,8 +137,8 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
     entries, width, corners = ENTRIES[dim], 6 if dim == 2 else 10, dim + 1
 
     @numba.njit(cache=True, parallel=True)
-    def residual(u, p, tables, W, past, order, starts, out):  # type: ignore[no-untyped-def]
-        """Internal forces, then volume constraints, added to ``out``; ``past`` (6, E, Q), or (6, 0, 0) if there is none."""
+    def residual(u, p, tables, W, history_stress, order, starts, out):  # type: ignore[no-untyped-def]
+        """Internal forces, then volume constraints, added to ``out``; ``history_stress`` (6, E, Q), or (6, 0, 0) for none."""
         elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
         for color in range(starts.size - 1):
             first, last = starts[color], starts[color + 1]
@@ -151,8 +151,8 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
                         _deform(entries, u, nodes, gradients[e, q], hoop[e, q], g, F)
                         pressure, weight = _pressure(p, pressures[e], shape_p[q]), weights[e, q]
                         change = point_stress(F, W[:, e, q], linear[e], work, cof)
-                        if past.shape[1]:
-                            add_past_stress(F, past[:, e, q], linear[e], work)
+                        if history_stress.shape[1]:
+                            add_history_stress(F, history_stress[:, e, q], linear[e], work)
                         for i in range(dim):
                             for j in range(3):
                                 m = entries[i][j]
@@ -170,7 +170,7 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
     entries, width, corners = ENTRIES[dim], 6 if dim == 2 else 10, dim + 1
 
     @numba.njit(cache=True, parallel=True, fastmath={"contract", "reassoc", "nsz"})
-    def tangent(u, p, tables, W, past, order, starts, indptr, offsets, data):  # type: ignore[no-untyped-def]
+    def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, data):  # type: ignore[no-untyped-def]
         """Entries of the tangent, added to ``data``."""
         elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
         for color in range(starts.size - 1):
@@ -188,8 +188,8 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
                         pressure, weight = _pressure(p, pressures[e], shape_p[q]), weights[e, q]
                         slopes = (W[0, e, q], W[1, e, q], W[2, e, q], W[3, e, q], W[4, e, q])
                         point_tangent(F, slopes, linear[e], pressure, work, cof, A)
-                        if past.shape[1]:
-                            add_past_tangent(past[:, e, q], linear[e], A)
+                        if history_stress.shape[1]:
+                            add_history_tangent(history_stress[:, e, q], linear[e], A)
                         _add_stiffness(entries, A, g, weight, T, K)
                         _add_coupling(entries, cof, g, shape_p[q], weight, B)
                         for v in range(corners):

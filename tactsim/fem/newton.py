@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.balance import Balance, ExternalForces, NewtonState, Scales, point_displacements
-from tactsim.fem.body import Body, Kinematics, PastStress
+from tactsim.fem.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
@@ -58,8 +58,8 @@ class Equilibrium:
     kinematics: Kinematics
     tractions: tuple[Array, ...]
     history: tuple[float, ...]
-    travel: float = 0.0
-    """Travel in m of the interfaces along a prescribed force."""
+    rigid_displacement: float = 0.0
+    """Displacement in m of the interfaces along a prescribed force."""
 
     @property
     def iterations(self) -> int:
@@ -84,9 +84,9 @@ class Problem:
         interfaces: Sequence[AnyInterface] = (),
         loads: Sequence[FollowerLoad] = (),
         nodal_force: Array | None = None,
-        push: PrescribedForce | None = None,
-        travel: float = 0.0,
-        past: PastStress | None = None,
+        load_control: PrescribedForce | None = None,
+        rigid_displacement: float = 0.0,
+        relaxation: RelaxationStep | None = None,
         coarse: float = 0.0,
     ) -> Equilibrium:
         """Equilibrium nearest to the guess, which holds the prescribed values.
@@ -95,9 +95,9 @@ class Problem:
         ----------
         guess : (size,) unknowns
         interfaces, loads, nodal_force : what acts on the body; nodal forces (size,) in N
-        push : load control: the force that the interfaces must exert, if it is prescribed instead of their displacement
-        travel : first guess of their displacement in m under load control
-        past : history variables of materials that relax
+        load_control : the force that the interfaces must exert, if it is prescribed instead of their displacement
+        rigid_displacement : first guess of their displacement in m under load control
+        relaxation : coefficients of the time step of materials that relax
         coarse : a residual that suffices, if it is above the tolerance of the options
 
         Raises
@@ -107,24 +107,26 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        body = self.body if past is None else self.body.with_past(past)
-        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, push)
+        body = self.body if relaxation is None else self.body.with_relaxation(relaxation)
+        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
         balance = Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
-        return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(guess.copy(), travel)
+        return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(
+            guess.copy(), rigid_displacement
+        )
 
     def displacements(
-        self, unknowns: Array, interfaces: Sequence[AnyInterface], push: PrescribedForce | None, travel: float
+        self, unknowns: Array, interfaces: Sequence[AnyInterface], load_control: PrescribedForce | None, rigid_displacement: float
     ) -> list[Array]:
-        """Displacement (d, n) in m of the points of each interface, relative to its travel under load control."""
-        return point_displacements(self.body, unknowns, interfaces, push, travel)
+        """Displacement (d, n) in m of the points of each interface, relative to its rigid displacement under load control."""
+        return point_displacements(self.body, unknowns, interfaces, load_control, rigid_displacement)
 
 
 @dataclass(frozen=True)
 class _Step:
-    """A step of the ``unknowns`` (size,), and of the ``travel`` of the interfaces in m under load control."""
+    """A step of the ``unknowns`` (size,), and of the ``rigid_displacement`` of the interfaces in m under load control."""
 
     unknowns: Array
-    travel: float
+    rigid_displacement: float
 
 
 class _Solution:
@@ -133,17 +135,17 @@ class _Solution:
     def __init__(self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float):
         self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
         self._body, self._forces = balance.body, balance.forces
-        self._carried: list[Any] = [interface.start() for interface in self._forces.interfaces]
+        self._iterates: list[Any] = [interface.start() for interface in self._forces.interfaces]
         self._history: list[float] = []
         self._halvings, self._searching = 0, False
 
-    def run(self, guess: Array, travel: float) -> Equilibrium:
+    def run(self, guess: Array, rigid_displacement: float) -> Equilibrium:
         """The equilibrium; raises as `Problem.solve` says."""
-        state, history = self._start(guess, travel), self._history
+        state, history = self._start(guess, rigid_displacement), self._history
         for iteration in range(self._options.max_iterations + 1):
             history.append(state.residual)
             if history[-1] < self._goal:
-                return Equilibrium(state.unknowns, state.kinematics, state.tractions, tuple(history), state.travel)
+                return Equilibrium(state.unknowns, state.kinematics, state.tractions, tuple(history), state.rigid_displacement)
             exhausted = iteration == self._options.max_iterations or self._halvings > self._options.most_halvings
             if exhausted or not np.isfinite(history[-1]) or self._stagnates():
                 break
@@ -151,26 +153,26 @@ class _Solution:
             state = self._iterated(state)
         self._give_up(state)
 
-    def _start(self, unknowns: Array, travel: float) -> NewtonState:
+    def _start(self, unknowns: Array, rigid_displacement: float) -> NewtonState:
         kinematics = self._admissible(unknowns, 0.0)
         if kinematics is None:
             worst = inside_out_in_words(self._body, self._body.kinematics(unknowns))
             raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
-        return self._balance.at(unknowns, kinematics, travel)
+        return self._balance.at(unknowns, kinematics, rigid_displacement)
 
     def _iterated(self, state: NewtonState) -> NewtonState:
-        """The state after one more step; the carried forces follow."""
+        """The state after one more step; the iterated forces follow."""
         interfaces = self._forces.interfaces
         if not self._searching and self._cycles():
             self._searching = True
         if self._searching:
-            self._carried = [i.settled(d) for i, d in zip(interfaces, state.displacements, strict=True)]
-        now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.displacements, self._carried, strict=True)]
+            self._iterates = [i.iterate_at(d) for i, d in zip(interfaces, state.displacements, strict=True)]
+        now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.displacements, self._iterates, strict=True)]
         step = self._linear_step(state, now)
         damping, after = self._searched(state, step, *self._damped(state, step))
-        moves = point_displacements(self._body, step.unknowns, interfaces, self._forces.load_control, step.travel)
-        together = zip(interfaces, now, self._carried, moves, strict=True)
-        self._carried = [i.advanced(n, c, move, damping) for i, n, c, move in together]
+        moves = point_displacements(self._body, step.unknowns, interfaces, self._forces.load_control, step.rigid_displacement)
+        together = zip(interfaces, now, self._iterates, moves, strict=True)
+        self._iterates = [i.advanced(n, c, move, damping) for i, n, c, move in together]
         return after
 
     def _give_up(self, state: NewtonState) -> NoReturn:
@@ -187,7 +189,11 @@ class _Solution:
             if halved:
                 damping /= 2
                 kinematics = self._body.kinematics(before.unknowns + damping * step.unknowns)
-            after = self._balance.at(before.unknowns + damping * step.unknowns, kinematics, before.travel + damping * step.travel)
+            after = self._balance.at(
+                before.unknowns + damping * step.unknowns,
+                kinematics,
+                before.rigid_displacement + damping * step.rigid_displacement,
+            )
             if after.unbalanced < before.unbalanced:
                 break
         return damping, after
@@ -205,7 +211,7 @@ class _Solution:
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
     def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> _Step:
-        """Newton's step of the unknowns, and of the interfaces' travel under load control."""
+        """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
         needed = SHARE_OF_TOLERANCE * self._goal / state.residual
         accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
@@ -227,8 +233,8 @@ class _Solution:
             return _Step(step, 0.0)
         border = control.border([interface.surface for interface in interfaces], now)
         along = resolved(solver, matrix, constraints.free(border.column), accuracy)
-        travel = border.travel(step, along)
-        return _Step(step + travel * along, travel)
+        rigid_displacement = border.displacement_step(step, along)
+        return _Step(step + rigid_displacement * along, rigid_displacement)
 
     def _damped(self, before: NewtonState, step: _Step) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""

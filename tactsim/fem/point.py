@@ -130,25 +130,25 @@ def point_stress(F, W, linear, work, cof):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True, inline="always")
-def add_past_stress(F, past, linear, work):  # type: ignore[no-untyped-def]
-    """Add the stress that the past has left, a second Piola-Kirchhoff stress ``past`` (6,), to work[0]."""
+def add_history_stress(F, history_stress, linear, work):  # type: ignore[no-untyped-def]
+    """Add the stress of the history, a second Piola-Kirchhoff stress ``history_stress`` (6,), to work[0]."""
     for i in range(3):
         for j in range(3):
             if linear:
-                work[0, 3 * i + j] += past[SYMMETRIC_SLOTS[3 * i + j]]
+                work[0, 3 * i + j] += history_stress[SYMMETRIC_SLOTS[3 * i + j]]
             else:
                 for k in range(3):
-                    work[0, 3 * i + j] += F[3 * i + k] * past[SYMMETRIC_SLOTS[3 * k + j]]
+                    work[0, 3 * i + j] += F[3 * i + k] * history_stress[SYMMETRIC_SLOTS[3 * k + j]]
 
 
 @numba.njit(cache=True, inline="always")
-def add_past_tangent(past, linear, A):  # type: ignore[no-untyped-def]
+def add_history_tangent(history_stress, linear, A):  # type: ignore[no-untyped-def]
     """Add the derivative of that stress to A (9, 9): it follows the rotation of the material only."""
     if not linear:
         for i in range(3):
             for j in range(3):
                 for o in range(3):
-                    A[3 * i + j, 3 * i + o] += past[SYMMETRIC_SLOTS[3 * j + o]]
+                    A[3 * i + j, 3 * i + o] += history_stress[SYMMETRIC_SLOTS[3 * j + o]]
 
 
 @numba.njit(cache=True, inline="always")

@@ -1,6 +1,6 @@
-"""Interfaces driven by a force instead of a displacement: their common travel is one more unknown, bordered onto Newton's system.
+"""Interfaces under load control: their common rigid displacement is one more unknown, bordered onto Newton's system.
 
-A traction depends on a point's place relative to its body, so that travel acts like a displacement of all points the other way.
+A traction depends on a point's place relative to its body, so a rigid displacement acts like the opposite one of all points.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ LARGEST_ROUND_OFF = 1e-2
 class Border:
     """What a prescribed force adds to the linear system.
 
-    ``column`` (size,): nodal forces per travel, on the right-hand side; ``row`` (size,): derivative of the force by the
-    unknowns; ``slope``: its derivative by the travel, with the sign turned; ``missing``: force that is missing, in N;
-    ``approach``: travel in m after which a first point would touch.
+    ``column`` (size,): nodal forces per rigid displacement, on the right-hand side; ``row`` (size,): derivative of the force by
+    the unknowns; ``slope``: its derivative by the rigid displacement, with the sign turned; ``missing``: missing force in N;
+    ``approach``: rigid displacement in m after which a first point would touch.
     """
 
     column: Array
@@ -36,9 +36,11 @@ class Border:
     missing: float
     approach: float
 
-    def travel(self, step: Array, along: Array) -> float:
-        """Step of the travel in m, from the step of the unknowns at rest and their step per travel: to the touch if nothing
-        touches yet."""
+    def displacement_step(self, step: Array, along: Array) -> float:
+        """Step of the rigid displacement in m, from the step of the unknowns at rest and their step per displacement.
+
+        To the touch if nothing touches yet.
+        """
         if self.slope == 0.0:
             return self.approach
         return float((self.missing - self.row @ step) / (self.row @ along - self.slope))
@@ -46,8 +48,8 @@ class Border:
 
 @dataclass(frozen=True)
 class PrescribedForce:
-    """A force in N that the interfaces together exert, each along its own unit vector (d,) of ``directions``; their common travel
-    along these follows."""
+    """A force in N that the interfaces together exert, each along its own unit vector (d,) of ``directions``; their
+    common displacement along these follows."""
 
     directions: tuple[Array, ...]
     force: float
@@ -87,6 +89,6 @@ class PrescribedForce:
 
 
 def _approach(contact: LinearisedContact) -> float:
-    """Travel in m that brings a body into touch with the point nearest to it, and a little further."""
+    """Displacement in m that brings a body into touch with the point nearest to it, and a little further."""
     nearest = int(contact.gap.argmin())
     return float(contact.gap[nearest] + TOUCH * np.abs(contact.points[:, nearest]).max())

@@ -96,7 +96,7 @@ class Estimate:
             raise InvalidQuantity(f"probability {self.probability}; allowed: 0 to 1")
 
 
-def told(inclusion: EstimatedInclusion) -> str:
+def inclusion_in_words(inclusion: EstimatedInclusion) -> str:
     """An inclusion in words."""
     place = ", ".join(format_quantity(value, "m") for value in inclusion.center)
     size = "" if inclusion.radius is None else f", radius {format_quantity(inclusion.radius, 'm')}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self, get_args
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 from tactsim.array import Array
 from tactsim.units import FrozenModel, Length, format_quantity
 
-JAWS = ("upper", "lower")
+JawName = Literal["upper", "lower"]
+JAWS: tuple[str, ...] = get_args(JawName)
 """Names of the jaws of a grasp, in the order of the first axis of every array of forces or readings."""
 PositiveLength = Annotated[Length, Field(gt=0)]
 

@@ -39,10 +39,10 @@ class Variable:
 
     def attributes(self) -> dict[str, Any]:
         """Attributes in the words of the CF conventions."""
-        told: dict[str, Any] = {"units": self.unit, "long_name": self.description, "role": self.role}
+        attributes: dict[str, Any] = {"units": self.unit, "long_name": self.description, "role": self.role}
         if self.meanings:
-            told |= {"flag_values": list(range(len(self.meanings))), "flag_meanings": " ".join(self.meanings)}
-        return told
+            attributes |= {"flag_values": list(range(len(self.meanings))), "flag_meanings": " ".join(self.meanings)}
+        return attributes
 
     def empty(self, samples: int) -> Array:
         """Values of samples that have none."""

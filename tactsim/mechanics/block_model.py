@@ -11,13 +11,13 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.regularising_springs import RegularisingSprings
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import FACET_POINTS, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
-from tactsim.fem.weak_hold import WeakHold
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
@@ -69,7 +69,7 @@ class GraspModel:
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(JAWS, offsets, strict=True)}
         options = NewtonOptions(start_patience=START_PATIENCE)
         self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
-        self.hold = WeakHold(self.body)
+        self.springs = RegularisingSprings(self.body)
 
     def touching_place(self, side: str) -> Array:
         """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.
@@ -93,7 +93,7 @@ class GraspModel:
             PosedContact.apart(
                 self.surfaces[side],
                 self.references[side],
-                ContactPair(self.jaws[side], law, grip=self._grip(side)),
+                ContactPair(self.jaws[side], law, friction_mask=self._friction_mask(side)),
                 self.touching_place(side),
             )
             for side in JAWS
@@ -114,12 +114,12 @@ class GraspModel:
         self.space.split(unknowns)[0][:] = (self.mesh.nodes - (low + high) / 2) * [wider, wider, stretch - 1]
         return unknowns
 
-    def _grip(self, side: str) -> Array:
+    def _friction_mask(self, side: str) -> Array:
         """One at the surface points (n,) of the face under a jaw, zero at those beside it, which roll onto it."""
         count = len(FACET_POINTS)
-        grip = np.zeros(len(self.touchable[side]) * count)
-        grip[: len(self.facets[side]) * count] = 1.0
-        return grip
+        friction_mask = np.zeros(len(self.touchable[side]) * count)
+        friction_mask[: len(self.facets[side]) * count] = 1.0
+        return friction_mask
 
     def equilibrium(
         self,
@@ -128,7 +128,7 @@ class GraspModel:
         guess: Array,
         *,
         force: float | None = None,
-        past: PastStress | None = None,
+        relaxation: RelaxationStep | None = None,
         loads: Sequence[FollowerLoad] = (),
     ) -> ContactEquilibrium:
         """The grasp with each jaw closed by ``closing`` in m, or on from there until each presses with a ``force`` in N.
@@ -145,8 +145,8 @@ class GraspModel:
             guess,
             directions=[CLOSING[side] for side in JAWS],
             force=None if force is None else 2 * force,
-            past=past,
-            loads=[self.hold, *loads],
+            relaxation=relaxation,
+            loads=[self.springs, *loads],
         )
 
     def jaw_force(self, state: ContactEquilibrium, side: str) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
-from tactsim.fem.body import Kinematics, PastStress
+from tactsim.fem.body import Kinematics, RelaxationStep
 from tactsim.fem.diagnosis import collapsed_in_words
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
@@ -69,9 +69,9 @@ def contact_equilibrium(
     try:
         return _equilibrium(problem, state, load, guess, **settings)
     except ConvergenceError as error:
-        if told := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
+        if collapsed := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
             raise Collapsed(
-                f"{told}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
+                f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
         raise
 
@@ -84,13 +84,13 @@ def _equilibrium(
     *,
     directions: Sequence[Array],
     force: float | None = None,
-    past: PastStress | None = None,
+    relaxation: RelaxationStep | None = None,
     loads: Sequence[FollowerLoad] = (),
 ) -> ContactEquilibrium:
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
-    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``past`` is what
-    materials that relax remember, ``loads`` are further loads on the body.
+    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``relaxation``
+    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body.
 
     Raises
     ------
@@ -100,17 +100,17 @@ def _equilibrium(
     regularisation, iterations, before = state.regularisation, 0, state.contacts
     if regularisation.augments:
         before = tuple(contact.expected(load - state.load) for contact in before)
-    push = None if force is None else PrescribedForce(tuple(directions), force)
-    coarse = COARSE if regularisation.augments and any(contact.pair.rubs for contact in before) else 0.0
+    load_control = None if force is None else PrescribedForce(tuple(directions), force)
+    coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
         try:
-            solved = _solved(problem, guess, contacts, push, loads=loads, past=past, coarse=coarse)
+            solved = _solved(problem, guess, contacts, load_control, loads=loads, relaxation=relaxation, coarse=coarse)
         except ConvergenceError as error:
             error.solutions += iterations
             raise
-        load += solved.travel
+        load += solved.rigid_displacement
         contacts = _moved(before, load - state.load, directions, regularisation)
         iterations += solved.iterations
         if solved.iterations == 0:
@@ -140,32 +140,36 @@ def _equilibrium(
 
 
 def _solved(
-    problem: Problem, guess: Array, contacts: Sequence[PosedContact], push: PrescribedForce | None, **settings: Any
+    problem: Problem, guess: Array, contacts: Sequence[PosedContact], load_control: PrescribedForce | None, **settings: Any
 ) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    begun, travel = contacts, 0.0
+    begun, rigid_displacement = contacts, 0.0
     for held_round in range(HELD_ROUNDS + 1):
         try:
-            return problem.solve(guess, interfaces=begun, push=push, travel=travel, **settings)
+            return problem.solve(
+                guess, interfaces=begun, load_control=load_control, rigid_displacement=rigid_displacement, **settings
+            )
         except ConvergenceError as stalled:
             if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
-        moves = problem.displacements(guess, contacts, push, travel)
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
         held = [contact.holding(move) for contact, move in zip(contacts, moves, strict=True)]
-        between = problem.solve(guess, interfaces=held, push=push, travel=travel, **settings)
-        guess, travel = between.unknowns, between.travel
-        moves = problem.displacements(guess, contacts, push, travel)
-        begun = [contact.resumed(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+        between = problem.solve(
+            guess, interfaces=held, load_control=load_control, rigid_displacement=rigid_displacement, **settings
+        )
+        guess, rigid_displacement = between.unknowns, between.rigid_displacement
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
     raise AssertionError("the last round returns or raises")
 
 
 def _moved(
-    contacts: Sequence[PosedContact], way: float, directions: Sequence[Array], regularisation: Regularisation
+    contacts: Sequence[PosedContact], distance: float, directions: Sequence[Array], regularisation: Regularisation
 ) -> list[PosedContact]:
-    """The contacts with their bodies moved on by ``way`` in m."""
+    """The contacts with their bodies moved on by ``distance`` in m."""
     return [
-        contact.moved(contact.place + way * direction, regularisation.applied(contact.pair, contact.state))
+        contact.moved(contact.place + distance * direction, regularisation.applied(contact.pair, contact.state))
         for contact, direction in zip(contacts, directions, strict=True)
     ]

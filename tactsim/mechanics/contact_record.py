@@ -165,7 +165,11 @@ class ContactRecord(ABC, Generic[Model]):
         """Fields of the kept states, by time, each state once."""
         kept = {id(state): (model, state) for model, state in self._kept.values()}.values()
         return [
-            model.frame(state.contact, time=state.time, isochoric=None if state.memory is None else state.memory.stress)
+            model.frame(
+                state.contact,
+                time=state.time,
+                isochoric=None if state.history_variables is None else state.history_variables.stress,
+            )
             for model, state in sorted(kept, key=lambda pair: pair[1].time)
         ]
 

@@ -19,13 +19,13 @@ def first_touch(body: RigidBody, points: Array, *, begin: Array, direction: Arra
     It moves from ``begin`` (d,) in m, clear of the points and not far from them, along the unit vector ``direction``; ``size`` in
     m is that of the touched body.
     """
-    travel = 0.0
+    distance = 0.0
     for _ in range(MOST_APPROACHES):
-        place = begin + travel * direction
+        place = begin + distance * direction
         gap = float(body.signed_distance(points - place[:, None])[0].min())
         if gap <= TOUCH * size:
             return place
-        travel += gap
-        if travel > MISSED * size:
+        distance += gap
+        if distance > MISSED * size:
             break
     return None

@@ -1,4 +1,4 @@
-"""The course of an experiment over time: sudden changes by elastic load steps, smooth stretches by steps of time."""
+"""The course of an experiment over time: sudden changes by elastic load steps, smooth intervals by time steps."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from tactsim.analytic.histories import History, Segment
 from tactsim.array import Array
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
+from tactsim.fem.history_variables import HistoryVariables, elastic_stress, series_of, step_error
 from tactsim.fem.loading import Event, PathFollower, StepControl
-from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
 from tactsim.fem.progress import check_steps
 from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -24,8 +24,8 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """A smooth stretch of time from ``start`` to ``end`` in s, with one segment on it for each prescribed value."""
+class TimeInterval:
+    """A smooth interval of time from ``start`` to ``end`` in s, with one segment on it for each prescribed value."""
 
     start: float
     end: float
@@ -67,17 +67,17 @@ class Stretch:
         return bool((differences <= SAME * (np.array(sizes) + np.abs(loads))).all())
 
 
-def stretches(histories: Sequence[History], end: float) -> tuple[Stretch, ...]:
-    """The smooth stretches of several histories from 0 to ``end`` in s, on the union of their breakpoints."""
+def smooth_intervals(histories: Sequence[History], end: float) -> tuple[TimeInterval, ...]:
+    """The smooth intervals of several histories from 0 to ``end`` in s, on the union of their breakpoints."""
     starts = np.unique(np.concatenate([history.starts for history in histories]))
     starts = starts[starts < end * (1 - SAME)]
     starts = starts[np.append(True, np.diff(starts) > SAME * end)]
     ends = [*starts[1:].tolist(), end]
     course, loads = [], (0.0,) * len(histories)
     for a, b in zip(starts.tolist(), ends, strict=True):
-        stretch = Stretch(a, b, tuple(_covering(history, a, b).part(a, b) for history in histories))
-        course.append(replace(stretch, sudden=not stretch.begins_at(loads)))
-        loads = stretch.at(b)
+        interval = TimeInterval(a, b, tuple(_covering(history, a, b).part(a, b) for history in histories))
+        course.append(replace(interval, sudden=not interval.begins_at(loads)))
+        loads = interval.at(b)
     return tuple(course)
 
 
@@ -86,51 +86,51 @@ def _covering(history: History, start: float, end: float) -> Segment:
     return history.segments[int(np.searchsorted(history.starts, (start + end) / 2, side="right")) - 1]
 
 
-class Answer(Protocol):
-    """What finds the equilibrium for prescribed values."""
+class EquilibriumProblem(Protocol):
+    """A body whose equilibrium follows from prescribed values."""
 
     @property
     def body(self) -> Body:
         """The body that deforms."""
 
     def equilibrium(
-        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, past: PastStress | None
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; raises ConvergenceError.
 
-        ``guess`` holds the unknowns of the body and the travel of the rigid bodies.
+        ``guess`` holds the unknowns of the body and the displacement of the rigid bodies.
         """
 
 
-class Pace(Protocol):
-    """How long the steps of time are."""
+class TimeStepPolicy(Protocol):
+    """How long the time steps are."""
 
-    def control(self, stretch: Stretch) -> TimeControl:
-        """How steps of a stretch grow and shrink."""
+    def control(self, interval: TimeInterval) -> TimeControl:
+        """How steps of an interval grow and shrink."""
 
-    def largest(self, stretch: Stretch) -> float:
+    def largest(self, interval: TimeInterval) -> float:
         """Longest step in s."""
 
-    def stops(self, stretch: Stretch) -> list[float]:
-        """Times in s at which a step must end, the last one the end of the stretch."""
+    def stops(self, interval: TimeInterval) -> list[float]:
+        """Times in s at which a step must end, the last one the end of the interval."""
 
 
 @dataclass(frozen=True)
 class TimedState:
-    """An accepted state at a time in s; ``loads`` are prescribed. ``memory`` is None if nothing relaxes."""
+    """An accepted state at a time in s; ``loads`` are prescribed. ``history_variables`` is None if nothing relaxes."""
 
     time: float
     loads: tuple[float, ...]
     contact: ContactEquilibrium
-    memory: Memory | None
-    past: PastStress | None = None
-    """What the step that led here remembered."""
+    history_variables: HistoryVariables | None
+    relaxation: RelaxationStep | None = None
+    """Coefficients of the time step that ended here."""
 
     @classmethod
     def at_rest(cls, body: Body, contact: ContactEquilibrium, count: int) -> TimedState:
         """The beginning: ``count`` prescribed values that are zero."""
         series = series_of(body)
-        return cls(0.0, (0.0,) * count, contact, None if series is None else Memory.at_rest(body, series))
+        return cls(0.0, (0.0,) * count, contact, None if series is None else HistoryVariables.at_rest(body, series))
 
     @property
     def unknowns(self) -> Array:
@@ -152,9 +152,11 @@ class TimedPath:
         If the histories ask for too many steps.
     """
 
-    def __init__(self, answer: Answer, pace: Pace, course: Sequence[Stretch], start: TimedState):
-        self._answer, self._pace, self._course, self._begin = answer, pace, course, start
-        asked = sum(len(pace.stops(stretch)) + stretch.duration / pace.largest(stretch) for stretch in course)
+    def __init__(
+        self, problem: EquilibriumProblem, step_policy: TimeStepPolicy, course: Sequence[TimeInterval], start: TimedState
+    ):
+        self._problem, self._step_policy, self._course, self._begin = problem, step_policy, course, start
+        asked = sum(len(step_policy.stops(interval)) + interval.duration / step_policy.largest(interval) for interval in course)
         check_steps(asked, "loading, with the steps and stops that time sets for its pieces,")
         self.rejected = 0
 
@@ -167,13 +169,13 @@ class TimedPath:
             If the path cannot be followed to its end.
         """
         state = self._begin
-        for stretch in self._course:
-            if stretch.sudden:
-                state, happened = self._jumped(state, stretch.at(stretch.start), event)
+        for interval in self._course:
+            if interval.sudden:
+                state, happened = self._jumped(state, interval.at(interval.start), event)
                 yield state, happened
                 if happened:
                     return
-            for reached, happened in self._march(state, stretch, event):
+            for reached, happened in self._march(state, interval, event):
                 state = reached
                 yield state, happened
                 if happened:
@@ -198,17 +200,17 @@ class TimedPath:
         return self._reached(last.state, last.state.time, target, last.state.unknowns), False
 
     def _march(
-        self, start: TimedState, stretch: Stretch, event: TimeEvent[TimedState] | None
+        self, start: TimedState, interval: TimeInterval, event: TimeEvent[TimedState] | None
     ) -> Iterator[tuple[TimedState, bool]]:
-        """Accepted states of a smooth stretch."""
+        """Accepted states of a smooth interval."""
 
         def advance(now: TimedState, time: float, guess: Array) -> TimedState:
-            return self._reached(now, time, stretch.at(time), guess)
+            return self._reached(now, time, interval.at(time), guess)
 
-        if start.memory is not None:
-            start = replace(start, memory=start.memory.at_kink())
-        marcher = TimeMarcher(advance, self._error, self._pace.control(stretch))
-        stops, largest = self._pace.stops(stretch), self._pace.largest(stretch)
+        if start.history_variables is not None:
+            start = replace(start, history_variables=start.history_variables.at_slope_change())
+        marcher = TimeMarcher(advance, self._error, self._step_policy.control(interval))
+        stops, largest = self._step_policy.stops(interval), self._step_policy.largest(interval)
         for state, happened in marcher.march(start, stops, largest=largest, event=event):
             self.rejected += marcher.rejected
             marcher.rejected = 0
@@ -217,16 +219,16 @@ class TimedPath:
     def _reached(self, now: TimedState, time: float, loads: tuple[float, ...], guess: Array) -> TimedState:
         """The equilibrium at a time and prescribed values."""
         step = time - now.time
-        past = None if now.memory is None else now.memory.past(step)
-        contact = self._answer.equilibrium(now.contact, loads, guess, past)
-        memory = None
-        if now.memory is not None:
-            memory = now.memory.advanced(elastic_stress(self._answer.body, contact.kinematics), step)
-        return TimedState(time, loads, contact, memory, past)
+        relaxation = None if now.history_variables is None else now.history_variables.relaxation_step(step)
+        contact = self._problem.equilibrium(now.contact, loads, guess, relaxation)
+        history_variables = None
+        if now.history_variables is not None:
+            history_variables = now.history_variables.advanced(elastic_stress(self._problem.body, contact.kinematics), step)
+        return TimedState(time, loads, contact, history_variables, relaxation)
 
     def _error(self, state: TimedState) -> float:
         """Estimated relative error of the stress."""
-        return 0.0 if state.memory is None else step_error(self._answer.body, state.memory)
+        return 0.0 if state.history_variables is None else step_error(self._problem.body, state.history_variables)
 
 
 @dataclass(frozen=True)

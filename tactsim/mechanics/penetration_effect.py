@@ -1,7 +1,7 @@
 r"""How much force the penetration that is left costs, from what the contact itself knows.
 
-The solution with penetration is the exact contact of a body whose surface is set back by the penetration, and whose grip is set
-back by the way that points crept along it. By reciprocity for the next increment of the motion d (Betti 1872),
+The solution with penetration is the exact contact of a body whose surface is set back by the penetration, and whose sticking
+points are set back by the distance that they crept along it. By reciprocity for the next increment of the motion d (Betti 1872),
 
 .. math:: F_{exact} - F = \int \delta \frac{\partial p}{\partial d} - s \cdot \frac{\partial \tau}{\partial d}\, dA
 
@@ -83,7 +83,7 @@ def _missing(contact: PosedContact, growth: ContactIterate | None) -> float:
         return 0.0
     state, weights = contact.state, contact.surface.points.weights
     penetration = np.where(state.pressure > 0, -contact.pair.body.signed_distance(state.points)[0], 0.0)
-    creep = state.crept * growth.tangential
+    creep = state.creep * growth.tangential
     return abs(float(weights @ (penetration * growth.pressure))) + abs(float(weights @ creep.sum(axis=0)))
 
 

@@ -34,7 +34,7 @@ def oddities(
         *_unusual_lengths(tissue, TISSUE_LENGTHS, "tissue"),
         *_unusual_lengths(bodies, BODY_LENGTHS, "what presses on it"),
         *_far_apart(tissue, bodies),
-        *(told for name, material in _different(materials) for told in _unusual_material(name, material)),
+        *(words for name, material in _different(materials) for words in _unusual_material(name, material)),
         *_unlike_stiffness(materials),
     ]
 

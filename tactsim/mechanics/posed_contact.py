@@ -19,8 +19,8 @@ class PosedContact:
     """One contact pair on one surface, the body's reference point at ``place``.
 
     ``reference`` (d, n) are the undeformed surface points in m, ``place`` (d,) the body's reference point, ``state`` what the
-    last accepted step left, ``growth`` how its forces grew per m of the body's way in Pa/m, if that is known, and ``grown_over``
-    that way in m, ``begin`` forces that Newton starts from, if not from those of the state.
+    last accepted step left, ``growth`` how its forces grew per m of the body's displacement in Pa/m, if that is known, and
+    ``grown_over`` that displacement in m, ``begin`` forces that Newton starts from, if not from those of the state.
     """
 
     surface: SurfaceAssembly
@@ -46,30 +46,30 @@ class PosedContact:
         """The pair after a step was accepted at displacements (d, n) of the points."""
         return replace(self, state=self.at(displacement).commit(self.state, self.pair), begin=None)
 
-    def grown(self, start: PosedContact, way: float) -> PosedContact:
-        """The pair after a step from ``start`` along ``way`` in m, with the growth of its forces."""
-        if way == 0.0:
+    def grown(self, start: PosedContact, distance: float) -> PosedContact:
+        """The pair after a step from ``start`` along ``distance`` in m, with the growth of its forces."""
+        if distance == 0.0:
             return replace(self, growth=None, grown_over=0.0)
         pressure, tangential = self.state.pressure - start.state.pressure, self.state.tangential - start.state.tangential
-        return replace(self, growth=ContactIterate(pressure / way, tangential / way), grown_over=way)
+        return replace(self, growth=ContactIterate(pressure / distance, tangential / distance), grown_over=distance)
 
-    def expected(self, way: float) -> PosedContact:
-        """The pair with the multipliers that it should have further on by ``way`` in m."""
+    def expected(self, distance: float) -> PosedContact:
+        """The pair with the multipliers that it should have further on by ``distance`` in m."""
         pressure, tangential = self.state.pressure, self.state.tangential
         if self.growth is not None:
-            pressure = np.maximum(0.0, pressure + way * self.growth.pressure)
-            tangential = np.where(pressure > 0, tangential + way * self.growth.tangential, 0.0)
+            pressure = np.maximum(0.0, pressure + distance * self.growth.pressure)
+            tangential = np.where(pressure > 0, tangential + distance * self.growth.tangential, 0.0)
         return replace(self, state=replace(self.state, pressure=pressure, tangential=tangential, multiplier=pressure))
 
-    def resumed(self, now: ContactTraction) -> PosedContact:
-        """The pair for a solution that goes on from forces found already."""
+    def warm_started(self, now: ContactTraction) -> PosedContact:
+        """The pair for a solution whose first iterate has these forces."""
         return replace(self, begin=now.iterate())
 
     def holding(self, displacement: Array) -> PosedContact:
         """The pair with its forces and limits of friction at displacements (d, n) of the points: Newton starts from the forces,
         the limits stay."""
         now = self.at(displacement)
-        return replace(self.resumed(now), pair=self.pair.with_held_limit(now.pressure))
+        return replace(self.warm_started(now), pair=self.pair.with_held_limit(now.pressure))
 
     def augmented(self, now: ContactTraction, share: float = 1.0) -> PosedContact:
         """The pair before the step, with a ``share`` of the forces that were found for it in its multipliers."""
@@ -81,13 +81,13 @@ class PosedContact:
         ``displacement`` (2, m) are those of the new points at the accepted state.
         """
         old = np.argsort(self.reference[0])
-        fields = np.vstack([self.state.pressure, self.state.tangential, self.state.crept + np.zeros_like(self.reference)])
+        fields = np.vstack([self.state.pressure, self.state.tangential, self.state.creep + np.zeros_like(self.reference)])
         pressure, *others = (np.interp(reference[0], self.reference[0, old], values[old]) for values in fields)
-        tangential, crept = np.split(np.array(others), 2)
+        tangential, creep = np.split(np.array(others), 2)
         points = reference + displacement - self.place[:, None]
         normals = self.pair.body.signed_distance(points)[1]
         traction = tangential - np.einsum("in,in->n", tangential, normals) * normals
-        state = ContactState(pressure, traction, points, normals, crept=crept)
+        state = ContactState(pressure, traction, points, normals, creep=creep)
         return replace(self, surface=surface, reference=reference, state=state)
 
     def at(self, displacement: Array) -> ContactTraction:
@@ -98,7 +98,7 @@ class PosedContact:
         """Newton starts from the forces of the last accepted step, or those of a solution to be made exact."""
         return self.pair.iterate(self.state) if self.begin is None else self.begin
 
-    def settled(self, displacement: Array) -> ContactIterate:
+    def iterate_at(self, displacement: Array) -> ContactIterate:
         """The forces that hold at displacements (d, n) of the points."""
         return self.at(displacement).iterate()
 
@@ -113,16 +113,16 @@ class PosedContact:
         lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
         return np.where((gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
 
-    def linearised(self, displacement: Array, carried: ContactIterate) -> ContactTraction:
-        """Traction and derivative as the carried forces decide."""
-        return self.pair.linearised(self._points(displacement), self.state, carried)
+    def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
+        """Traction and derivative as the iterated forces decide."""
+        return self.pair.linearised(self._points(displacement), self.state, iterate)
 
-    def advanced(self, now: ContactTraction, carried: ContactIterate, step: Array, damping: float) -> ContactIterate:
-        """The carried forces after a damped step."""
+    def advanced(self, now: ContactTraction, iterate: ContactIterate, step: Array, damping: float) -> ContactIterate:
+        """The iterated forces after a damped step."""
         full = self.pair.advanced(now, step)
         return ContactIterate(
-            carried.pressure + damping * (full.pressure - carried.pressure),
-            carried.tangential + damping * (full.tangential - carried.tangential),
+            iterate.pressure + damping * (full.pressure - iterate.pressure),
+            iterate.tangential + damping * (full.tangential - iterate.tangential),
         )
 
     def _points(self, displacement: Array) -> Array:

@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.errors import InputError
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.space import Measure, TaylorHood
@@ -128,15 +128,17 @@ class PressedModel(ABC):
         guess: Array,
         *,
         force: float | None = None,
-        past: PastStress | None = None,
+        relaxation: RelaxationStep | None = None,
         loads: Sequence[FollowerLoad] = (),
     ) -> ContactEquilibrium:
         """As ``advance``; with a ``force`` in N the bodies move on from ``load`` until they press so hard.
 
-        ``past`` is what materials that relax remember, ``loads`` what else acts on the tissue.
+        ``relaxation`` holds the coefficients of the time step of materials that relax, ``loads`` what else acts on the tissue.
         """
         directions = (self.down,) * len(state.contacts)
-        return contact_equilibrium(self.problem, state, load, guess, directions=directions, force=force, past=past, loads=loads)
+        return contact_equilibrium(
+            self.problem, state, load, guess, directions=directions, force=force, relaxation=relaxation, loads=loads
+        )
 
     def displacement(self, unknowns: Array) -> Array:
         """Displacements (d, n) in m of the surface points."""
@@ -146,7 +148,9 @@ class PressedModel(ABC):
         """Force (d,) in N of the whole tissue on the body that exerts a traction (d, n) in Pa on the surface points."""
         return -self.images * self.surface.total(traction) + 0.0
 
-    def base_force(self, unknowns: Array, past: PastStress | None = None) -> Array:
+    def base_force(self, unknowns: Array, relaxation: RelaxationStep | None = None) -> Array:
         """Resultant (d,) in N of the internal forces of the whole tissue on the base nodes."""
-        internal = self.body.with_past(past).residual(unknowns)[: self.space.displacement_size].reshape(-1, self.space.dim)
+        internal = (
+            self.body.with_relaxation(relaxation).residual(unknowns)[: self.space.displacement_size].reshape(-1, self.space.dim)
+        )
         return self.images * internal[self.base_nodes].sum(axis=0)

@@ -6,7 +6,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.body import Body
-from tactsim.fem.memory import mean_stress
+from tactsim.fem.history_variables import mean_stress
 from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.ellipticity import elliptic_in

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from tactsim.fem.time_steps import TimeControl
 from tactsim.interfaces import Material
-from tactsim.mechanics.history_path import Stretch
+from tactsim.mechanics.history_path import TimeInterval
 from tactsim.units import FrozenModel, Time
 
 FIRST_SHARE = 1e-3
@@ -72,27 +72,27 @@ class StepPolicy:
     many_iterations: int = TimeControl.many_iterations
     sparing: bool = False
 
-    def control(self, stretch: Stretch) -> TimeControl:
-        """How steps of a stretch grow and shrink."""
+    def control(self, interval: TimeInterval) -> TimeControl:
+        """How steps of an interval grow and shrink."""
         if self._by_load:
-            largest = self.largest(stretch)
+            largest = self.largest(interval)
             return TimeControl(1.0, first=largest, smallest=SMALLEST_LOAD_STEP * largest, many_iterations=self.many_iterations)
-        resolved = stretch.sudden or not self.sparing
-        shortest = min(stretch.duration, self.shortest_time) if resolved else stretch.duration
-        first = min(stretch.duration, self.settings.first or FIRST_SHARE * shortest)
+        resolved = interval.sudden or not self.sparing
+        shortest = min(interval.duration, self.shortest_time) if resolved else interval.duration
+        first = min(interval.duration, self.settings.first or FIRST_SHARE * shortest)
         return TimeControl(
             self.settings.tolerance, first=first, smallest=SMALLEST_SHARE * first, many_iterations=self.many_iterations
         )
 
-    def largest(self, stretch: Stretch) -> float:
+    def largest(self, interval: TimeInterval) -> float:
         """Longest step in s."""
-        divided = stretch.ramped if self.sparing else stretch.changes
-        by_ramp = stretch.duration / (self.per_ramp if divided else 1)
-        return min(by_ramp, stretch.shortest_period / self.per_period)
+        divided = interval.ramped if self.sparing else interval.changes
+        by_ramp = interval.duration / (self.per_ramp if divided else 1)
+        return min(by_ramp, interval.shortest_period / self.per_period)
 
-    def stops(self, stretch: Stretch) -> list[float]:
-        """Times in s at which a step must end, the last one the end of the stretch."""
-        return [stretch.end] if self._by_load else self.settings.stops(stretch.start, stretch.end)
+    def stops(self, interval: TimeInterval) -> list[float]:
+        """Times in s at which a step must end, the last one the end of the interval."""
+        return [interval.end] if self._by_load else self.settings.stops(interval.start, interval.end)
 
     @property
     def _by_load(self) -> bool:

@@ -32,7 +32,7 @@ class VolumeRatios:
     """The worst of the accepted states of one run."""
 
     def __init__(self) -> None:
-        self.worst, self._told = 0.0, ""
+        self.worst, self._worst_in_words = 0.0, ""
 
     def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
         """Part of the volume with poor ratios in a state."""
@@ -41,7 +41,7 @@ class VolumeRatios:
         share = float(weights[poor].sum() / weights.sum())
         if share > self.worst:
             self.worst, ratios = share, state.kinematics.J[poor]
-            self._told = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst near {_place(body, error)}"
+            self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst near {_place(body, error)}"
         return share
 
     def warnings(self) -> list[str]:
@@ -50,7 +50,7 @@ class VolumeRatios:
             return []
         return [
             f"{self.worst:.2%} of the volume misses the volume that its pressure asks for by more than {POOR_RATIO:.0%} (local "
-            f"volume ratios of {self._told}): the mesh is too coarse there; take smaller elements"
+            f"volume ratios of {self._worst_in_words}): the mesh is too coarse there; take smaller elements"
         ]
 
 

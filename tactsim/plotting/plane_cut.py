@@ -71,20 +71,20 @@ def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> Plan
     ``values`` are nodal (n,), or (E, 4) at the corners of each element, linear in it: these may jump between elements.
     """
     nodes, others = deformed(frame), [k for k in range(3) if k != axis]
-    carried = np.column_stack([nodes[:, axis] - level, nodes[:, others]])
+    nodal_values = np.column_stack([nodes[:, axis] - level, nodes[:, others]])
     elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
-    crossed = _crossed(carried, elements)
+    crossed = _crossed(nodal_values, elements)
     own = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
-    cut = _cut_tetrahedra(_divided(np.concatenate([carried[elements[crossed]], own[:, :, None]], axis=2)))
-    pieces, number = _cut_triangles(_divided(carried[faces]))
+    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], own[:, :, None]], axis=2)))
+    pieces, number = _cut_triangles(_divided(nodal_values[faces]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
     return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[number // PARTS**2])
 
 
-def _crossed(carried: Array, elements: Array) -> Array:
+def _crossed(nodal_values: Array, elements: Array) -> Array:
     """Numbers of the elements that the plane may pass: between its nodes a curved one may reach a little farther than these."""
-    side = carried[elements, 0]
+    side = nodal_values[elements, 0]
     beyond = BEYOND_NODES * np.ptp(side, axis=1)
     return np.flatnonzero((side.min(axis=1) < beyond) & (side.max(axis=1) >= -beyond))
 
@@ -94,12 +94,12 @@ def _quadratic_values(corners: Array) -> Array:
     return np.hstack([corners, np.stack([(corners[:, i] + corners[:, j]) / 2 for i, j in EDGES], axis=1)])
 
 
-def _divided(carried: Array) -> Array:
+def _divided(nodal_values: Array) -> Array:
     """What quadratic simplices carry at their nodes (E, 6 or 10, c), at the corners (S, d + 1, c) of small straight ones."""
-    flat = carried.shape[1] == 6
+    flat = nodal_values.shape[1] == 6
     corners = _TRIANGLES if flat else _TETRAHEDRA
     shapes = _quadratic(corners, FACE_EDGES if flat else EDGES)
-    return np.einsum("pka,eac->epkc", shapes, carried).reshape(-1, corners.shape[1], carried.shape[2])
+    return np.einsum("pka,eac->epkc", shapes, nodal_values).reshape(-1, corners.shape[1], nodal_values.shape[2])
 
 
 def _quadratic(corners: Array, edges: Sequence[tuple[int, int]]) -> Array:
@@ -169,7 +169,7 @@ def _by_side(simplices: Array) -> tuple[Array, Array]:
 
 
 def _crossing(first: Array, second: Array) -> Array:
-    """What is carried (n, c) where edges cross the plane."""
+    """Nodal values (n, c) where edges cross the plane."""
     share = first[:, :1] / (first[:, :1] - second[:, :1])
     return (1 - share) * first + share * second
 

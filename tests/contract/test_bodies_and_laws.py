@@ -104,21 +104,21 @@ def test_newton_sees_the_derivative_of_the_traction(kind, law, dim, held):
         assert kink.mean() < 0.05
 
 
-@pytest.mark.parametrize("grip", [0.0, 1.0])
-def test_a_held_limit_does_not_follow_the_pressure(grip):
+@pytest.mark.parametrize("friction_mask", [0.0, 1.0])
+def test_a_held_limit_does_not_follow_the_pressure(friction_mask):
     pressures = np.array([0.0, 1e3, 2e3])
-    pair = ContactPair(BODIES["plane"].example(), LAWS["coulomb"](friction=0.5), grip=np.full(3, grip))
+    pair = ContactPair(BODIES["plane"].example(), LAWS["coulomb"](friction=0.5), friction_mask=np.full(3, friction_mask))
     held = pair.with_held_limit(pressures)
-    np.testing.assert_allclose(held.traction_limit(10 * pressures), grip * 0.5 * pressures)
+    np.testing.assert_allclose(held.traction_limit(10 * pressures), friction_mask * 0.5 * pressures)
     np.testing.assert_array_equal(held.limit_slope(pressures), 0)
-    np.testing.assert_allclose(pair.limit_slope(pressures), grip * 0.5)
+    np.testing.assert_allclose(pair.limit_slope(pressures), friction_mask * 0.5)
 
 
-def test_a_pair_rubs_where_its_law_has_friction_and_its_grip_lets_it():
+def test_a_pair_has_friction_where_its_law_and_its_mask_allow_it():
     plane = BODIES["plane"].example()
     rough, smooth = LAWS["coulomb"](friction=0.5), LAWS["coulomb"](friction=0.0)
-    assert ContactPair(plane, rough).rubs
-    assert ContactPair(plane, LAWS["stick"].example()).rubs
-    assert ContactPair(plane, rough, grip=np.array([0.0, 1.0])).rubs
-    assert not ContactPair(plane, rough, grip=np.zeros(2)).rubs
-    assert not ContactPair(plane, smooth).rubs
+    assert ContactPair(plane, rough).has_friction
+    assert ContactPair(plane, LAWS["stick"].example()).has_friction
+    assert ContactPair(plane, rough, friction_mask=np.array([0.0, 1.0])).has_friction
+    assert not ContactPair(plane, rough, friction_mask=np.zeros(2)).has_friction
+    assert not ContactPair(plane, smooth).has_friction

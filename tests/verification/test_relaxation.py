@@ -23,7 +23,7 @@ from tactsim.contact.stick import Stick
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body
-from tactsim.fem.memory import Memory, elastic_stress, series_of, step_error
+from tactsim.fem.history_variables import HistoryVariables, elastic_stress, series_of, step_error
 from tactsim.fem.newton import NewtonOptions, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.fem.space import TaylorHood
@@ -68,7 +68,7 @@ class Block:
         self.top = held(mesh, dim - 1, on_plane(dim - 1, 1.0))
         fixed = np.concatenate([*sides, *base, *([self.top] if law is None else [])])
         self.problem = Problem(self.body, fixed, options=PATIENT)
-        self.memory = Memory.at_rest(self.body, series_of(self.body))
+        self.variables = HistoryVariables.at_rest(self.body, series_of(self.body))
         self.unknowns, self.place = np.zeros(self.space.size), np.eye(dim)[-1]
         self.scale = Regularisation(tolerance=tolerance, softest=material.shear_modulus, switch_length=0.1)
         if law is not None:
@@ -77,23 +77,29 @@ class Block:
 
     def moved(self, stretch, time_step):
         """Nominal stress in Pa after the top has moved within a step."""
-        guess, past = self.unknowns.copy(), self.memory.past(time_step)
+        guess, relaxation = self.unknowns.copy(), self.variables.relaxation_step(time_step)
         guess[self.top] = stretch - 1
-        solved = self.problem.solve(guess, past=past)
+        solved = self.problem.solve(guess, relaxation=relaxation)
         self._accept(solved, time_step)
-        force = self.body.with_past(past).residual(self.unknowns)[self.top].sum()
+        force = self.body.with_relaxation(relaxation).residual(self.unknowns)[self.top].sum()
         return force / self.surface.points.weights.sum()
 
     def pressed(self, time_step, *, height=None, force=None):
         """Force in N on the plane at a height, or its height under a force, after a step."""
-        push = None if force is None else PrescribedForce((-np.eye(self.dim)[-1],), force)
+        load_control = None if force is None else PrescribedForce((-np.eye(self.dim)[-1],), force)
         if height is not None:
             self.place = height * np.eye(self.dim)[-1]
         contact = self.contact.moved(self.place, self.scale.applied(self.contact.pair))
-        travel = 0.0 if force is None else 1e-8
-        past = self.memory.past(time_step)
-        solved = self.problem.solve(self.unknowns, interfaces=[contact], push=push, travel=travel, past=past)
-        self.place = self.place - solved.travel * np.eye(self.dim)[-1]
+        rigid_displacement = 0.0 if force is None else 1e-8
+        relaxation = self.variables.relaxation_step(time_step)
+        solved = self.problem.solve(
+            self.unknowns,
+            interfaces=[contact],
+            load_control=load_control,
+            rigid_displacement=rigid_displacement,
+            relaxation=relaxation,
+        )
+        self.place = self.place - solved.rigid_displacement * np.eye(self.dim)[-1]
         self._accept(solved, time_step)
         displacement = self.surface.points.interpolate(self.space.split(self.unknowns)[0])
         moved = contact.moved(self.place, contact.pair)
@@ -102,7 +108,7 @@ class Block:
 
     def _accept(self, solved, time_step):
         self.unknowns = solved.unknowns
-        self.memory = self.memory.advanced(elastic_stress(self.body, solved.kinematics), time_step)
+        self.variables = self.variables.advanced(elastic_stress(self.body, solved.kinematics), time_step)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
@@ -156,7 +162,7 @@ def shortened(s):
 def march(tolerance):
     """Nominal stress at 4 s, and the number of steps."""
     block = Block("axisymmetric", RUBBER)
-    states = {0.0: (block.unknowns, block.memory, 0.0)}
+    states = {0.0: (block.unknowns, block.variables, 0.0)}
 
     class State:
         iterations = 3
@@ -165,9 +171,9 @@ def march(tolerance):
             self.time, self.unknowns = time, states[time][0]
 
     def advance(now, time, guess):
-        block.unknowns, block.memory, _ = states[now.time]
+        block.unknowns, block.variables, _ = states[now.time]
         stress = block.moved(shortened(time), time - now.time)
-        states[time] = (block.unknowns, block.memory, stress)
+        states[time] = (block.unknowns, block.variables, stress)
         return State(time)
 
     def error(state):
@@ -203,7 +209,7 @@ def test_small_strain_follows_linear_viscoelasticity(measure):
     for t, dt in zip(times, np.diff(times, prepend=0.0), strict=True):
         found.append(block.moved(1 + rate * min(t, 1.0), dt))
         if t == 1.0:
-            block.memory = block.memory.at_kink()
+            block.variables = block.variables.at_slope_change()
 
     def check(expected):
         np.testing.assert_allclose(found, expected, rtol=1e-9, err_msg="uniaxial, incompressible: E = 3 G")

@@ -9,7 +9,7 @@ from solids import assert_close, body_of, box, first_piola_kirchhoff, solve_near
 
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.fem import forms
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.material_forms import compiled_form
 from tactsim.interfaces import Array, Material
 from tactsim.materials.linear_elastic import LinearElastic
@@ -57,18 +57,18 @@ def test_an_exponent_of_two_is_neo_hooke():
         assert_close(other.first_piola_kirchhoff(F, pressure), known.first_piola_kirchhoff(F, pressure), SAME)
 
 
-def body_and_unknowns(measure: str, material: Material, *, past: bool) -> tuple[Body, Array]:
-    """A jittered box of two materials, deformed; with ``past``, in a step of time of materials that relax."""
+def body_and_unknowns(measure: str, material: Material, *, relaxing: bool) -> tuple[Body, Array]:
+    """A jittered box of two materials, deformed; with ``relaxing``, in a step of time of materials that relax."""
     counts = MEASURES[measure]
     mesh = box([1.0] * len(counts), counts, jitter=0.2, seed=3)
     nodes = mesh.nodes + (np.array([0.3, 0.0]) if measure == "axisymmetric" else 0.0)
     mesh = QuadraticMesh(nodes, mesh.elements, np.arange(len(mesh.elements)) % 2)
     body = body_of(mesh, measure, material, NeoHookean(c10=MODULUS / 4, bulk_modulus=MODULUS))
     generator = np.random.default_rng(1)
-    if past:
+    if relaxing:
         shape = body.points.weights.shape
         earlier = MODULUS * generator.normal(size=(6, *shape))
-        body = body.with_past(PastStress(generator.uniform(0.2, 1.0, shape[0]), earlier))
+        body = body.with_relaxation(RelaxationStep(generator.uniform(0.2, 1.0, shape[0]), earlier))
     unknowns = MODULUS * generator.normal(size=body.space.size)
     u, _ = body.space.split(unknowns)
     stretch = generator.uniform(-0.2, 0.2, (body.space.dim,) * 2)
@@ -76,10 +76,10 @@ def body_and_unknowns(measure: str, material: Material, *, past: bool) -> tuple[
     return body, unknowns
 
 
-@pytest.mark.parametrize("past", [False, True], ids=["elastic", "relaxing"])
+@pytest.mark.parametrize("relaxing", [False, True], ids=["elastic", "relaxing"])
 @pytest.mark.parametrize("measure", MEASURES)
-def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, past):
-    body, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4), past=past)
+def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, relaxing):
+    body, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4), relaxing=relaxing)
     assert body.forms == (None, "invariants")
     residual, tangent = forms.residual(body, unknowns), forms.tangent(body, unknowns).toarray()
     assert_close(body.residual(unknowns), residual, 1e-12)
@@ -88,11 +88,11 @@ def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, past
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_interpreted_elements_equal_compiled_ones(measure):
-    own, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS), past=True)
-    known, _ = body_and_unknowns(measure, NeoHookean(c10=MODULUS / 2), past=True)
+    own, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS), relaxing=True)
+    known, _ = body_and_unknowns(measure, NeoHookean(c10=MODULUS / 2), relaxing=True)
     assert_close(own.residual(unknowns), known.residual(unknowns), SAME)
     assert_close(own.tangent(unknowns), known.tangent(unknowns), SAME)
-    other, _ = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=2.1), past=True)
+    other, _ = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=2.1), relaxing=True)
     with pytest.raises(AssertionError):
         assert_close(other.residual(unknowns), known.residual(unknowns), SAME)
 

@@ -141,12 +141,12 @@ class ClosedForm(Experiment):
     def _quantities(
         self, annulus: ViscoelasticAnnulus, last: dict[str, float], columns: tuple[Array, ...]
     ) -> dict[str, Quantity]:
-        told = {
+        quantities = {
             "displacement": "displacement of the annulus at the end",
             "force": "force on the annulus at the end",
             "tissue_rise_axis": "height of the tissue on the axis above the face of the annulus at the end",
         }
-        found = {name: Quantity(last[name], self.history_units[name], words) for name, words in told.items()}
+        found = {name: Quantity(last[name], self.history_units[name], words) for name, words in quantities.items()}
         _, displacement, force, _ = columns
         found["largest_displacement"] = Quantity(float(displacement.max()), "m", "largest displacement")
         found["largest_force"] = Quantity(float(force.max()), "N", "largest force")
@@ -156,14 +156,16 @@ class ClosedForm(Experiment):
         return found
 
     def _warnings(self, times: Array, force: Array, displacement: Array) -> list[str]:
-        told = []
+        warnings = []
         pulled = force < -1e-9 * np.abs(force).max()
         if pulled.any():
             first = format_quantity(float(times[pulled][0]), "s")
-            told.append(f"the force is negative, first at {first}: a real contact opens there, and the closed form ends")
+            warnings.append(f"the force is negative, first at {first}: a real contact opens there, and the closed form ends")
         deepest = float(np.abs(displacement).max()) / self.outer_radius
         if deepest > SMALL:
-            told.append(f"the displacement reaches {deepest:.3g} of the outer radius; linear theory is meant for up to {SMALL:g}")
+            warnings.append(
+                f"the displacement reaches {deepest:.3g} of the outer radius; linear theory is meant for up to {SMALL:g}"
+            )
         tissue = {} if self.thickness is None else {"thickness": self.thickness}
         radii = {"inner_radius": self.inner_radius} if self.inner_radius else {}
-        return told + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})
+        return warnings + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})

@@ -35,30 +35,30 @@ class ClosedFormRecorder(Recorder):
 
     def labels_of(self, experiment: Experiment) -> list[Variable]:
         """Radii and moduli."""
-        told = {
+        variables = {
             "inner_radius": ("m", "inner radius of the annulus"),
             "outer_radius": ("m", "outer radius of the annulus"),
             "instantaneous_shear_modulus": ("Pa", "shear modulus of the tissue at once"),
             "equilibrium_shear_modulus": ("Pa", "shear modulus of the tissue after a long time"),
         }
-        return [label(name, unit, words) for name, (unit, words) in told.items()]
+        return [label(name, unit, words) for name, (unit, words) in variables.items()]
 
     def labels(self, experiment: ClosedForm) -> Values:
         """Values of the same."""
         relaxation = shear_relaxation(experiment.material)
-        told = (
+        values = (
             experiment.inner_radius,
             experiment.outer_radius,
             relaxation.instantaneous_modulus,
             relaxation.equilibrium_modulus,
         )
-        return {v.name: np.array(value) for v, value in zip(self.labels_of(experiment), told, strict=True)}
+        return {v.name: np.array(value) for v, value in zip(self.labels_of(experiment), values, strict=True)}
 
     def readings_of(self, experiment: Any) -> list[Variable]:
         """Histories."""
-        told = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.settings.reading else {})}
+        variables = {"time_s": ("s", "time since the beginning"), **HISTORY, **(READ if self.settings.reading else {})}
         times, given = self.settings.times, experiment.loading.control
-        return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in told.items()]
+        return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in variables.items()]
 
     def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the times that the experiment sampled."""

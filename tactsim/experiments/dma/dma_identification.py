@@ -101,16 +101,18 @@ class DmaIdentification(Experiment):
         return DmaFinding(fit, band, determination(fit))
 
     def _assumptions(self) -> list[str]:
-        told = []
+        assumptions = []
         if isinstance(self.data, SyntheticDma):
-            told.append(
+            assumptions.append(
                 f"synthetic data of Table 4.1 (times read as {self.data.times.replace('_', ' ')}) with {self.data.noise:.3g} "
                 "relative noise: the data of Fig. 4.10 are not printed"
             )
-        told.append("noise independent and Gaussian, its standard deviation proportional to each elastic and viscous compliance")
+        assumptions.append(
+            "noise independent and Gaussian, its standard deviation proportional to each elastic and viscous compliance"
+        )
         if "genetic" in self.methods:
-            told.append(
+            assumptions.append(
                 f"genetic algorithm of {self.population} individuals and {self.generations} generations, log-uniform between "
                 "bounds (the thesis prints none of these)"
             )
-        return told
+        return assumptions

@@ -123,7 +123,7 @@ def _draw_foot(figure: Figure, result: Result) -> None:
     if result.status is not Status.CONVERGED:
         mark_failure(figure, result)
         return
-    told = result.quantities.get("determined_combinations")
-    if told is not None:
-        words = f"the data determine {told.value} {told.description.removesuffix(' that the data determine')}"
+    combinations = result.quantities.get("determined_combinations")
+    if combinations is not None:
+        words = f"the data determine {combinations.value} {combinations.description.removesuffix(' that the data determine')}"
         figure.supxlabel(words, x=0.01, ha="left", fontsize=8.5)

@@ -91,10 +91,14 @@ class DmaReport:
         if self.fits:
             least = fit_least_squares(self.data, self._units, weighting="objective").objective
             found["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
-            told = next(iter(self.fits.values())).determination
-            found["relative_noise"] = Quantity(told.noise, "1", "relative standard deviation of each number, known or estimated")
+            determination = next(iter(self.fits.values())).determination
+            found["relative_noise"] = Quantity(
+                determination.noise, "1", "relative standard deviation of each number, known or estimated"
+            )
             found["determined_combinations"] = Quantity(
-                told.determined_combinations, "1", f"combinations of the {len(told.names)} constants that the data determine"
+                determination.determined_combinations,
+                "1",
+                f"combinations of the {len(determination.names)} constants that the data determine",
             )
         return found
 
@@ -144,15 +148,15 @@ class DmaReport:
         return DmaScene(data_frequencies=self.data.frequencies.tolist(), fits=fits)
 
     def _fit(self, finding: DmaFinding) -> KelvinFit:
-        told, band, history = finding.determination, finding.band, np.array(finding.fit.history or ())
+        determination, band, history = finding.determination, finding.band, np.array(finding.fit.history or ())
         shown = np.unique(np.geomspace(1, max(1, len(history)), SHOWN_GENERATIONS).round().astype(int))[: len(history)]
         return KelvinFit(
             evaluations=finding.fit.evaluations,
-            statement=told.statement(),
-            constants=dict(zip(told.names, told.values.tolist(), strict=True)),
-            standard_errors_of_logarithms=dict(zip(told.names, told.relative_errors.tolist(), strict=True)),
-            told=dict(zip(told.names, told.determined.tolist(), strict=True)),
-            singular_values=told.singular_values.tolist(),
+            statement=determination.statement(),
+            constants=dict(zip(determination.names, determination.values.tolist(), strict=True)),
+            standard_errors_of_logarithms=dict(zip(determination.names, determination.relative_errors.tolist(), strict=True)),
+            told=dict(zip(determination.names, determination.determined.tolist(), strict=True)),
+            singular_values=determination.singular_values.tolist(),
             confidence=band.confidence,
             band="simultaneous" if band.simultaneous else "pointwise",
             generation=shown.tolist(),

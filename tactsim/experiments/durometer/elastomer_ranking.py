@@ -181,30 +181,34 @@ class ElastomerRanking(Experiment):
             raise Unfinished(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
         modulus = youngs_modulus(shape.material.shear_modulus, None)
         found = {name: float(pressed.quantities[f"threshold_{name}"].value) for name in ("pressure", "displacement")}
-        told = "" if indented.status is Status.CONVERGED else indented.reason
+        cut_short = "" if indented.status is Status.CONVERGED else indented.reason
         return ShapeFinding(
             shape=shape,
             youngs_modulus=modulus,
             threshold_pressure=found["pressure"],
             threshold_displacement=found["displacement"],
             curve=ForceDepthCurve.of(indented, modulus),
-            cut_short=told,
+            cut_short=cut_short,
         )
 
     def _assumptions(self) -> list[str]:
         sizes = (("sensor", self.sensor.specimen), ("durometer", self.durometer.specimen))
-        told = [
+        assumptions = [
             f"specimen under the {name}: radius {format_quantity(size.radius, 'm')}, thickness "
             f"{format_quantity(size.thickness, 'm')}, on a fixed base (the thesis prints no size)"
             for name, size in sizes
         ]
-        told.append("durometer of type OO by its recalled dimensions; its presser foot, and how long it rests, do not count")
-        told.append("all elastomers share the shape of energy, so that the threshold and the predicted reading rank them alike")
-        told.append("exactly incompressible, elastic and homogeneous (H1-N is said to be denser at its surface)")
-        told.append(
+        assumptions.append(
+            "durometer of type OO by its recalled dimensions; its presser foot, and how long it rests, do not count"
+        )
+        assumptions.append(
+            "all elastomers share the shape of energy, so that the threshold and the predicted reading rank them alike"
+        )
+        assumptions.append("exactly incompressible, elastic and homogeneous (H1-N is said to be denser at its surface)")
+        assumptions.append(
             "Table 4.1 as creep compliance 1/E with retardation times in s, the modulus at a time taken as its reciprocal"
         )
-        return told
+        return assumptions
 
 
 def _finished(experiment: Experiment) -> Result:

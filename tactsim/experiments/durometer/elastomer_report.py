@@ -171,14 +171,14 @@ class RankingReport:
         shapes = range(len(self._found))
         printed = np.array([one.durometer for one in self._elastomers])
         differences = [(np.array(self._readings(shape)) - printed).tolist() for shape in shapes]
-        told = {
+        quantities = {
             "predicted_reading": ("1", "predicted reading, by shape and elastomer; 0 is off the scale"),
             "modulus_of_threshold": ("Pa", "Young's modulus from the threshold pressure, by shape and elastomer"),
             "modulus_of_reading": ("Pa", "Young's modulus from the printed reading, by shape and elastomer"),
             "modulus_ratio": ("1", "modulus from the printed reading over that from the threshold, by shape and elastomer"),
         }
         found = self._rank_correlations()
-        found |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in told.items()}
+        found |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in quantities.items()}
         words = "predicted minus printed reading, by shape and elastomer"
         found["reading_difference"] = Quantity(differences, "1", words)
         own = [self._own(shape) for shape in shapes]
@@ -198,13 +198,13 @@ class RankingReport:
         }
 
     def _warnings(self) -> list[str]:
-        told = [f"{one.shape.name}: the durometer ended early, {one.cut_short}" for one in self._found if one.cut_short]
+        warnings = [f"{one.shape.name}: the durometer ended early, {one.cut_short}" for one in self._found if one.cut_short]
         for shape, finding in enumerate(self._found):
             off = self._column(shape, "bottoms_out")
             lost = [one.name for one, value in zip(self._elastomers, off, strict=True) if value]
             if lost:
-                told.append(f"{finding.shape.name}: the durometer bottoms out on {', '.join(lost)}; they share the rank of 0")
-        return told
+                warnings.append(f"{finding.shape.name}: the durometer bottoms out on {', '.join(lost)}; they share the rank of 0")
+        return warnings
 
     def findings(self, assumptions: Sequence[str]) -> Findings:
         """What every shape that was finished says."""

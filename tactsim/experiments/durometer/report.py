@@ -78,18 +78,20 @@ class DurometerRecord(IndentationRecord):
         found = super().quantities()
         radius = self.setup.body.radius
         hertz = hertz_reading(self.youngs_modulus, self.scale, radius)
-        told = {
+        quantities = {
             "hertz_reading": Quantity(
                 hertz or 0.0, "1", "reading by Hertz on a half-space of the same modulus; 0 is off the scale"
             )
         }
-        told["youngs_modulus"] = Quantity(self.youngs_modulus, "Pa", "small-strain Young's modulus of the surface")
+        quantities["youngs_modulus"] = Quantity(self.youngs_modulus, "Pa", "small-strain Young's modulus of the surface")
         if self.balance:
-            told = self._reading() | told
+            quantities = self._reading() | quantities
         elif self._went_all_the_way():
-            told = {"reading": Quantity(0.0, "1", "reading of an indentor that bottoms out: the true one is below 0")} | told
-            told["bottoms_out"] = Quantity(1, "1", "1 where the tissue does not bear the spring at the whole travel")
-        return told | found
+            quantities = {
+                "reading": Quantity(0.0, "1", "reading of an indentor that bottoms out: the true one is below 0")
+            } | quantities
+            quantities["bottoms_out"] = Quantity(1, "1", "1 where the tissue does not bear the spring at the whole travel")
+        return quantities | found
 
     def _went_all_the_way(self) -> bool:
         return bool(self.steps) and self.steps[-1].values["displacement"] >= self.scale.travel * (1 - 1e-9)

@@ -121,10 +121,14 @@ class FilmCreep(Experiment):
         )
 
     def _assumptions(self) -> tuple[str, ...]:
-        told = ["independent errors of the strain of equal size in a test; intervals by linearisation and Student's distribution"]
+        assumptions = [
+            "independent errors of the strain of equal size in a test; intervals by linearisation and Student's distribution"
+        ]
         if isinstance(self.data, SyntheticCreep):
-            told.append(f"synthetic creep with {self.data.noise:.3g} relative noise: the data of Fig. 2.6a are not printed")
-        return tuple(told)
+            assumptions.append(
+                f"synthetic creep with {self.data.noise:.3g} relative noise: the data of Fig. 2.6a are not printed"
+            )
+        return tuple(assumptions)
 
     def _warnings(self, fits: list[CreepFit]) -> tuple[str, ...]:
         return tuple(

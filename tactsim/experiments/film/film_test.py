@@ -115,8 +115,8 @@ class FilmTest(Experiment):
             "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time, for each force"),
         }
         shown = {name: values for name, values in self._shown(signal).items() if name != "conductance"}
-        told = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
-        return found | told
+        readings = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
+        return found | readings
 
     def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""

@@ -95,7 +95,7 @@ class ForceCalibration(Experiment):
 
     def _quantities(self, fit: CalibrationFit) -> dict[str, Quantity]:
         sure, scaled = f"{100 * self.confidence:g} % interval", "over the full scale"
-        told = {
+        quantities = {
             "slope": (fit.slope, "S/N", "m of C = m F + n"),
             "slope_interval": (fit.slope_interval, "S/N", f"{sure} of m, lower and upper"),
             "intercept": (fit.intercept, "S", "n of C = m F + n"),
@@ -109,28 +109,28 @@ class ForceCalibration(Experiment):
         }
         truth = self.data.truth()
         if truth is not None:
-            told["slope_error"] = (fit.slope / truth[0] - 1, "1", "m over its true value, less one")
-            told["intercept_error"] = (fit.intercept - truth[1], "S", "n less its true value")
-        return {name: Quantity(_alone(value), unit, words) for name, (value, unit, words) in told.items()}
+            quantities["slope_error"] = (fit.slope / truth[0] - 1, "1", "m over its true value, less one")
+            quantities["intercept_error"] = (fit.intercept - truth[1], "S", "n less its true value")
+        return {name: Quantity(_alone(value), unit, words) for name, (value, unit, words) in quantities.items()}
 
     def _assumptions(self) -> list[str]:
-        told = ["the applied forces are exact; the noise is independent, Gaussian and alike in voltage at every force"]
+        assumptions = ["the applied forces are exact; the noise is independent, Gaussian and alike in voltage at every force"]
         if isinstance(self.data, SyntheticCalibration):
-            told.append("synthetic readings of a declared line: the data of Fig. 3.4 are not printed")
+            assumptions.append("synthetic readings of a declared line: the data of Fig. 3.4 are not printed")
         supply, load = format_quantity(self.chain.supply, "V"), format_quantity(self.chain.load_resistor, "ohm")
-        told.append(f"supply {supply} (0.5 V in 3.1.2, 5 V in 2.2: E27) and load resistor {load} (not printed)")
-        return told
+        assumptions.append(f"supply {supply} (0.5 V in 3.1.2, 5 V in 2.2: E27) and load resistor {load} (not printed)")
+        return assumptions
 
     def _warnings(self, force: Array, fit: CalibrationFit) -> list[str]:
-        told = []
+        warnings = []
         excluded = int(fit.excluded.sum())
         if excluded:
-            told.append(f"{excluded} of {fit.used.size} readings are saturated and were left out")
+            warnings.append(f"{excluded} of {fit.used.size} readings are saturated and were left out")
         curved = [k + 1 for k in range(fit.slope.size) if self._curved(force, fit, k)]
         if curved:
             which = "" if fit.slope.size == 1 else f" of sensor {', '.join(map(str, curved))}"
-            told.append(f"the residuals{which} follow a curve: the intervals, which know noise alone, are too narrow")
-        return told
+            warnings.append(f"the residuals{which} follow a curve: the intervals, which know noise alone, are too narrow")
+        return warnings
 
     def _curved(self, force: Array, fit: CalibrationFit, sensor: int) -> bool:
         """Whether neighbouring residuals of a sensor are more alike than noise beyond a step of the converter makes them."""

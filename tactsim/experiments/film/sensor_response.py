@@ -157,19 +157,19 @@ class SensorResponse(Experiment):
             ("model", model, "inverse of the film", good),
             ("linear", raw, "straight line", every),
         ):
-            told = range_errors(force[chosen], reading[chosen], self.ranges)
+            errors = range_errors(force[chosen], reading[chosen], self.ranges)
             where = f"by the {how} without low pass, for each range of force" + ("" if chosen is every else "; to saturation")
-            found[f"{name}_range_rms_error"] = Quantity([r.rms for r in told], "N", f"root mean square error {where}")
-            found[f"{name}_range_largest_error"] = Quantity([r.largest for r in told], "N", f"largest error {where}")
-        found["range_samples"] = Quantity([r.samples for r in told], "1", "samples in each range of force")
+            found[f"{name}_range_rms_error"] = Quantity([r.rms for r in errors], "N", f"root mean square error {where}")
+            found[f"{name}_range_largest_error"] = Quantity([r.largest for r in errors], "N", f"largest error {where}")
+        found["range_samples"] = Quantity([r.samples for r in errors], "1", "samples in each range of force")
         return found
 
     def _warnings(self, force: Array, recording: Recording) -> tuple[str, ...]:
-        told = list(self.film.warnings(float(force.max())))
+        warnings = list(self.film.warnings(float(force.max())))
         if recording.saturated.any():
             first = format_quantity(float(recording.time[recording.saturated][0]), "s")
-            told.append(
+            warnings.append(
                 f"{int(recording.saturated.sum())} samples are outside the range of the converter, first at {first}; "
                 "they are flagged in history.csv, and the inverse of the film ends there"
             )
-        return tuple(told)
+        return tuple(warnings)

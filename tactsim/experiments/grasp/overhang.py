@@ -29,19 +29,19 @@ def covered_areas(jaw: Jaw, middle: Array, size: Array, layout: TaxelLayout) -> 
 
 def overhang_warnings(grasp: GraspSetup) -> list[str]:
     """What a user is told of taxels that reach beyond the block, jaw by jaw."""
-    size, layout, told = np.array(grasp.block.size[:2]), grasp.matrix, []
+    size, layout, warnings = np.array(grasp.block.size[:2]), grasp.matrix, []
     for side in JAWS:
         areas = covered_areas(grasp.jaw(side), size / 2 + getattr(grasp, side).offset, size, layout)
         beyond = areas < COVERED * layout.area
         if beyond.any():
             row, column = np.unravel_index((areas / layout.area).round(9).argmin(), areas.shape)
             covered, whole, least = 1e6 * areas[beyond].sum(), 1e6 * layout.area * beyond.sum(), 1e6 * areas.min()
-            told.append(
+            warnings.append(
                 f"{beyond.sum()} of {areas.size} taxels of the {side} jaw reach beyond the block: {covered:.4g} mm^2 of their "
                 f"{whole:.4g} mm^2 ({covered / whole:.1%}) face it, least row {row + 1}, column {column + 1} with {least:.4g} "
                 f"mm^2 ({areas.min() / layout.area:.1%}); their pressures are forces over whole taxels"
             )
-    return told
+    return warnings
 
 
 def _clipped(corners: Array, size: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.pressure import FollowerPressure
 from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.history_path import TimedPath, TimedState, stretches
+from tactsim.mechanics.history_path import TimedPath, TimedState, smooth_intervals
 from tactsim.mechanics.pressed_body import PressedBody
 
 TOUCH = 0.02
@@ -18,7 +18,7 @@ FIRST_PART = 0.6
 
 def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
     """The path through all histories of a grasp, from jaws that just touch."""
-    course = stretches(experiment.histories(), experiment.duration)
+    course = smooth_intervals(experiment.histories(), experiment.duration)
     contact = model.start(experiment.contact, experiment.regularisation())
     start = TimedState.at_rest(model.body, contact, 1 + len(experiment.lumens))
     return TimedPath(grasped_block(experiment, model), experiment.time.policy(experiment.materials), course, start)
@@ -35,7 +35,7 @@ def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:
     return PressedBody(
         model,
         by_force=experiment.loading.control == "force",
-        first_travel=TOUCH * experiment.softness,
+        first_displacement=TOUCH * experiment.softness,
         walls=[FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets],
         first_guess=None if hollow else lambda closing: model.compressed(FIRST_PART * closing),
     )

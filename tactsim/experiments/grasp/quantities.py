@@ -49,11 +49,15 @@ def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]]
     """What every accepted step had, if there are more than one."""
     if len(values) < 2:
         return {}
-    told = {"time": "time", "displacement": "closing of each jaw", "reaction_force": "force pressing into the upper jaw's face"}
+    descriptions = {
+        "time": "time",
+        "displacement": "closing of each jaw",
+        "reaction_force": "force pressing into the upper jaw's face",
+    }
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}
     found = {
         f"{name}_history": Quantity([step[name] for step in values], units[name], f"{text}, at each accepted step")
-        for name, text in told.items()
+        for name, text in descriptions.items()
     }
     for side in readings[0]:
         forces = [reading[side].taxels.taxels[2].tolist() for reading in readings]

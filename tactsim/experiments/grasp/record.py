@@ -132,42 +132,42 @@ class GraspRecord(ContactRecord[GraspModel]):
         """What was chosen."""
         experiment, block = self.experiment, self._sourced.block
         size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
-        told = [f"block of {size} (the thesis prints no size)"]
+        assumptions = [f"block of {size} (the thesis prints no size)"]
         for side in JAWS:
             jaw = experiment.jaw(side)
             width, depth = format_quantity(jaw.width, "m"), format_quantity(jaw.depth, "m")
             edges = format_quantity(jaw.fillet, "m")
-            told.append(f"{side} jaw of {width} x {depth}, edges rounded by {edges} (not printed)")
+            assumptions.append(f"{side} jaw of {width} x {depth}, edges rounded by {edges} (not printed)")
         pitch, taxel = format_quantity(experiment.matrix.pitch, "m"), format_quantity(experiment.matrix.size, "m")
-        told.append(f"taxels of {taxel} at a pitch of {pitch} (not printed)")
+        assumptions.append(f"taxels of {taxel} at a pitch of {pitch} (not printed)")
         for number, lumen in experiment.lumens.items():
             if isinstance(lumen, PulsePressure):
                 least, most = (format_quantity(value, "Pa") for value in lumen.limits)
                 reading = f"reading {lumen.reading} (erratum E14)" if lumen.diastole is lumen.systole is None else "as given"
-                told.append(f"lumen {number}: {reading}, {least} to {most} at {lumen.rate:g} Hz, a raised cosine")
+                assumptions.append(f"lumen {number}: {reading}, {least} to {most} at {lumen.rate:g} Hz, a raised cosine")
         if any(material.bulk_modulus is None for material in experiment.materials):
-            told.append("exactly incompressible materials (section 6.5)")
-        told.append(
+            assumptions.append("exactly incompressible materials (section 6.5)")
+        assumptions.append(
             f"mesh {self._sourced.content} ({self._sourced.origin}): {self.model.space.size} unknowns, "
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
-        told.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
+        assumptions.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
         if experiment.relaxes:
-            told.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
+            assumptions.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
         if experiment.readout is not None:
-            told += readout_assumptions(experiment.readout, experiment.matrix.area)
-        return told
+            assumptions += readout_assumptions(experiment.readout, experiment.matrix.area)
+        return assumptions
 
     def warnings(self) -> list[str]:
         """What a user is told of readout, mesh, readings, overhang, volumes, sizes and materials."""
-        readout, told = self.experiment.readout, []
+        readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
-            told = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
+            warnings = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         if self._unread:
-            told.append(self._unread)
-        told += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
-        told += [*overhang_warnings(self.experiment), *self.quality.warnings(), *unlikely(self.experiment)]
-        return [*told, *self.unstable("a closing of {} per jaw")]
+            warnings.append(self._unread)
+        warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
+        warnings += [*overhang_warnings(self.experiment), *self.quality.warnings(), *unlikely(self.experiment)]
+        return [*warnings, *self.unstable("a closing of {} per jaw")]
 
     def _asymmetry(self) -> float | None:
         """How far the last forces are from their mirror images, None if the grasp is not its own."""

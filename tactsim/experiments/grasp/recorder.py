@@ -62,14 +62,16 @@ class GraspRecorder(Recorder):
     def labels_of(self, experiment: Experiment) -> list[Variable]:
         """Inclusions padded to the largest number of the sweep."""
         count = self.most_inclusions
-        told = [Variable("inclusion_count", "1", "number of inclusions", "label", dtype="int64")]
-        told += [label(name, unit, words) for name, (unit, words) in PER_SAMPLE.items()]
+        variables = [Variable("inclusion_count", "1", "number of inclusions", "label", dtype="int64")]
+        variables += [label(name, unit, words) for name, (unit, words) in PER_SAMPLE.items()]
         if count:
-            told.append(Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", inclusion_kinds()))
-            told += [label(name, unit, words, inclusion=count) for name, (unit, words) in PER_INCLUSION.items()]
-            told.append(label("inclusion_center", "m", "centre, x along the columns", inclusion=count, axis=3))
-            told.append(label("inclusion_direction", "1", "unit vector along a tube", inclusion=count, axis=3))
-        return told
+            variables.append(
+                Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", inclusion_kinds())
+            )
+            variables += [label(name, unit, words, inclusion=count) for name, (unit, words) in PER_INCLUSION.items()]
+            variables.append(label("inclusion_center", "m", "centre, x along the columns", inclusion=count, axis=3))
+            variables.append(label("inclusion_direction", "1", "unit vector along a tube", inclusion=count, axis=3))
+        return variables
 
     def labels(self, experiment: Grasp) -> Values:
         """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none.
@@ -90,25 +92,25 @@ class GraspRecorder(Recorder):
         padded = {v.name: v.empty(1)[0] for v in self.labels_of(experiment) if "inclusion" in v.dimensions}
         for number, embedded in enumerate(there):
             modulus = embedded.material.shear_modulus
-            told = _geometry(embedded.shape, size)
+            values = _geometry(embedded.shape, size)
             if embedded.shape.hollow:
                 lumen = embedded.lumen
-                told["inclusion_lumen_pressure"] = float(lumen_history(lumen, end).value(end)) if lumen else 0.0
-            told |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
-            for name, value in told.items():
+                values["inclusion_lumen_pressure"] = float(lumen_history(lumen, end).value(end)) if lumen else 0.0
+            values |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
+            for name, value in values.items():
                 padded[name][number] = value
         return {name: np.asarray(value) for name, value in (found | padded).items()}
 
     def readings_of(self, experiment: Any) -> list[Variable]:
         """Histories at the stored times."""
         layout, times = experiment.matrix, self.settings.times
-        told = [reading("time_s", "s", "time since first touch", time=times)]
+        variables = [reading("time_s", "s", "time since first touch", time=times)]
         given = "displacement" if experiment.loading.control == "displacement" else "reaction_force"
-        told += [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in MOTION.items()]
+        variables += [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in MOTION.items()]
         sizes = {"time": times, "jaw": 2, "row": layout.rows, "column": layout.columns}
         taxels = TAXELS | (READ if experiment.readout is not None else {})
-        told += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
-        return [*told, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
+        variables += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
+        return [*variables, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
 
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
@@ -164,11 +166,11 @@ def inclusion_kinds() -> tuple[str, ...]:
 def _geometry(shape: Inclusion, size: Array) -> dict[str, Any]:
     """Labels of an inclusion in a block of size (3,) in m."""
     measured = shape.measures(size)
-    told: dict[str, Any] = {
+    geometry: dict[str, Any] = {
         "inclusion_kind": inclusion_kinds().index(shape.kind),
         "inclusion_center": measured.center,
         "inclusion_radius": measured.radius,
         "inclusion_depth": size[2] - measured.top,
     }
     optional = {"inclusion_direction": measured.direction, "inclusion_wall": measured.wall}
-    return told | {name: value for name, value in optional.items() if value is not None}
+    return geometry | {name: value for name, value in optional.items() if value is not None}

@@ -42,28 +42,28 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
 def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
     """What is assumed of sensors and electronics."""
     line = readout.line(area)
-    told = [*readout.film.assumptions(), "force linear between the accepted steps, from zero at 0 s"]
+    assumptions = [*readout.film.assumptions(), "force linear between the accepted steps, from zero at 0 s"]
     if readout.calibration is None:
         low, high = (format_quantity(value, "N") for value in readout.calibration_forces)
-        told.append(
+        assumptions.append(
             f"calibration by the film's own line from {low} to {high} after 1 s: "
             f"C = {line.slope * 1e3:.4g} mS/N F {line.intercept * 1e3:+.3g} mS"
         )
     if readout.scatter is not None:
-        told.append(
+        assumptions.append(
             f"channels differ by {readout.scatter.repeatability:.3g} of a full scale of "
             f"{format_quantity(readout.scatter.full_scale, 'N')} (one standard deviation)"
         )
-    return tuple(told)
+    return tuple(assumptions)
 
 
 def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
     """What a user must know of the readings."""
-    told = list(readout.film_of(area).warnings(float(reading.applied.max())))
+    warnings = list(readout.film_of(area).warnings(float(reading.applied.max())))
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")
-        told.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
+        warnings.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
     if reading.saturated.any():
         count = int(reading.saturated.sum())
-        told.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
-    return tuple(told)
+        warnings.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
+    return tuple(warnings)

@@ -57,5 +57,5 @@ def unlikely(grasp: GraspSetup) -> list[str]:
     tissue = {f"block.size along {axis}": side for axis, side in zip("xyz", grasp.block.size, strict=True)}
     jaws = {side: grasp.jaw(side) for side in JAWS}
     bodies = {f"{name} of the {side} jaw": getattr(jaw, name) for side, jaw in jaws.items() for name in ("width", "depth")}
-    told = oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})
-    return [*told, *interpreted_warnings(materials)]
+    warnings = oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})
+    return [*warnings, *interpreted_warnings(materials)]

@@ -15,7 +15,7 @@ from tactsim.fem.time_steps import TimeEvent
 from tactsim.interfaces.run import Course
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.history_path import TimedPath, TimedState, stretches
+from tactsim.mechanics.history_path import TimedPath, TimedState, smooth_intervals
 from tactsim.mechanics.pressed_body import PressedBody
 from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.mechanics.section_model import SectionModel
@@ -151,8 +151,8 @@ class HistoryPath:
         stiffest = max(shear_relaxation(material).instantaneous_modulus for material in setup.specimen.materials)
         share = min(1.0, setup.tolerance / (LEAST_PENETRATION * setup.contact_radius))
         self._start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
-        body = PressedBody(model, by_force=drive.by_force, first_travel=TOUCH * setup.tolerance)
-        course = stretches([drive.loading.history()], drive.loading.duration)
+        body = PressedBody(model, by_force=drive.by_force, first_displacement=TOUCH * setup.tolerance)
+        course = smooth_intervals([drive.loading.history()], drive.loading.duration)
         self._path = TimedPath(body, drive.policy, course, self._start)
 
     @property

@@ -102,7 +102,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         found |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
-            "base_force": float(model.base_force(contact.unknowns, state.past)[-1]),
+            "base_force": float(model.base_force(contact.unknowns, state.relaxation)[-1]),
             "max_penetration": max(0.0, *(float(-touch.gap.min()) for touch in touches)),
             "max_pressure": max(float(touch.pressure.max()) for touch in touches),
             **self.body_values(contact),
@@ -186,32 +186,32 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def assumptions(self) -> list[str]:
         """What the thesis does not print and the case chose."""
-        told = contact_assumptions(self.setup)
+        assumptions = contact_assumptions(self.setup)
         if self._clock is not None:
             tolerance = self._clock.policy.settings.tolerance
-            told.append(f"estimated error of the stress in time below {tolerance:g} of its size")
+            assumptions.append(f"estimated error of the stress in time below {tolerance:g} of its size")
             if self._clock.compare is not None:
-                told.append(f"closed form: linear, frictionless annulus on a {self._clock.compare.replace('_', '-')}")
-        return told
+                assumptions.append(f"closed form: linear, frictionless annulus on a {self._clock.compare.replace('_', '-')}")
+        return assumptions
 
     def warnings(self) -> list[str]:
         """What a user is told of volumes, units, ellipticity, and of a history that leaves what it is meant for."""
-        told = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
+        warnings = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
         if self._clock is not None:
-            told += self._left_behind([step.values for step in self.steps])
-        return told
+            warnings += self._left_behind([step.values for step in self.steps])
+        return warnings
 
     def _left_behind(self, series: Sequence[Mapping[str, float]]) -> list[str]:
         """Where a history leaves the recess or the closed form behind."""
-        setup, told = self.setup, []
+        setup, warnings = self.setup, []
         highest = max(values.get("tissue_rise", 0.0) for values in series)
         if setup.recess is not None and not self._drive.stops_at_touch and highest >= setup.recess:
             recess = format_quantity(setup.recess, "m")
-            told.append(f"the tissue rose beyond the recess of {recess}; the inner sensor's contact is not part of this run")
+            warnings.append(f"the tissue rose beyond the recess of {recess}; the inner sensor's contact is not part of this run")
         part = max(values["displacement"] for values in series) / setup.contact_radius
         if self._comparison is not None and part > SMALL:
-            told.append(f"the displacement reached {part:.2g} of the radius; the closed form is meant for up to {SMALL:g}")
-        return told
+            warnings.append(f"the displacement reached {part:.2g} of the radius; the closed form is meant for up to {SMALL:g}")
+        return warnings
 
     def scene(self) -> PressedBodyScene:
         """The body and where it touched first."""
@@ -253,10 +253,10 @@ def contact_assumptions(setup: IndentationSetup) -> list[str]:
     """What the thesis does not print and every case with contact chose."""
     specimen, fillet = setup.specimen, setup.body.contact_shape.fillet
     radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
-    told = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
+    assumptions = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
     if fillet is not None:
-        told.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} (not printed)")
+        assumptions.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} (not printed)")
     if any(material.bulk_modulus is None for material in specimen.materials):
-        told.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
-    told.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")
-    return told
+        assumptions.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
+    assumptions.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")
+    return assumptions

@@ -43,7 +43,7 @@ class IndentationRecorder(Recorder):
     def labels(self, experiment: Any) -> Values:
         """Values of the same."""
         shape, recess = experiment.body.contact_shape, experiment.recess
-        told = (
+        values = (
             shape.hole,
             np.nan if shape.radius is None else shape.radius,
             np.nan if recess is None else recess,
@@ -51,7 +51,7 @@ class IndentationRecorder(Recorder):
             experiment.specimen.material.shear_modulus,
             getattr(experiment.contact, "friction", 0.0),
         )
-        return {name: np.array(value) for name, value in zip(LABELS, told, strict=True)}
+        return {name: np.array(value) for name, value in zip(LABELS, values, strict=True)}
 
     def describe(self) -> str:
         """What is simulated."""

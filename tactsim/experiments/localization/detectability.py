@@ -182,15 +182,15 @@ class Detectability(Experiment):
         height = self.grasp.block.size[2]
         for depth in self.depths:
             if not 0 < depth < height:
-                told, most = (format_quantity(value, "m") for value in (depth, height))
-                raise ValueError(f"depths: {told} is outside the block; allowed: between 0 and {most}")
+                given, most = (format_quantity(value, "m") for value in (depth, height))
+                raise ValueError(f"depths: {given} is outside the block; allowed: between 0 and {most}")
         for ratio in self.shear_ratios:
             if ratio == 1:
                 raise ValueError("shear_ratios: 1 is plain tissue, which nothing can find; allowed: 0 or more, but not 1")
         widest = min(self.grasp.jaw("upper").width, self.grasp.jaw("upper").depth, *self.grasp.block.size[:2])
         if self.side > widest * (1 + 1e-12):
-            told, most = (format_quantity(value, "m") for value in (self.side, widest))
-            raise ValueError(f"side: {told} is wider than the block or the jaws; allowed: at most {most}")
+            given, most = (format_quantity(value, "m") for value in (self.side, widest))
+            raise ValueError(f"side: {given} is wider than the block or the jaws; allowed: at most {most}")
         return self
 
 

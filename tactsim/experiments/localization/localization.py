@@ -23,17 +23,17 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.estimate import Estimate, told
+from tactsim.interfaces.estimate import Estimate, inclusion_in_words
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
-from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
 
-Taxel = tuple[Literal["upper", "lower"], Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 
 class Localization(Experiment):
@@ -99,7 +99,7 @@ class Localization(Experiment):
             estimator=self.estimator.kind,
             noise=self.noise,
             valid=None if readings.valid is None else readings.valid.tolist(),
-            words=tuple(map(told, estimate.inclusions)),
+            words=tuple(map(inclusion_in_words, estimate.inclusions)),
         )
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:

@@ -50,8 +50,8 @@ def kept_response(
     setup: GraspSetup, compute: Callable[[], LumpResponse], *, how: str = "", cache: Path | None = None
 ) -> LumpResponse:
     """The response of a grasp as it was kept, or else computed now; ``how`` tells ways to compute it apart."""
-    told = [setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity(), *([how] if how else [])]
-    place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]}.npz"
+    identity = [setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity(), *([how] if how else [])]
+    place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]}.npz"
     found = _read(place)
     if found is None:
         found = compute()

@@ -68,43 +68,43 @@ def tissues_by_rate_figure(result: Result) -> Figure:
 def switch_panel_figure(result: Result) -> Figure:
     """The display of the array (Fig. 5.5): each switch with its force and time, the force over time, and the mean rate."""
     scene = result.scene_as(SwitchProbeScene)
-    told = scene.touches[0]
+    touch = scene.touches[0]
     with styled():
         figure = new_figure(9.4, 4.2)
         probe, record = figure.subplots(1, 2, width_ratios=(1, 1.1))
-        _draw_probe(probe, scene.switch_sides, told)
-        _draw_record(record, result, told)
-        rate = told.mean_rate
+        _draw_probe(probe, scene.switch_sides, touch)
+        _draw_record(record, result, touch)
+        rate = touch.mean_rate
         words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
-        _title(figure, result, f"{told.tissue} at {1e3 * told.rate:g} mm/s — {words}")
+        _title(figure, result, f"{touch.tissue} at {1e3 * touch.rate:g} mm/s — {words}")
     return figure
 
 
-def _draw_probe(axis: Axes, sides: tuple[str, ...], told: RecordedTouch) -> None:
+def _draw_probe(axis: Axes, sides: tuple[str, ...], touch: RecordedTouch) -> None:
     """The section of the probe with its switches, lit if they closed, and what was read then."""
     corners = [(-FACE, 0), (FACE, 0), (FACE + HEIGHT * LEAN, HEIGHT), (-FACE - HEIGHT * LEAN, HEIGHT)]
     axis.add_patch(Polygon(corners, closed=True, facecolor="#eceff1", edgecolor="#30363d"))
     axis.add_patch(Rectangle((-0.7 * FACE, -0.3), 1.4 * FACE, 0.25, facecolor="#1f4e79"))
     axis.text(0, -0.55, "force sensor", ha="center", va="top", color="#1f4e79", fontsize=8)
-    closed = {closing.switch: closing for closing in told.closings}
+    closed = {closing.switch: closing for closing in touch.closings}
     for number, side in enumerate(sides, 1):
         sign, closing = (1 if side == "right" else -1), closed.get(number)
         place = sign * (FACE + number * LEAN)
         axis.plot(place, number, "o", markersize=13, color=OPEN if closing is None else CLOSED, markeredgecolor="#30363d")
         axis.text(place, number, str(number), ha="center", va="center", color="k" if closing is None else "w", fontsize=8)
-        words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - (told.start or 0.0):.3f} s"
+        words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - (touch.start or 0.0):.3f} s"
         axis.text(place + sign * 0.6, number, words, ha="left" if sign > 0 else "right", va="center", fontsize=8)
     axis.set(xlim=(-7, 7), ylim=(-1.3, HEIGHT + 0.3), aspect="equal")
     axis.set_axis_off()
     axis.set_title("switches: force and time since the touch", loc="left")
 
 
-def _draw_record(axis: Axes, result: Result, told: RecordedTouch) -> None:
+def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     """The force of the first touch over time, with the moments at which switches closed."""
-    steps = [step.values for step in result.steps if _is(step.values, result, (told.tissue, told.rate))]
+    steps = [step.values for step in result.steps if _is(step.values, result, (touch.tissue, touch.rate))]
     time, force = (np.array([values[name] for values in steps]) for name in ("time", "read_force"))
     axis.plot(time, force, color=COLOURS[0], label="force sensor")
-    for closing in told.closings:
+    for closing in touch.closings:
         axis.axvline(closing.time, color=CLOSED, linewidth=0.8, linestyle=":")
         axis.plot(closing.time, closing.force, "o", color=CLOSED, markersize=5)
         axis.annotate(str(closing.switch), (closing.time, closing.force), (-9, 4), textcoords="offset points", fontsize=8)

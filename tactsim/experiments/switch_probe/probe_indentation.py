@@ -77,10 +77,10 @@ def _probe_state(model: PressedModel, state: TimedState, array: SwitchArray, *, 
     along = contact.reference[0, order]
     body = contact.pair.body
     corner = body.fillet_height if isinstance(body, Trapezoid) else 0.0
-    height, carried = side_forces(along, traction.points[1, order], traction.pressure[order], array)
+    height, side_force = side_forces(along, traction.points[1, order], traction.pressure[order], array)
     force = 2 * width * float(model.force(traction.traction)[1])
     contact_height = height if height > corner else 0.0
-    return ProbeState(state.time, state.contact.load, force, contact_height, width * carried, record)
+    return ProbeState(state.time, state.contact.load, force, contact_height, width * side_force, record)
 
 
 def side_forces(along: Array, height: Array, pressure: Array, array: SwitchArray) -> tuple[float, Array]:

@@ -43,8 +43,8 @@ class SwitchProbeRecorder(Recorder):
         if len(experiment.tissues) != 1 or len(experiment.rates) != 1:
             raise InvalidQuantity("a sample of a switch_probe is one touch: one tissue and one rate; let them vary instead")
         moduli = shear_relaxation(experiment.tissues[0].material)
-        told = (experiment.rates[0], experiment.depth, moduli.instantaneous_modulus, moduli.equilibrium_modulus)
-        return {name: np.array(value) for name, value in zip(LABELS, told, strict=True)}
+        values = (experiment.rates[0], experiment.depth, moduli.instantaneous_modulus, moduli.equilibrium_modulus)
+        return {name: np.array(value) for name, value in zip(LABELS, values, strict=True)}
 
     def readings_of(self, experiment: Experiment) -> list[Variable]:
         """Forces and switches."""
@@ -66,14 +66,14 @@ class SwitchProbeRecorder(Recorder):
     def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
         """Values of the same."""
         found = {name: quantity.value for name, quantity in result.quantities.items()}
-        told = {name: np.array(found.get(f"{name}_1", np.nan)) for name in ("largest_force", "contact_height", "mean_rate")}
-        told["closed_switches"] = np.array(float(found.get("closed_switches_1", 0)))
+        readings = {name: np.array(found.get(f"{name}_1", np.nan)) for name in ("largest_force", "contact_height", "mean_rate")}
+        readings["closed_switches"] = np.array(float(found.get("closed_switches_1", 0)))
         for name in ("switching_time", "switching_force"):
             padded = np.full(COUNT, np.nan)
             closed = np.atleast_1d(np.asarray(found.get(f"{name}s_1", ()), dtype=float))[:COUNT]
             padded[: len(closed)] = closed
-            told[name] = padded
-        return told
+            readings[name] = padded
+        return readings
 
     def describe(self) -> str:
         """What is simulated."""

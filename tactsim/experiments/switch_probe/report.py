@@ -75,27 +75,31 @@ class SwitchProbeReport:
 
     def _quantities(self) -> dict[str, Quantity]:
         """Those of each touch, numbered in the order of the touches: every rate of the first tissue, then of the next."""
-        told: dict[str, Quantity] = {}
+        quantities: dict[str, Quantity] = {}
         for number, touch in enumerate(self._touches, 1):
             where = _where(touch)
             forces = touch.force_at(self._depths())
-            told[f"forces_{number}"] = Quantity(forces, "N", f"force on the probe at each pitch of depth, {where}")
-            told[f"largest_force_{number}"] = Quantity(float(touch.true.force.max()), "N", f"largest force on the probe, {where}")
+            quantities[f"forces_{number}"] = Quantity(forces, "N", f"force on the probe at each pitch of depth, {where}")
+            quantities[f"largest_force_{number}"] = Quantity(
+                float(touch.true.force.max()), "N", f"largest force on the probe, {where}"
+            )
             height = float(touch.true.contact_height.max())
-            told[f"contact_height_{number}"] = Quantity(
+            quantities[f"contact_height_{number}"] = Quantity(
                 height, "m", f"largest height that the tissue touches on the sides, {where}"
             )
-            told |= self._read(number, where, main_touch(touch))
+            quantities |= self._read(number, where, main_touch(touch))
             if touch.quality is not None:
                 found = touch.quality.quantities(touch.states)
-                told |= {f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in found.items()}
-        return told
+                quantities |= {
+                    f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in found.items()
+                }
+        return quantities
 
     def _read(self, number: int, where: str, found: Touch | None) -> dict[str, Quantity]:
         if found is None:
             return {}
         array = self._setup.array
-        told = {
+        quantities = {
             f"switching_times_{number}": Quantity(found.times(), "s", f"times since the touch at which switches closed, {where}"),
             f"switching_intervals_{number}": Quantity(found.intervals(), "s", f"intervals between them, {where}"),
             f"switching_forces_{number}": Quantity(
@@ -106,8 +110,8 @@ class SwitchProbeReport:
         rate = found.mean_rate(array)
         if rate is not None:
             words = f"mean rate by eq. 5.2.2, {array.formula.replace('_', ' ')}, {where}"
-            told[f"mean_rate_{number}"] = Quantity(rate, "m/s", words)
-        return told
+            quantities[f"mean_rate_{number}"] = Quantity(rate, "m/s", words)
+        return quantities
 
     def _depths(self) -> Array:
         """Depths in m at every pitch up to the largest."""
@@ -117,7 +121,7 @@ class SwitchProbeReport:
     def _assumptions(self) -> tuple[str, ...]:
         setup = self._setup
         width, height = (format_quantity(value, "m") for value in (setup.block.width, setup.block.height))
-        told = [
+        assumptions = [
             f"probe with a face of {format_quantity(setup.probe.face, 'm')} and {format_quantity(setup.width, 'm')} deep, fillet "
             f"{format_quantity(setup.probe.fillet, 'm')}; block {width} wide and {height} high, "
             f"friction {setup.contact.friction:g}, plane strain (the thesis prints none of these)",
@@ -125,32 +129,32 @@ class SwitchProbeReport:
             f"strips of {format_quantity(setup.array.strip, 'm')}, centred on the heights of the switches (not printed)",
         ]
         if setup.model == "fast":
-            told.append(
+            assumptions.append(
                 "fast model: elastic curve of one finite element run, scaled by the shear modulus, quasi-linear superposition"
             )
         if setup.sides == "followed":
-            told.append(
+            assumptions.append(
                 "the tissue follows the sides up to its undeformed surface, as the thesis takes it; finite elements find less"
             )
-        return tuple(told)
+        return tuple(assumptions)
 
     def _warnings(self) -> list[str]:
-        told, setup = [], self._setup
+        warnings, setup = [], self._setup
         for touch in self._touches:
             found, where = main_touch(touch), _where(touch)
             closed = 0 if found is None else len(found.closings)
             if closed < COUNT:
-                told.append(f"{where}: {closed} of {COUNT} switches closed, so there is no mean rate")
+                warnings.append(f"{where}: {closed} of {COUNT} switches closed, so there is no mean rate")
             if touch.true.contact_height.max() < (1 - SUNK) * setup.depth:
                 height = format_quantity(float(touch.true.contact_height.max()), "m")
-                told.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
+                warnings.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
             if touch.quality is not None:
-                told += [f"{where}: {warning}" for warning in touch.quality.warnings()]
+                warnings += [f"{where}: {warning}" for warning in touch.quality.warnings()]
             if touch.saturated:
-                told.append(f"{where}: {touch.saturated} samples were outside of the converter's range")
+                warnings.append(f"{where}: {touch.saturated} samples were outside of the converter's range")
         materials = {f"tissue {tissue.name}": tissue.material for tissue in setup.tissues}
         tissue = {"block.width": setup.block.width, "block.height": setup.block.height}
-        return told + oddities(materials, tissue=tissue, bodies={"probe.face": setup.probe.face, "width": setup.width})
+        return warnings + oddities(materials, tissue=tissue, bodies={"probe.face": setup.probe.face, "width": setup.width})
 
     def _scene(self) -> SwitchProbeScene:
         setup = self._setup
@@ -182,9 +186,9 @@ def main_touch(touch: ProbeTouch) -> Touch | None:
 
 def _values(touch: ProbeTouch, number: int, sample: int) -> dict[str, float]:
     true = touch.true
-    told = [number, touch.rate, touch.time[sample], touch.depth[sample], true.force[sample], true.contact_height[sample]]
-    told += [touch.force[sample], *true.switches[sample], *touch.switches[sample]]
-    return dict(zip(HISTORY_UNITS, map(float, told), strict=True))
+    values = [number, touch.rate, touch.time[sample], touch.depth[sample], true.force[sample], true.contact_height[sample]]
+    values += [touch.force[sample], *true.switches[sample], *touch.switches[sample]]
+    return dict(zip(HISTORY_UNITS, map(float, values), strict=True))
 
 
 def _recorded(touch: ProbeTouch, setup: SwitchProbeSetup) -> RecordedTouch:

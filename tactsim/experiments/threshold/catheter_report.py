@@ -122,7 +122,7 @@ class CatheterReport:
 
     def _sensors(self) -> dict[str, Quantity]:
         """Arrays over the sensors."""
-        told = {
+        columns = {
             "threshold_force": ("N", "true threshold force of the tissue below [sensor]"),
             "threshold_pressure": ("Pa", "true threshold pressure of the tissue below [sensor]"),
             "reported_force": ("N", "mean reported threshold force [sensor]; null where none"),
@@ -132,7 +132,8 @@ class CatheterReport:
             "angle": ("rad", "angle of the sensor around the tip [sensor]"),
         }
         found = {
-            name: Quantity([step.values.get(name) for step in self._steps], unit, words) for name, (unit, words) in told.items()
+            name: Quantity([step.values.get(name) for step in self._steps], unit, words)
+            for name, (unit, words) in columns.items()
         }
         shares = self._shares.tolist()
         return found | {"tissue_share": Quantity(shares, "1", "part of the disc below that each tissue has [sensor, tissue]")}
@@ -184,11 +185,11 @@ class CatheterReport:
         )
 
     def _assumptions(self) -> Iterator[str]:
-        told = (
+        tissues = (
             f"{t.name}: {format_quantity(t.shear_modulus, 'Pa')} in shear, {format_quantity(t.thickness, 'm')} thick, {t.base}"
             for t in self._experiment.surface.tissues
         )
-        yield f"tissues declared in the case, not in the thesis: {'; '.join(told)}"
+        yield f"tissues declared in the case, not in the thesis: {'; '.join(tissues)}"
         yield "sizes of tip and sensors declared; 7.3 prints none"
         yield "linear, elastic, incompressible tissue; sensors do not feel each other"
         yield "the face of a tilted sensor is taken as flat on the tissue: the tilt only delays its touch"

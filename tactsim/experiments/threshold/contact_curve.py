@@ -80,8 +80,8 @@ class ContactCurve:
         if (np.diff(self.displacement) <= 0).any() or self.displacement[0] != 0:
             raise InvalidQuantity("the displacements of a contact curve must begin at 0 and increase")
         if not 2 <= self.touch < len(self.displacement) - 1:
-            told = f"{self.touch + 1} rows up to the touch and {len(self.displacement) - 1 - self.touch} past it"
-            raise InvalidQuantity(f"a contact curve has {told}; allowed: at least 3 and 1")
+            counts = f"{self.touch + 1} rows up to the touch and {len(self.displacement) - 1 - self.touch} past it"
+            raise InvalidQuantity(f"a contact curve has {counts}; allowed: at least 3 and 1")
 
     @classmethod
     def of_rows(cls, shape: SensorShape, columns: dict[str, Array]) -> Self:
@@ -121,8 +121,10 @@ class ContactCurve:
         """
         reached = result.quantities.get("threshold_displacement")
         if result.kind != "indentation" or result.status is not Status.CONVERGED or reached is None:
-            told = f"kind {result.kind}, {result.status}, {'no ' if reached is None else ''}threshold"
-            raise InputError(f"the result is not usable ({told}); needed: a converged indentation by an annulus to its threshold")
+            description = f"kind {result.kind}, {result.status}, {'no ' if reached is None else ''}threshold"
+            raise InputError(
+                f"the result is not usable ({description}); needed: a converged indentation by an annulus to its threshold"
+            )
         scene = result.scene_as(IndentationScene)
         if not isinstance(scene.body, Annulus) or scene.recess is None:
             raise InputError(f"the body of the result is a {scene.body.kind}; needed: an annulus with an inner sensor")

@@ -172,10 +172,10 @@ class TrialReport:
             yield "the small sensor lies on the large one (Fig. 3.2), which bears the forces on both"
         if sensor.small.calibration == sensor.large.calibration:
             yield "the small sensor is read by the line of the large one; the thesis prints one line"
-        told = (
+        level = (
             format_quantity(sensor.trigger.force, "N") if sensor.trigger.force else f"{sensor.trigger.multiple:g} times the noise"
         )
-        yield f"the small sensor triggers {told} above its value at rest; the thesis gives no number"
+        yield f"the small sensor triggers {level} above its value at rest; the thesis gives no number"
         yield "constant speed from before the touch on"
 
     def _warnings(self) -> Iterator[str]:

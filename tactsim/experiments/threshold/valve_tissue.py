@@ -107,5 +107,5 @@ def _contact(tissue: BandTissue, ring: SensorRing) -> SensorContact:
     displacement = recess / annulus.rise_factor
     force = 8 * tissue.shear_modulus * a * annulus.force_factor * displacement
     if tissue.threshold_pressure is not None:
-        force = tissue.threshold_pressure * np.pi * (a**2 - b**2)
+        force = tissue.threshold_pressure * ring.area
     return SensorContact(force, displacement, 8 * tissue.shear_modulus * b * punch.force_factor, recess)

@@ -67,8 +67,8 @@ class TriangulatedSolid(Solid):
             found, which, distance, bary = _nearest(points[waiting], self.vertices[self.faces[candidates]])
             near[waiting], weights[waiting] = found, bary
             face[waiting] = candidates[np.arange(len(waiting)), which]
-            settled = (reach[:, -1] - self._reach >= distance) | (count == len(self.faces))
-            waiting, count = waiting[~settled], 4 * count
+            decided = (reach[:, -1] - self._reach >= distance) | (count == len(self.faces))
+            waiting, count = waiting[~decided], 4 * count
         return near, self._pseudonormals(face, weights)
 
     def _pseudonormals(self, face: Array, weights: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import partial
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -12,13 +12,12 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import quantity
+from tactsim.interfaces.taxel_layout import JAWS, JawName
 from tactsim.units import Length, NonNegative, Time, format_quantity
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 
-Side = Literal["upper", "lower"]
-SIDES: tuple[Side, ...] = get_args(Side)
-Sides = Side | Literal["upper less lower"]
+JawOrDifference = JawName | Literal["upper less lower"]
 """A jaw, or the difference of both."""
 Taxel = tuple[int, int]
 """Row and column, counted from 1."""
@@ -26,7 +25,7 @@ SAME = 1e-9
 """Largest relative difference of two closings or times that is round-off."""
 
 
-def taxel_history(outcome: RunOutcome, side: Side) -> Array:
+def taxel_history(outcome: RunOutcome, side: str) -> Array:
     """Forces (steps, rows, columns) in N that press on the taxels of a jaw.
 
     Raises
@@ -43,7 +42,7 @@ def taxel_history(outcome: RunOutcome, side: Side) -> Array:
     return np.array(matrix).transpose(2, 0, 1)
 
 
-def _taxels_at(inputs: Inputs, run: tuple[str, str], side: Side, closing: float | None = None) -> Array:
+def _taxels_at(inputs: Inputs, run: tuple[str, str], side: str, closing: float | None = None) -> Array:
     """Forces (rows, columns) in N on the taxels of a jaw at the end of a run, or at a closing in m that a step ended with."""
     outcome = inputs.converged(*run)
     forces = taxel_history(outcome, side)
@@ -78,17 +77,17 @@ def taxel_asymmetry(
     UnknownName, InputError
         If there is no such run, or it did not converge or has no taxels.
     """
-    forces = np.stack([_taxels_at(inputs, (study, run), side) for side in SIDES])
+    forces = np.stack([_taxels_at(inputs, (study, run), side) for side in JAWS])
     axis = {"upper_lower": 0, "front_back": 1, "left_right": 2}[mirror]
     return float(np.abs(forces - np.flip(forces, axis)).max() / np.abs(forces).max())
 
 
 def _forces_on(
-    inputs: Inputs, study: StudyName, runs: tuple[str, ...], *, side: Sides, taxel: Taxel, closing: float | None
+    inputs: Inputs, study: StudyName, runs: tuple[str, ...], *, side: str, taxel: Taxel, closing: float | None
 ) -> Array:
     """Force in N on a taxel in each of some runs, shape (runs,)."""
     if side == "upper less lower":
-        upper, lower = (_forces_on(inputs, study, runs, side=jaw, taxel=taxel, closing=closing) for jaw in SIDES)
+        upper, lower = (_forces_on(inputs, study, runs, side=jaw, taxel=taxel, closing=closing) for jaw in JAWS)
         return upper - lower
     return np.array([_force_on(_taxels_at(inputs, (study, run), side, closing), taxel) for run in runs])
 
@@ -110,7 +109,7 @@ def taxel_change(
     runs: Annotated[tuple[str, ...], Field(min_length=1)],
     bases: tuple[str, ...] = (),
     *,
-    side: Sides = "upper",
+    side: JawOrDifference = "upper",
     taxel: Taxel = (2, 2),
     closing: Length | None = None,
 ) -> float:
@@ -148,7 +147,7 @@ def taxel_contrast(
     study: StudyName,
     run: RunName,
     *,
-    side: Side = "lower",
+    side: JawName = "lower",
     taxel: Taxel,
     others: Annotated[tuple[Taxel, ...], Field(min_length=1)],
 ) -> float:
@@ -186,4 +185,4 @@ def taxel_pulse(inputs: Inputs, study: StudyName, run: RunName, start: NonNegati
     beating = np.array(outcome.history["time"]) >= start * (1 - SAME)
     if beating.sum() < 2:
         raise InputError(f"{run} has {beating.sum()} steps from {start:g} s on; a change needs two")
-    return max(float(np.ptp(taxel_history(outcome, side)[beating], axis=0).max()) for side in SIDES)
+    return max(float(np.ptp(taxel_history(outcome, side)[beating], axis=0).max()) for side in JAWS)

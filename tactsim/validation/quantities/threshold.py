@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import brentq
 
+from tactsim.analytic.annular_area import annular_area as area_of_annulus
 from tactsim.errors import CaseError, InputError
 from tactsim.experiments.threshold.source import CurveSource
 from tactsim.interfaces import drawing, quantity
@@ -27,7 +28,7 @@ def annular_area(*, inner_radius: InnerRadius = 0.0, outer_radius: OuterRadius) 
     ----------
     inner_radius : radius of the hole; zero for the full disc
     """
-    return float(np.pi * (outer_radius**2 - inner_radius**2))
+    return area_of_annulus(inner_radius, outer_radius)
 
 
 @quantity(unit="N")
@@ -38,7 +39,7 @@ def threshold_force(pressure: Pressure, inner_radius: InnerRadius, outer_radius:
     ----------
     pressure : threshold pressure
     """
-    return float(pressure * np.pi * (outer_radius**2 - inner_radius**2))
+    return pressure * area_of_annulus(inner_radius, outer_radius)
 
 
 @quantity(unit="1")

@@ -7,7 +7,7 @@ import pytest
 from solids import assert_close, body_of, box
 
 from tactsim.fem import forms
-from tactsim.fem.body import Body, PastStress
+from tactsim.fem.body import Body, RelaxationStep
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -41,22 +41,24 @@ def random_unknowns(body: Body, seed: int) -> np.ndarray:
     return unknowns
 
 
-def with_random_past(body: Body, seed: int) -> Body:
-    """In a step of time, with a past as large as the shear modulus."""
+def with_random_history(body: Body, seed: int) -> Body:
+    """In a time step, with a history stress as large as the shear modulus."""
     generator = np.random.default_rng(seed)
     shape, modulus = body.points.weights.shape, body.materials[0].shear_modulus
-    return body.with_past(PastStress(generator.uniform(0.2, 1.0, shape[0]), modulus * generator.normal(size=(6, *shape))))
+    return body.with_relaxation(
+        RelaxationStep(generator.uniform(0.2, 1.0, shape[0]), modulus * generator.normal(size=(6, *shape)))
+    )
 
 
-@pytest.mark.parametrize("past", [False, True], ids=["elastic", "relaxing"])
+@pytest.mark.parametrize("relaxing", [False, True], ids=["elastic", "relaxing"])
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("kind", [name for name, _ in KINDS])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_compiled_loops_equal_the_readable_forms(measure, kind, seed, past):
+def test_compiled_loops_equal_the_readable_forms(measure, kind, seed, relaxing):
     material = dict(KINDS)[kind].example()
     other = MooneyRivlin2(c10=0.4 * material.shear_modulus, c01=0.1 * material.shear_modulus, bulk_modulus=material.shear_modulus)
     body = body_of(mesh_of(measure), measure, material, other)
-    body = with_random_past(body, seed) if past else body
+    body = with_random_history(body, seed) if relaxing else body
     unknowns = random_unknowns(body, seed)
     split = body.space.displacement_size
     compiled, readable = body.residual(unknowns), forms.residual(body, unknowns)
@@ -81,14 +83,14 @@ def test_a_wrong_coefficient_is_seen(measure):
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_the_past_is_part_of_the_tangent(measure):
-    body = with_random_past(body_of(mesh_of(measure), measure, MooneyRivlin2.example(), LinearElastic.example()), 3)
+def test_the_history_stress_is_part_of_the_tangent(measure):
+    body = with_random_history(body_of(mesh_of(measure), measure, MooneyRivlin2.example(), LinearElastic.example()), 3)
     unknowns, direction = random_unknowns(body, 5), random_unknowns(body, 6)
     step = 1e-6
     ahead, behind = (body.residual(unknowns + sign * step * direction) for sign in (1, -1))
     difference = (ahead - behind) / (2 * step)
     assert_close(body.pattern.matrix(body.tangent(unknowns)) @ direction, difference, 1e-7)
-    forgotten = body.with_past(PastStress(body.past.scale, 0 * body.past.stress))
+    forgotten = body.with_relaxation(RelaxationStep(body.relaxation.scale, 0 * body.relaxation.stress))
     with pytest.raises(AssertionError):
         assert_close(body.pattern.matrix(forgotten.tangent(unknowns)) @ direction, difference, 1e-7)
 

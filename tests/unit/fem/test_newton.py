@@ -115,10 +115,10 @@ class Snaps:
     def start(self):
         return None
 
-    def settled(self, displacement):
+    def iterate_at(self, displacement):
         return None
 
-    def advanced(self, now, carried, step, damping):
+    def advanced(self, now, iterate, step, damping):
         return None
 
     def converged(self, displacement):
@@ -129,7 +129,7 @@ class Snaps:
     def rounding(self, displacement):
         return np.zeros(displacement.shape[1])
 
-    def linearised(self, displacement, carried):
+    def linearised(self, displacement, iterate):
         derivative = np.zeros((len(displacement), *displacement.shape))
         derivative[-1, -1] = -self._strength / self._width / (1 + ((displacement[-1] - self._place) / self._width) ** 2)
         return SimpleNamespace(traction=self.converged(displacement), derivative=derivative, coupling=np.zeros_like(derivative))

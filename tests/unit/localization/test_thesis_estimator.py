@@ -7,7 +7,7 @@ import pytest
 
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import Estimator
-from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, told
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, inclusion_in_words
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
@@ -138,7 +138,7 @@ def test_bad_readings_are_refused(change, words):
 
 def test_estimates_that_contradict_themselves_are_refused():
     lump = EstimatedInclusion("sphere", (0.01, 0.02, 0.01), 5e-3, 20.0, np.eye(5))
-    assert told(lump) == "sphere at (10 mm, 20 mm, 10 mm), radius 5 mm"
+    assert inclusion_in_words(lump) == "sphere at (10 mm, 20 mm, 10 mm), radius 5 mm"
     assert Estimate(True, (lump,), "", 0.9).present
     with pytest.raises(InvalidQuantity, match="must agree"):
         Estimate(False, (lump,), "")

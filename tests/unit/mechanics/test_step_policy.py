@@ -8,14 +8,14 @@ import pytest
 
 from tactsim.analytic.histories import Harmonic, Segment
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.history_path import Stretch
+from tactsim.mechanics.history_path import TimeInterval
 from tactsim.mechanics.step_policy import FIRST_SHARE, SMALLEST_SHARE, StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.relaxation import Relaxation
 
 SETTINGS = TimeSettings(tolerance=0.01, per_decade=0)
-HELD = Stretch(0.0, 2.0, (Segment(0.0, 2.0, 1.0),))
-RAMPED = Stretch(0.0, 2.0, (Segment(0.0, 2.0, 0.0, 0.5),))
-BENT = Stretch(0.0, 2.0, (Segment(0.0, 2.0, 1.0, 0.0, (Harmonic(0.1, 2 * math.pi / 8.0, 0.0),)),))
+HELD = TimeInterval(0.0, 2.0, (Segment(0.0, 2.0, 1.0),))
+RAMPED = TimeInterval(0.0, 2.0, (Segment(0.0, 2.0, 0.0, 0.5),))
+BENT = TimeInterval(0.0, 2.0, (Segment(0.0, 2.0, 1.0, 0.0, (Harmonic(0.1, 2 * math.pi / 8.0, 0.0),)),))
 """A quarter of a period of 8 s."""
 
 
@@ -25,11 +25,11 @@ def policy(shortest: float = math.inf, *, sparing: bool = False) -> StepPolicy:
 
 
 @pytest.mark.parametrize(
-    ("stretch", "sparing", "longest"),
+    ("interval", "sparing", "longest"),
     [(HELD, False, 2.0), (RAMPED, False, 0.1), (BENT, False, 0.1), (HELD, True, 2.0), (RAMPED, True, 0.1), (BENT, True, 0.8)],
 )
-def test_longest_step(stretch: Stretch, sparing: bool, longest: float) -> None:
-    assert policy(sparing=sparing).largest(stretch) == pytest.approx(longest)
+def test_longest_step(interval: TimeInterval, sparing: bool, longest: float) -> None:
+    assert policy(sparing=sparing).largest(interval) == pytest.approx(longest)
 
 
 def test_load_steps_are_those_of_a_sparing_policy_where_nothing_relaxes() -> None:
@@ -41,7 +41,7 @@ def test_load_steps_are_those_of_a_sparing_policy_where_nothing_relaxes() -> Non
 
 
 def test_first_step_resolves_the_shortest_time_where_it_must() -> None:
-    jump = Stretch(0.0, 2.0, HELD.segments, sudden=True)
+    jump = TimeInterval(0.0, 2.0, HELD.segments, sudden=True)
     assert policy(0.01).control(HELD).first == pytest.approx(FIRST_SHARE * 0.01)
     assert policy(0.01, sparing=True).control(jump).first == pytest.approx(FIRST_SHARE * 0.01)
     smooth = policy(0.01, sparing=True).control(HELD)

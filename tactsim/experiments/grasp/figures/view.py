@@ -163,6 +163,6 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
 
 def _tell(axis: Axes, result: Result) -> None:
     """The names of the inclusions in their colour."""
-    told = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
-    if told:
-        axis.text(0.99, 0.04, told, transform=axis.transAxes, ha="right", color=INCLUSION_COLOUR, fontweight="bold")
+    named = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
+    if named:
+        axis.text(0.99, 0.04, named, transform=axis.transAxes, ha="right", color=INCLUSION_COLOUR, fontweight="bold")

@@ -95,11 +95,11 @@ def _mark_threshold(axis: Axes, result: Result, along: float, up: float) -> None
         return
     at, force, pressure = (result.quantities[name] for name in names)
     axis.plot(at.value * along, force.value * up, "o", color=FORCE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
-    told = [format_quantity(q.value, q.unit) for q in (pressure, force, at)]
+    formatted = [format_quantity(q.value, q.unit) for q in (pressure, force, at)]
     axis.text(
         0.04,
         0.86,
-        f"threshold\n{told[0]} on the annulus\n{told[1]} at {told[2]}",
+        f"threshold\n{formatted[0]} on the annulus\n{formatted[1]} at {formatted[2]}",
         transform=axis.transAxes,
         va="top",
         color=FORCE_COLOUR,

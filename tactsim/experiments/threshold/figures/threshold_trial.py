@@ -78,8 +78,8 @@ def threshold_error_figure(result: Result) -> Figure:
         bar.ax.yaxis.set_minor_locator(NullLocator())
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
         force = result.quantities["threshold_force"].value
-        told = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
-        _headed(figure, result, f"Error of the reported threshold (true: {told}); labels: mean ± standard deviation in %")
+        true_force = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
+        _headed(figure, result, f"Error of the reported threshold (true: {true_force}); labels: mean ± standard deviation in %")
         mark_failure(figure, result)
     return figure
 
@@ -167,8 +167,8 @@ def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
 
 def threshold_signal_figure(result: Result) -> Figure:
     """Both sensors over time, the large one with the captured threshold, and below the small one with its level (Fig. 3.6b)."""
-    told = _capture(result)
-    result = _around(told, result)
+    capture = _capture(result)
+    result = _around(capture, result)
     time = result.history("time")
     with styled():
         figure = new_figure(8.0, 5.6)
@@ -179,18 +179,18 @@ def threshold_signal_figure(result: Result) -> Figure:
         axes[0].plot(time, large * result.history("plate_force"), ":", color="black", label="force on the plate")
         _draw_signal(axes[1], result, "small", small, SMALL_COLOUR)
         axes[1].plot(time, small * result.history("small_force"), ":", color="black", label="force on it")
-        axes[1].axhline(small * told.trigger_level, color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
-        axes[1].annotate("trigger", (time[0], small * told.trigger_level), (2, 3), textcoords="offset points", fontsize=8)
+        axes[1].axhline(small * capture.trigger_level, color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
+        axes[1].annotate("trigger", (time[0], small * capture.trigger_level), (2, 3), textcoords="offset points", fontsize=8)
         for axis in axes:
-            axis.axvline(told.touch_time, color="0.45", linewidth=0.9, linestyle="-.")
+            axis.axvline(capture.touch_time, color="0.45", linewidth=0.9, linestyle="-.")
             despined(axis)
-        _mark_capture(axes, told, large)
+        _mark_capture(axes, capture, large)
         axes[0].set_ylabel(f"large sensor in {unit}")
         axes[1].set(xlabel="time in s", ylabel=f"small sensor in {small_unit}", xlim=(time[0], time[-1]))
         for axis in axes:
             axis.legend(fontsize=8, loc="upper left")
         speed, noise, cutoff = (
-            format_quantity(value, unit) for value, unit in ((told.speed, "m/s"), (told.noise, "V"), (told.cutoff, "Hz"))
+            format_quantity(value, unit) for value, unit in ((capture.speed, "m/s"), (capture.noise, "V"), (capture.cutoff, "Hz"))
         )
         _headed(figure, result, f"One touch at {speed}, white noise {noise} rms, low pass {cutoff}")
     return figure
@@ -221,17 +221,17 @@ def _draw_signal(axis: Axes, result: Result, name: str, factor: float, colour: s
     axis.set_ylim(min(-0.05 * spread, float(filtered.min()) - 0.1 * spread), float(filtered.max()) + 0.05 * spread)
 
 
-def _mark_capture(axes: Any, told: ThresholdCapture, factor: float) -> None:
+def _mark_capture(axes: Any, capture: ThresholdCapture, factor: float) -> None:
     """The captured threshold and, beside it, the true one."""
-    true = format_quantity(float(f"{told.threshold_force:.3g}"), "N")
-    axes[0].plot(told.touch_time, factor * told.threshold_force, "s", color="0.45", markersize=6, fillstyle="none")
-    if told.trigger_time is None or told.captured_force is None:
+    true = format_quantity(float(f"{capture.threshold_force:.3g}"), "N")
+    axes[0].plot(capture.touch_time, factor * capture.threshold_force, "s", color="0.45", markersize=6, fillstyle="none")
+    if capture.trigger_time is None or capture.captured_force is None:
         axes[0].set_title(f"no threshold captured; true threshold {true}", loc="left")
         return
     for axis in axes:
-        axis.axvline(told.trigger_time, color=CAPTURE_COLOUR, linewidth=0.9)
-    axes[0].plot(told.trigger_time, factor * told.captured_force, "o", color=CAPTURE_COLOUR, markersize=8, zorder=5)
-    captured = format_quantity(float(f"{told.captured_force:.3g}"), "N")
-    late = format_quantity(float(f"{told.trigger_time - told.touch_time:.2g}"), "s")
-    when = f"{late} after the touch (dash-dotted)" if told.trigger_time >= told.touch_time else "before the touch: false"
+        axis.axvline(capture.trigger_time, color=CAPTURE_COLOUR, linewidth=0.9)
+    axes[0].plot(capture.trigger_time, factor * capture.captured_force, "o", color=CAPTURE_COLOUR, markersize=8, zorder=5)
+    captured = format_quantity(float(f"{capture.captured_force:.3g}"), "N")
+    late = format_quantity(float(f"{capture.trigger_time - capture.touch_time:.2g}"), "s")
+    when = f"{late} after the touch (dash-dotted)" if capture.trigger_time >= capture.touch_time else "before the touch: false"
     axes[0].set_title(f"captured threshold {captured} (dot), {when}; true threshold {true} (square)", loc="left")

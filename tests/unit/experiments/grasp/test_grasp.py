@@ -16,7 +16,7 @@ from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
 from tactsim.experiments.grasp.readings import JawReading, check_sums
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.history_path import stretches
+from tactsim.mechanics.history_path import smooth_intervals
 from tactsim.mechanics.surface_forces import TaxelForces
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.structured_block import structured_block
@@ -214,16 +214,16 @@ def replace_beats(pulse, beats):
     return PulsePressure.model_validate(pulse.model_dump() | {"beats": beats})
 
 
-def test_stretches_are_the_union_of_all_breakpoints():
+def test_smooth_intervals_are_the_union_of_all_breakpoints():
     first = History((Segment(0.0, 1.0, 0.0, 2.0), Segment(1.0, 3.0, 5.0)))
     second = History((Segment(0.0, 1.0 + 1e-12, 1.0), Segment(1.0 + 1e-12, 2.0, 1.0, 1.0)))
-    course = stretches([first, second], 3.0)
+    course = smooth_intervals([first, second], 3.0)
     assert [(s.start, s.end) for s in course] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
     assert course[0].at(0.5) == (1.0, 1.0)
     assert course[1].at(1.5) == pytest.approx((5.0, 1.5))
     assert course[2].at(2.5) == pytest.approx((5.0, 2.0))
     assert course[1].begins_at((5.0, 1.0 + 1e-12))
-    assert [stretch.sudden for stretch in course] == [True, True, False]
+    assert [interval.sudden for interval in course] == [True, True, False]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.fem.body import Body, Kinematics, PastStress
+from tactsim.fem.body import Body, Kinematics, RelaxationStep
 
 ROUND_OFF = 128 * np.finfo(float).eps
 """Round-off of the stress over the shear modulus: F is one plus small numbers."""
@@ -70,7 +70,7 @@ def series_of(body: Body) -> Series | None:
 
 
 @dataclass(frozen=True)
-class Memory:
+class HistoryVariables:
     """The elastic stress ``elastic`` (6, E, Q) of the last accepted state and the ``overstress`` (n, 6, E, Q), in Pa.
 
     ``earlier`` are the elastic stresses before it, latest first, each with the length in s of the step that began there, as far
@@ -83,7 +83,7 @@ class Memory:
     earlier: tuple[tuple[Array, float], ...] = ()
 
     @classmethod
-    def at_rest(cls, body: Body, series: Series) -> Memory:
+    def at_rest(cls, body: Body, series: Series) -> HistoryVariables:
         """The stress-free state at the beginning."""
         shape = (6, *body.points.weights.shape)
         return cls(series, np.zeros(shape), np.zeros((len(series.times), *shape)))
@@ -93,26 +93,26 @@ class Memory:
         """Isochoric part of the present stress (6, E, Q) in Pa."""
         return self.series.equilibrium[:, None] * self.elastic + self.overstress.sum(axis=0)
 
-    def at_kink(self) -> Memory:
+    def at_slope_change(self) -> HistoryVariables:
         """The same variables where the slope of the history jumps."""
         return replace(self, earlier=())
 
-    def past(self, time_step: float) -> PastStress:
+    def relaxation_step(self, time_step: float) -> RelaxationStep:
         """Coefficients of a step of this length in s from here."""
         kept, mean, bend = self.series.faded(time_step)
         share, rest = self._bend(time_step)
         weight = (mean + share * bend).sum(axis=0)
         stress = np.einsum("ne,nceq->ceq", kept, self.overstress) - mean.sum(axis=0)[:, None] * self.elastic
         stress += bend.sum(axis=0)[:, None] * rest
-        return PastStress(self.series.equilibrium + weight, np.ascontiguousarray(stress))
+        return RelaxationStep(self.series.equilibrium + weight, np.ascontiguousarray(stress))
 
-    def advanced(self, elastic: Array, time_step: float) -> Memory:
+    def advanced(self, elastic: Array, time_step: float) -> HistoryVariables:
         """The variables after a step of this length in s to the elastic stress (6, E, Q) in Pa."""
         kept, mean, bend = (factor[:, None, :, None] for factor in self.series.faded(time_step))
         share, rest = self._bend(time_step)
         overstress = kept * self.overstress + mean * (elastic - self.elastic) + bend * (share * elastic + rest)
         earlier = ((self.elastic, time_step), *self.earlier[: MOST_EARLIER - 1]) if time_step > 0 else ()
-        return Memory(self.series, elastic, overstress, earlier)
+        return HistoryVariables(self.series, elastic, overstress, earlier)
 
     def _bend(self, time_step: float) -> tuple[float, Array]:
         """The bend of the parabola times the step squared: ``share`` times the new elastic stress plus the rest (6, E, Q)."""
@@ -155,31 +155,31 @@ def size_of(body: Body, stress: Array) -> float:
     return float(np.sqrt(np.einsum("eq,c,ceq,ceq->", weights, DOUBLE, stress, stress) / weights.sum()))
 
 
-def step_error(body: Body, memory: Memory) -> float:
+def step_error(body: Body, variables: HistoryVariables) -> float:
     r"""Estimated error of the stress over its size after the last step, when steps like it go on; zero for the first of a piece.
 
     The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6` in the elastic stress. A short relaxation
     time responds to its slope at the end of a step, a long one to its mean, which fading memory keeps from accumulating. For the
     second step of a piece the whole curvature counts as the error. Differences within the round-off of F = 1 + ... do not count.
     """
-    if len(memory.earlier) < 2:
+    if len(variables.earlier) < 2:
         return 0.0
-    (middle, last), (before, first) = memory.earlier[:2]
-    slopes = ((memory.elastic - middle) / last, (middle - before) / first)
+    (middle, last), (before, first) = variables.earlier[:2]
+    slopes = ((variables.elastic - middle) / last, (middle - before) / first)
     bend = 2 * (slopes[0] - slopes[1]) / (first + last)
-    h = last / memory.series.times
-    if len(memory.earlier) == 2 or last > LARGEST_GROWTH * first:
+    h = last / variables.series.times
+    if len(variables.earlier) == 2 or last > LARGEST_GROWTH * first:
         missed, weight = last**2 * bend, _bend_weight(h) / -np.expm1(-h)
     else:
-        oldest, length = memory.earlier[2]
+        oldest, length = variables.earlier[2]
         earlier_bend = 2 * (slopes[1] - (before - oldest) / length) / (first + length)
         third = 3 * (bend - earlier_bend) / (first + last + length)
         missed, weight = last**2 * (last + first) / 6 * third, np.minimum(1 / h, MEAN_OF_CUBIC)
     moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
-    noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in memory.earlier) ** 2 * moduli[:, None]
+    noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * moduli[:, None]
     missed = np.where(np.abs(missed) > noise, missed, 0.0)
-    size = size_of(body, memory.stress)
-    total = (memory.series.amplitudes * weight).sum(axis=0)
+    size = size_of(body, variables.stress)
+    total = (variables.series.amplitudes * weight).sum(axis=0)
     return size_of(body, total[:, None] * missed) / size if size > 0 else 0.0
 
 

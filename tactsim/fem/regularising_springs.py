@@ -11,7 +11,7 @@ WEAKNESS = 1e-8
 """Stiffness of all springs together over that of the body: its shear modulus times its size."""
 
 
-class WeakHold:
+class RegularisingSprings:
     """Springs to ground on every node, in proportion to its volume; their relative error is of the order of ``WEAKNESS``."""
 
     def __init__(self, body: Body):
