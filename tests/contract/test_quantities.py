@@ -22,13 +22,23 @@ from tactsim.units import is_unit, parse_quantity
 from tactsim.validation import compare, load_tables
 from tactsim.validation.calls import INPUTS, PACKAGE, call_class, descriptions
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.table import Row, Table
 
 SHIPPED = Path(__file__).parents[2] / "cases" / "thesis"
 FUNCTIONS = [marked for family in ("quantity", "drawing") for marked in marked_functions(PACKAGE, family).values()]
-TABLES = load_tables(SHIPPED).tables
-ROWS = [row for table in TABLES.values() for row in table.rows if row.evaluate is not None]
-FIGURES = [figure for table in TABLES.values() for figure in table.figures.values()]
 each = pytest.mark.parametrize("marked", [pytest.param(marked, id=f"{marked.family} {marked.name}") for marked in FUNCTIONS])
+
+
+@pytest.fixture(scope="module")
+def tables() -> list[Table]:
+    """All that are shipped; every process that collects tests would read them at import."""
+    return list(load_tables(SHIPPED).tables.values())
+
+
+@pytest.fixture(scope="module")
+def rows(tables: list[Table]) -> list[Row]:
+    """Those that a function computes."""
+    return [row for table in tables for row in table.rows if row.evaluate is not None]
 
 
 @each
@@ -45,13 +55,14 @@ def test_the_signature_is_typed_and_every_argument_described(marked: MarkedFunct
     assert set(descriptions(marked.function)) <= set(fields), "what is described is an argument"
 
 
-def test_every_function_serves_a_shipped_table() -> None:
-    used = {row.evaluate.marked for row in ROWS if row.evaluate} | {figure.marked for figure in FIGURES}
+def test_every_function_serves_a_shipped_table(tables: list[Table], rows: list[Row]) -> None:
+    used = {row.evaluate.marked for row in rows if row.evaluate}
+    used |= {figure.marked for table in tables for figure in table.figures.values()}
     assert [marked.name for marked in FUNCTIONS if marked not in used] == []
 
 
-def test_units_are_known_and_those_of_the_rows() -> None:
-    for row in ROWS:
+def test_units_are_known_and_those_of_the_rows(rows: list[Row]) -> None:
+    for row in rows:
         assert row.evaluate is not None
         unit = row.evaluate.result_unit
         assert is_unit(unit), row.id

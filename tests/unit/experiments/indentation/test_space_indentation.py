@@ -15,7 +15,7 @@ from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.surface_peaks import surface_peaks
 
 SOFT = NeoHookean(c10=1000.0)
-COARSE = SpaceMeshSettings(finest=0.5e-3, growth=2.0, coarsest=2e-3, sectors=2)
+COARSE = SpaceMeshSettings(finest=0.7e-3, growth=2.0, coarsest=2e-3, sectors=2)
 
 
 def thin(**changes):
