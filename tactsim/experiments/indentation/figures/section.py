@@ -16,7 +16,6 @@ from tactsim.plotting.canvas import scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 
-
 _EDGES = [[0, 3, 1], [1, 4, 2], [2, 5, 0]]
 _PARABOLA = np.linspace(0, 1, 7)
 
