@@ -313,3 +313,11 @@ def test_contributing_prints_the_layers_and_fences_that_pyproject_holds():
     spec.loader.exec_module(printing_script)
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert text == printing_script.with_printed_rules(text), "run: python scripts/print_rules.py"
+
+
+def test_the_tests_that_contributing_names_exist():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = re.findall(r"`((?:tests/[\w/]+/)?test_\w+\.py)`", text)
+    assert len(named) > 10
+    missing = [name for name in named if not (ROOT / (name if "/" in name else f"tests/contract/{name}")).is_file()]
+    assert missing == []

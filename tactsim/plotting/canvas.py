@@ -64,3 +64,9 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: t
     order = np.argsort(values)
     share = np.cumsum(weights[order]) / weights.sum()
     return np.interp(np.asarray(percentiles) / 100, share, values[order])
+
+
+def extension(values: np.ndarray, limits: tuple[float, float]) -> str:
+    """Which ends of a colour bar with these limits are pointed, as matplotlib calls it: those that values lie beyond."""
+    beyond = bool(values.min() < limits[0]), bool(values.max() > limits[1])
+    return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]

@@ -21,6 +21,7 @@ from tactsim.interfaces import Experiment
 from tactsim.plotting import figures_for
 from tactsim.registry import kinds
 from tactsim.results.result import Status, StepRecord
+from tactsim.results.scene import Scene, read_scene, written_scene
 from tactsim.units import is_unit
 
 KINDS = kinds(Experiment)
@@ -100,6 +101,10 @@ def test_every_field_of_the_schema_is_described(kind: str, schema: dict[str, Any
         assert name == "kind" or field.get("description"), name
 
 
+def test_a_scene_is_that_of_an_experiment() -> None:
+    assert set(kinds(Scene)) <= set(KINDS)
+
+
 @every_kind
 def test_history_has_units(kind: str) -> None:
     units = getattr(KINDS[kind].example(), "history_units", {})
@@ -127,5 +132,7 @@ def test_the_example_runs_and_is_drawn(kind: str, tmp_path: Path, monkeypatch: p
     for name, quantity in result.quantities.items():
         assert quantity.description, name
         assert quantity.unit == "1" or is_unit(quantity.unit), name
+    if result.scene is not None:
+        assert read_scene(kind, json.loads(json.dumps(written_scene(result.scene)))) == result.scene
     drawings = figures_for(result)
     assert all(np.frombuffer(draw()[:8], np.uint8).tobytes() == b"\x89PNG\r\n\x1a\n" for draw in drawings.values())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -19,6 +20,14 @@ COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f", "#7
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
 FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))
 """Drawn half width of the face and height in pitches; the picture of the probe is a scheme."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A panel of curves: the name of each, and the tissue and the rate in m/s that it is of."""
+
+    title: str
+    curves: list[tuple[str, tuple[str, float]]]
 
 
 class SwitchProbeFigures(ResultFigures):
@@ -40,28 +49,31 @@ class SwitchProbeFigures(ResultFigures):
 def force_over_depth_figure(result: Result) -> Figure:
     """One panel per tissue, one curve per rate (Fig. 5.7); dots are what was read when switches closed."""
     scene = result.scene_as(SwitchProbeScene)
-    tissues, rates = scene.tissues, sorted({touch.rate for touch in scene.touches})
-    with styled():
-        figure = new_figure(max(6.4, 1.6 + 3.1 * len(tissues)), 3.8)
-        for axis, tissue in zip(np.atleast_1d(figure.subplots(1, len(tissues), sharey=True)), tissues, strict=True):
-            for colour, rate in zip(_colours(len(rates)), rates, strict=True):
-                _draw_curve(axis, result, (tissue, rate), colour, f"{1e3 * rate:g} mm/s")
-            _finish(axis, result, tissue)
-        _title(figure, result, "Force over depth; dots: read as each switch closed, at its height")
-    return figure
+    rates = sorted({touch.rate for touch in scene.touches})
+    panels = [Panel(tissue, [(_rate(rate), (tissue, rate)) for rate in rates]) for tissue in scene.tissues]
+    return _curves_figure(result, panels, "Force over depth", narrowest=6.4)
 
 
 def tissues_by_rate_figure(result: Result) -> Figure:
     """One panel per rate, one curve per tissue (Fig. 5.8)."""
     scene = result.scene_as(SwitchProbeScene)
-    tissues, rates = scene.tissues, scene.rates
+    panels = [Panel(_rate(rate), [(tissue, (tissue, rate)) for tissue in scene.tissues]) for rate in scene.rates]
+    return _curves_figure(result, panels, "Tissues at the same rate")
+
+
+def _rate(rate: float) -> str:
+    return f"{1e3 * rate:g} mm/s"
+
+
+def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
     with styled():
-        figure = new_figure(1.6 + 3.1 * len(rates), 3.8)
-        for axis, rate in zip(np.atleast_1d(figure.subplots(1, len(rates), sharey=True)), rates, strict=True):
-            for colour, tissue in zip(_colours(len(tissues)), tissues, strict=True):
-                _draw_curve(axis, result, (tissue, rate), colour, tissue)
-            _finish(axis, result, f"{1e3 * rate:g} mm/s")
-        _title(figure, result, "Tissues at the same rate; dots: read as each switch closed, at its height")
+        figure = new_figure(max(narrowest, 1.6 + 3.1 * len(panels)), 3.8)
+        axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
+        for axis, panel in zip(axes, panels, strict=True):
+            for colour, (name, touch) in zip(_colours(len(panel.curves)), panel.curves, strict=True):
+                _draw_curve(axis, result, touch, colour, name)
+            _finish(axis, result, panel.title)
+        _title(figure, result, f"{title}; dots: read as each switch closed, at its height")
     return figure
 
 

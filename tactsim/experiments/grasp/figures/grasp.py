@@ -12,12 +12,12 @@ from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.parts import loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
-from tactsim.experiments.grasp.figures.view import VIEW, grasp_view
+from tactsim.experiments.grasp.figures.view import VIEW, view_figure
 from tactsim.experiments.grasp.figures.viewed import has_views, viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import entitle, new_figure, png, styled
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.failure import mark_failure, rendered
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1
@@ -46,7 +46,7 @@ class GraspFigures(ResultFigures):
         if has_voltages(result):
             drawings[VOLTAGES] = lambda: png(voltages_figure(result))
         if result.frames:
-            drawings[VIEW] = lambda: grasp_view(result)
+            drawings[VIEW] = lambda: rendered(VIEW, lambda: view_figure(result))
         return drawings
 
 

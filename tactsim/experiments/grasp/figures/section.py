@@ -13,7 +13,7 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import despined, extension, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
 
@@ -85,8 +85,7 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))
     style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": "viridis", "vmin": low, "vmax": high}
     drawn = axis.tripcolor(mesh, values, **style)
-    beyond = (bool(values.min() < low), bool(values.max() > high))
-    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
+    extend = extension(values, (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)
     extremes = f"{values.min():.3g} to {values.max():.3g} {unit} in this cut"
     bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})")

@@ -14,12 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from tactsim.array import Array
-from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
 from tactsim.plotting.off_screen import Camera, Surface, pictures
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
 from tactsim.results import FieldFrame, Result, Status
@@ -40,20 +39,6 @@ _BOX_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [
 _BOX_TRIANGLES = _BOX_SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
 VIEW = "grasp_view.png"
 """File name of the view."""
-
-
-def grasp_view(result: Result) -> bytes:
-    """The PNG of the view.
-
-    Raises
-    ------
-    TactsimError
-        If this machine cannot render.
-    """
-    try:
-        return png(view_figure(result))
-    except TactsimError as error:
-        raise TactsimError(f"{VIEW} is left out: {error}") from error
 
 
 def view_figure(result: Result) -> Figure:

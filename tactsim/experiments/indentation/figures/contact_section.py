@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
-from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh
+from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh, pressure_scale
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
-from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import despined, extension
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -43,13 +45,10 @@ def draw_contact_section(axis: Axes, result: Result, displacement: float) -> Non
 def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[float, float, float]) -> None:
     """The pressure with robust limits, so that the singular edges do not take all the colours."""
     seen = (section.places[:, 0] <= limits[0]) & (section.places[:, 1] >= limits[1])
-    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
-    factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
-    low, high = (factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)
+    (low, high), factor, unit = pressure_scale(section, pressure, seen)
     values = factor * pressure
     drawn = draw_field(axis, section, values, cmap="viridis", vmin=low, vmax=high)
-    beyond = (bool(values[seen].min() < low), bool(values[seen].max() > high))
-    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
+    extend = extension(values[seen], (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
     bar.set_label(
         f"pressure in {unit} (colours from the 1st to the 99th percentile of the area; largest {values.max():.4g} {unit})"
@@ -73,15 +72,12 @@ def _draw_sensor(axis: Axes, scene: PressedBodyScene, height: float) -> None:
     if recess is None or not inner:
         return
     level, edge = height + 1e3 * recess, 1e3 * inner
-    axis.plot([-edge, edge], [level, level], color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
-    axis.annotate(
-        f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face",
-        (0.0, level),
-        (0.0, 3.0),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        color=SENSOR_COLOUR,
-        fontsize=7,
-        zorder=5,
-    )
+    draw_inner_sensor(axis, np.array([[-edge, edge], [level, level]]), recess)
+
+
+def draw_inner_sensor(axis: Axes, ends: Array, recess: float) -> None:
+    """The plane of the sensor in a hole between its ends (2, 2) in mm, one in each column, with its recess in m."""
+    axis.plot(*ends, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
+    words = f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face"
+    style: dict[str, Any] = {"ha": "center", "va": "bottom", "color": SENSOR_COLOUR, "fontsize": 7, "zorder": 5}
+    axis.annotate(words, tuple(ends.mean(axis=1)), (0.0, 3.0), textcoords="offset points", **style)

@@ -12,9 +12,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
+from tactsim.plotting.canvas import scale_of, weighted_percentiles
+from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 
-_CORNERS_OF_QUARTERS = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
 _EDGES = [[0, 3, 1], [1, 4, 2], [2, 5, 0]]
 _PARABOLA = np.linspace(0, 1, 7)
 
@@ -59,11 +60,21 @@ class Section:
         return found[first], ((count == 1) & ~on_axis) | spread
 
 
-def draw_field(axis: Axes, section: Section, values: Array, **style: Any) -> Any:
-    """Colours both halves by nodal values; returns the mappable of the right half."""
-    quarters = section.elements[:, _CORNERS_OF_QUARTERS].reshape(-1, 3)
+def pressure_scale(section: Section, pressure: Array, seen: Array) -> tuple[tuple[float, float], float, str]:
+    """Limits of the colours of a nodal pressure (n,) in Pa where it is seen, and factor and unit in which it is shown.
+
+    They are the 1st and the 99th percentile of the area, so that singular edges do not take all the colours.
+    """
+    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
+    factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
+    return ((factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)), factor, unit
+
+
+def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, ...] = (-1, 1), **style: Any) -> Any:
+    """Colours the section, or its mirror image where a side is -1, by nodal values; returns the mappable of the last side."""
+    quarters = section.elements[:, QUARTERS].reshape(-1, 3)
     r, z = section.places.T
-    for side in (-1, 1):
+    for side in sides:
         drawn = axis.tripcolor(Triangulation(side * r, z, quarters), values, shading="gouraud", rasterized=True, **style)
     return drawn
 
@@ -77,9 +88,9 @@ def draw_mesh(axis: Axes, section: Section) -> None:
         axis.add_collection(LineCollection(list(section.curves(edges[outline]) * side), colors="k", linewidths=0.9))
 
 
-def draw_body(axis: Axes, profile_distance: Array, grid: tuple[Array, Array]) -> None:
-    """A rigid body filled from its signed distance on a grid (r, z) in mm, mirrored."""
+def draw_body(axis: Axes, distance: Array, grid: tuple[Array, Array], sides: tuple[float, ...] = (-1, 1)) -> None:
+    """A rigid body filled from its signed distance on a grid (r, z) in mm, mirrored where a side is -1."""
     r, z = grid
-    for side in (-1, 1):
-        axis.contourf(side * r, z, profile_distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
-        axis.contour(side * r, z, profile_distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
+    for side in sides:
+        axis.contourf(side * r, z, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
+        axis.contour(side * r, z, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)

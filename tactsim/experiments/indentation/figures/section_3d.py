@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
 from tactsim.contact.tilted import Tilted
-from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, SHOWN_RADII
-from tactsim.experiments.indentation.figures.section import Section
+from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, draw_inner_sensor
+from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, pressure_scale
 from tactsim.experiments.indentation.scene import Indentation3dScene
-from tactsim.plotting.canvas import despined, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import despined
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
@@ -22,7 +19,6 @@ GRID = 700
 """Points per direction on which the body's outline is traced."""
 _FACES = np.array([[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]])
 """Nodes of the faces of a quadratic tetrahedron, as quadratic triangles, in the order of VTK."""
-_QUARTERS = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
 
 
 def cut(frame: FieldFrame) -> FieldFrame:
@@ -57,8 +53,7 @@ def draw_cut(axis: Axes, result: Result) -> None:
     x, z = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(*limits[1], GRID))
     points = np.stack([x.ravel(), np.zeros(x.size), z.ravel() - height]) * 1e-3
     distance = body.signed_distance(points)[0].reshape(x.shape)
-    axis.contourf(x, z, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
-    axis.contour(x, z, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
+    draw_body(axis, distance, (x, z), sides=(1.0,))
     _draw_sensor(axis, scene.recess, body, height)
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x in mm", ylabel="height in mm")
     axis.set_title(f"cut y = 0 at a displacement of {format_quantity(frame.time, 'm')}", loc="left")
@@ -86,14 +81,8 @@ def _draw_pressure(axis: Axes, section: Section, sides: tuple[float, ...], limit
     (left, right), (bottom, _) = limits
     pressure = np.asarray(section.frame.point_data["pressure [Pa]"]).ravel()
     x, z = section.places.T
-    seen = (x >= left) & (x <= right) & (z >= bottom)
-    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
-    factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
-    low, high = (factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)
-    quarters = section.elements[:, _QUARTERS].reshape(-1, 3)
-    for side in sides:
-        style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": "viridis", "vmin": low, "vmax": high}
-        drawn = axis.tripcolor(Triangulation(side * x, z, quarters), factor * pressure, **style)
+    (low, high), factor, unit = pressure_scale(section, pressure, (x >= left) & (x <= right) & (z >= bottom))
+    drawn = draw_field(axis, section, factor * pressure, sides, cmap="viridis", vmin=low, vmax=high)
     bar = axis.figure.colorbar(drawn, ax=axis, extend="both", location="bottom", shrink=0.6, aspect=32, pad=0.02)
     bar.set_label(f"pressure in {unit} (colours from the 1st to the 99th percentile of the area)")
     bar.outline.set_linewidth(0.5)
@@ -105,8 +94,4 @@ def _draw_sensor(axis: Axes, recess: float | None, body: Tilted, height: float) 
     if recess is None or not inner:
         return
     ends = body.rotation @ np.array([[-inner, inner], [0.0, 0.0], [recess, recess]])
-    axis.plot(1e3 * ends[0], 1e3 * ends[2] + height, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
-    words = f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face"
-    place = (1e3 * float(ends[0].mean()), 1e3 * float(ends[2].mean()) + height)
-    style: dict[str, Any] = {"ha": "center", "va": "bottom", "color": SENSOR_COLOUR, "fontsize": 7, "zorder": 5}
-    axis.annotate(words, place, (0.0, 3.0), textcoords="offset points", **style)
+    draw_inner_sensor(axis, np.array([1e3 * ends[0], 1e3 * ends[2] + height]), recess)

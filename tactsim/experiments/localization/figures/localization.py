@@ -7,9 +7,10 @@ from typing import Literal
 from tactsim.experiments.grasp.figures.viewed import has_views
 from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.experiments.localization.figures.parts import localized
-from tactsim.experiments.localization.figures.space import SPACE, space_view
+from tactsim.experiments.localization.figures.space import SPACE, space_figure
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import png
+from tactsim.plotting.failure import rendered
 from tactsim.results import Result
 
 
@@ -24,5 +25,5 @@ class LocalizationFigures(ResultFigures):
             return {}
         drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(localized(result), result.title))}
         drawings[VIEWS_PRESSURE] = lambda: png(views_figure(localized(result), result.title, "pressure"))
-        drawings[SPACE] = lambda: space_view(result)
+        drawings[SPACE] = lambda: rendered(SPACE, lambda: space_figure(result))
         return drawings

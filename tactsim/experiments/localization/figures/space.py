@@ -14,7 +14,6 @@ from matplotlib.image import imread
 from matplotlib.patches import Patch
 
 from tactsim.array import Array
-from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
 from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
@@ -22,7 +21,7 @@ from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodi
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result
 
@@ -35,20 +34,6 @@ UNKNOWN_RADIUS = 0.06
 """Radius over the block's height with which the place of an inclusion of unknown size is marked."""
 _BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
 _SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
-
-
-def space_view(result: Result) -> bytes:
-    """The PNG of the view.
-
-    Raises
-    ------
-    TactsimError
-        If this machine cannot render.
-    """
-    try:
-        return png(space_figure(result))
-    except TactsimError as error:
-        raise TactsimError(f"{SPACE} is left out: {error}") from error
 
 
 def space_figure(result: Result) -> Figure:
