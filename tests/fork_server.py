@@ -46,7 +46,12 @@ def _served() -> str:
 def forked_command(*options: str) -> list[str]:
     """The beginning of a command that does what ``python OPTIONS -m tactsim.cli`` does; the options are none or ``-W error``."""
     assert options in ((), ("-W", "error"))
-    return [sys.executable, "-IS", str(CLIENT), _served(), *(["strict"] if options else ["lax"])]
+    return [sys.executable, "-IS", str(CLIENT), _served(), "strict" if options else "lax"]
+
+
+def forked_pretended_command() -> list[str]:
+    """The beginning of a command that does what ``python -W error pretended_cli.py`` does."""
+    return [sys.executable, "-IS", str(CLIENT), _served(), "pretended"]
 
 
 class _Server:
@@ -139,8 +144,12 @@ class _Server:
         os.chdir(str(request["folder"]))
         os.environ.clear()
         os.environ.update(request["environment"])  # type: ignore[call-overload]
-        if request["strict"]:
+        if request["mode"] != "lax":
             warnings.simplefilter("error")
+        if request["mode"] == "pretended":
+            from pretended_cli import pretend
+
+            pretend()
         sys.argv = ["tactsim", *request["arguments"]]  # type: ignore[misc]
         code = main()
         for stream in (sys.stdout, sys.stderr):

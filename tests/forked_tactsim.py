@@ -1,4 +1,4 @@
-"""``python -IS forked_tactsim.py SOCKET strict|lax ARGUMENTS``: a child of the fork server as if it were this process."""
+"""``python -IS forked_tactsim.py SOCKET strict|lax|pretended ARGUMENTS``: a child of the fork server as if it were itself."""
 
 import contextlib
 import json
@@ -17,13 +17,13 @@ def is_open(descriptor: int) -> bool:
 
 
 def main() -> None:
-    place, strictness, *arguments = sys.argv[1:]
+    place, mode, *arguments = sys.argv[1:]
     streams = [is_open(number) for number in range(3)]
     with socket.socket(socket.AF_UNIX) as server:
         server.connect(place)
         request = {
             "arguments": arguments,
-            "strict": strictness == "strict",
+            "mode": mode,
             "open": streams,
             "folder": os.getcwd(),
             "environment": dict(os.environ),

@@ -1,4 +1,4 @@
-"""Signals, closed pipes, kills and runs that meet, in processes of their own."""
+"""Signals, closed pipes, kills and runs that meet, in processes of their own; the runs beside them are forked."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fork_server import forked_pretended_command
 from pretence import CASE_TEXT
 
 from tactsim.results import read_result
@@ -22,6 +23,12 @@ SLOW = ("--progress", "--set", "experiment.steps=2000", "--set", "experiment.pau
 @pytest.fixture(autouse=True)
 def case(tmp_path: Path) -> None:
     (tmp_path / "case.yaml").write_text(CASE_TEXT, encoding="utf-8")
+
+
+def completed(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command line with the pretended experiment, forked from a process that has loaded it."""
+    command = [*forked_pretended_command(), *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
 
 
 def wait_for_a_step(process: subprocess.Popen[str]) -> None:
@@ -60,7 +67,7 @@ def test_a_second_signal_stops_at_once(start: Start, tmp_path: Path) -> None:
 
 
 def test_an_interrupted_run_does_not_lose_the_earlier_result(start: Start, tmp_path: Path) -> None:
-    start("run", "case.yaml").communicate(timeout=60)
+    completed(tmp_path, "run", "case.yaml")
     assert status(tmp_path / "results/case") == "converged"
     process = start("run", "case.yaml", *SLOW)
     wait_for_a_step(process)
@@ -76,19 +83,18 @@ def test_a_kill_leaves_nothing_that_stops_the_next_run(start: Start, tmp_path: P
     process.kill()
     process.communicate(timeout=60)
     assert not (tmp_path / "results/case").exists()
-    process = start("run", "case.yaml")
-    assert process.communicate(timeout=60)[1] == ""
-    assert process.returncode == 0
+    done = completed(tmp_path, "run", "case.yaml")
+    assert done.stderr == ""
+    assert done.returncode == 0
     assert os.listdir(tmp_path / "results") == ["case"]
 
 
 def test_two_runs_in_one_folder(start: Start, tmp_path: Path) -> None:
     first = start("run", "case.yaml", *SLOW)
     wait_for_a_step(first)
-    second = start("run", "case.yaml")
-    _, err = second.communicate(timeout=60)
+    second = completed(tmp_path, "run", "case.yaml")
     assert second.returncode == 5
-    assert err.startswith("error: the output folder results/case is in use by another run")
+    assert second.stderr.startswith("error: the output folder results/case is in use by another run")
     first.send_signal(signal.SIGTERM)
     first.communicate(timeout=60)
     assert status(tmp_path / "results/case") == "interrupted"
@@ -147,7 +153,5 @@ def test_a_closed_terminal_does_not_lose_the_result(start: Start, tmp_path: Path
         (["unknown"], 2),
     ],
 )
-def test_the_table_of_exit_codes(start: Start, arguments: list[str], code: int) -> None:
-    process = start(*arguments)
-    process.communicate(timeout=60)
-    assert process.returncode == code
+def test_the_table_of_exit_codes(tmp_path: Path, arguments: list[str], code: int) -> None:
+    assert completed(tmp_path, *arguments).returncode == code
