@@ -155,19 +155,6 @@ def _load_all(package: str, pattern: str) -> None:
         importlib.import_module(name)
 
 
-def read_kind(base: Any, described: Mapping[str, Any]) -> Any:
-    """The instance of an extension point that a mapping with a ``kind`` describes.
-
-    Raises
-    ------
-    UnknownName
-        If no such kind is registered.
-    pydantic.ValidationError
-        If the mapping does not describe one.
-    """
-    return kind_class(base, str(described.get("kind"))).model_validate(described)
-
-
 class Registered:
     """Annotation of a field that takes every registered kind of an extension point, also those defined after the field's class.
 

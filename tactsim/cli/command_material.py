@@ -142,21 +142,12 @@ def _materials(name: str) -> dict[str, Material]:
 
 def _inside(value: object, path: tuple[str, ...]) -> list[tuple[str, Material]]:
     """Every material in a value, with its key path."""
-    from pydantic import BaseModel
-
     from tactsim.interfaces import Material
+    from tactsim.interfaces.seeds import entries
 
     if isinstance(value, Material):
         return [(".".join(path), value)]
-    if isinstance(value, BaseModel):
-        entries = [(name, getattr(value, name)) for name in type(value).model_fields]
-    elif isinstance(value, dict):
-        entries = [(str(key), item) for key, item in value.items()]
-    elif isinstance(value, list | tuple):
-        entries = [(str(index), item) for index, item in enumerate(value)]
-    else:
-        return []
-    return [pair for name, item in entries for pair in _inside(item, (*path, name))]
+    return [pair for name, item in entries(value) for pair in _inside(item, (*path, name))]
 
 
 def _numbered(place: Path, name: str) -> Path:
