@@ -143,7 +143,7 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
         Naming the variables and the samples.
     """
     holed: dict[str, Array] = {}
-    for name in (*names, "status"):
+    for name in sorted({*names, "status"}):  # folders are listed in any order; a message is the same on every machine
         lost = lost_samples(store, name, samples) if name != "status" else lost_status(store)
         if lost.size or name not in store.described:
             holed[name] = lost
