@@ -210,7 +210,7 @@ class Registered:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         written = core_schema.plain_serializer_function_ser_schema(
-            lambda value, info: value.model_dump(mode=info.mode, by_alias=info.by_alias), info_arg=True
+            lambda value, info: value.model_dump(mode=info.mode, by_alias=info.by_alias, context=info.context), info_arg=True
         )
         return core_schema.with_info_plain_validator_function(self.read, serialization=written)
 

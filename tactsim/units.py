@@ -13,7 +13,16 @@ from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    SerializationInfo,
+    ValidationInfo,
+    WithJsonSchema,
+)
 
 from tactsim.errors import InvalidQuantity, shown
 from tactsim.unit_definitions import PREFIXED, PREFIXES, UNPREFIXED
@@ -170,6 +179,23 @@ def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
     return read
 
 
+def written_quantity(value: float, unit: str) -> str:
+    """``value`` in SI as a file writes it, exact to 15 digits: ``0.04, "m"`` gives ``"40 mm"``."""
+    if value and math.isfinite(value) and unit != "rad":
+        compact = _registry().Quantity(value, unit).to_compact()
+        text = f"{compact.magnitude:.15g} {compact.units:~C}".replace("**", "^")
+        if parse_quantity(text, unit) == float(f"{value:.15g}"):
+            return text
+    return f"{value:.17g} {unit}"
+
+
+def _writer(unit: str) -> Callable[[float, SerializationInfo], Any]:
+    def write(value: float, info: SerializationInfo) -> Any:
+        return written_quantity(value, unit) if info.context and info.context.get("units") == "written" else value
+
+    return write
+
+
 def quantity_type(unit: str, example: str) -> Any:
     """A pydantic type that reads text in any unit of this dimension and holds the SI float."""
     pattern = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^0-9\s].*$"
@@ -177,6 +203,7 @@ def quantity_type(unit: str, example: str) -> Any:
     return Annotated[
         float,
         BeforeValidator(_reader(unit)),
+        PlainSerializer(_writer(unit)),
         WithJsonSchema(schema, mode="validation"),
         Field(json_schema_extra={"unit": unit}),
     ]

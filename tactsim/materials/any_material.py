@@ -64,7 +64,7 @@ class _AnyMaterialSchema:
         return core_schema.with_info_plain_validator_function(
             read_material,
             serialization=core_schema.plain_serializer_function_ser_schema(
-                lambda material, info: material.model_dump(mode=info.mode), info_arg=True
+                lambda material, info: material.model_dump(mode=info.mode, context=info.context), info_arg=True
             ),
         )
 

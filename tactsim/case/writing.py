@@ -1,0 +1,82 @@
+"""From a case to its file: quantities with their units, nothing that is a default, shipped materials by name."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+from ruamel.yaml import YAML
+
+from tactsim.case.model import Case
+from tactsim.errors import StorageError
+from tactsim.interfaces import Experiment, Material
+from tactsim.materials.library import LIBRARY
+from tactsim.outside.text import one_line
+from tactsim.storage.files import naming, write_bytes
+
+HEADER = "# yaml-language-server: $schema=case.schema.json\n"
+LONGEST_LINE = 100
+
+
+def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False) -> Path:
+    """Writes a case file and returns its path; reading it gives a case of the same ``case_id``.
+
+    Parameters
+    ----------
+    case : a case, or an experiment, which becomes a case without a title
+    path : the file
+    force : whether a file that stands there may be replaced
+
+    Raises
+    ------
+    StorageError
+        If the file exists and ``force`` is not given, or it cannot be written.
+    """
+    place = Path(path)
+    if place.exists() and not force:
+        raise StorageError(f"{one_line(place)} exists; pass force=True to replace it")
+    with naming(place):
+        write_bytes(place, case_text(case).encode())
+    return place
+
+
+def case_text(case: Case | Experiment) -> str:
+    """A case as the YAML text of a case file."""
+    text = io.StringIO()
+    yaml = YAML()
+    yaml.width = LONGEST_LINE
+    yaml.default_flow_style = None
+    yaml.dump(case_document(case), text)
+    return text.getvalue()
+
+
+def case_document(case: Case | Experiment) -> dict[str, Any]:
+    """A case as the mapping that a case file holds: quantities as text with units, without what is a default."""
+    complete = case if isinstance(case, Case) else Case(schema="tactsim/case/1", experiment=case)
+    dumped = complete.model_dump(mode="json", by_alias=True, context={"units": "written"})
+    document: dict[str, Any] = _without_defaults(complete, dumped)
+    return document
+
+
+def _without_defaults(value: Any, dumped: Any) -> Any:
+    """What was dumped of a value, without the fields that have their default; shipped materials by name."""
+    if isinstance(value, Material) and (name := _shipped_name(value)):
+        return name
+    if isinstance(value, BaseModel):
+        kept = {}
+        for name, field in type(value).model_fields.items():
+            key, entry = field.serialization_alias or field.alias or name, getattr(value, name)
+            if name in ("kind", "control", "schema_version") or entry != field.get_default(call_default_factory=True):
+                kept[key] = _without_defaults(entry, dumped[key])
+        return kept
+    if isinstance(value, tuple | list):
+        return [_without_defaults(item, part) for item, part in zip(value, dumped, strict=True)]
+    if isinstance(value, dict):
+        return {key: _without_defaults(item, dumped[str(key)]) for key, item in value.items()}
+    return dumped
+
+
+def _shipped_name(material: Material) -> str | None:
+    return next((name for name in sorted(LIBRARY) if LIBRARY[name].material == material), None)
