@@ -18,6 +18,7 @@ class SchemaWithDescriptions(GenerateJsonSchema):
     """Describes every field by the docstring below it; read here only, for it costs as much time as a run has to answer in."""
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
+        """The schema of a model, its fields described."""
         fragment = super().model_schema(schema)
         described: dict[str, str] = {}
         for base in reversed(schema["cls"].__mro__):

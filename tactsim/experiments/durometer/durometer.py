@@ -24,7 +24,6 @@ from tactsim.units import Force, Length, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.experiments.indentation.course import Adapted, DisplacementPath
-    from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
     from tactsim.mechanics.history_path import TimedState
 
 LEAST_THICKNESS = 6e-3
@@ -117,6 +116,7 @@ class Durometer(Experiment):
 
     def _balanced(self, path: DisplacementPath, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether tissue and spring balance in it."""
+        from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 
         def surplus(state: ContactEquilibrium) -> float:
             traction = state.contacts[0].at(path.model.displacement(state.unknowns)).traction
