@@ -75,7 +75,7 @@ class DurometerRecord(IndentationRecord):
 
     def quantities(self) -> dict[str, Quantity]:
         """Reading and modulus, then those of an indentation."""
-        found = super().quantities()
+        inherited = super().quantities()
         radius = self.setup.body.radius
         hertz = hertz_reading(self.youngs_modulus, self.scale, radius)
         quantities = {
@@ -91,7 +91,7 @@ class DurometerRecord(IndentationRecord):
                 "reading": Quantity(0.0, "1", "reading of an indentor that bottoms out: the true one is below 0")
             } | quantities
             quantities["bottoms_out"] = Quantity(1, "1", "1 where the tissue does not bear the spring at the whole travel")
-        return quantities | found
+        return quantities | inherited
 
     def _went_all_the_way(self) -> bool:
         return bool(self.steps) and self.steps[-1].values["displacement"] >= self.scale.travel * (1 - 1e-9)

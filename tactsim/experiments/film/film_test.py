@@ -109,30 +109,30 @@ class FilmTest(Experiment):
 
     def _readings(self, times: Array, signal: Array) -> dict[str, Quantity]:
         drift = signal[-1] / signal[0] - 1
-        found = {
+        quantities = {
             "forces": Quantity(list(self.forces), "N", "forces that were held"),
             "times": Quantity(times.tolist(), "s", "times since the force began"),
             "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time, for each force"),
         }
         shown = {name: values for name, values in self._shown(signal).items() if name != "conductance"}
         readings = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
-        return found | readings
+        return quantities | readings
 
     def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""
         fit, symbol = linregress(forces, read), self.film.signal
         slope, intercept = float(fit.slope), float(fit.intercept)
         errors = (read - intercept) / slope - forces
-        found = {
+        quantities = {
             f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time, for each force")
             for name, values in self._shown(read).items()
             if name != "conductance"
         }
-        found |= report.readings
+        quantities |= report.readings
         words = f"m of the least-squares line of the {symbol}, C = m F + n, at the reading time"
-        found["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
-        found["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
+        quantities["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
+        quantities["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
         for sign, error in (("positive", errors.max()), ("negative", errors.min())):
             words = f"largest {sign} error of the force that the line reads, over the largest force"
-            found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
-        return found
+            quantities[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
+        return quantities

@@ -94,7 +94,7 @@ class Confusion(Experiment):
         """Name, true class, and readings with reference and response of every grasp."""
         plain = readings_of(stored_grasp(self.reference), self.readings, noise=self.noise)
         response = stored_response(self.reference) if self.estimator.needs_response else None
-        found = []
+        readings = []
         for folder in self.grasps:
             stored = stored_grasp(folder)
             kinds = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
@@ -104,8 +104,8 @@ class Confusion(Experiment):
                     f"grasps: {folder_words(folder)} has {', '.join(kinds)}; allowed: at most two lumps, or at most two tubes"
                 )
             one = with_reference(readings_of(stored, self.readings, noise=self.noise), plain)
-            found.append((folder_words(folder), true, replace(one, response=response)))
-        return found
+            readings.append((folder_words(folder), true, replace(one, response=response)))
+        return readings
 
     def _noisy(self, readings: Readings, number: int, draw: int) -> Readings:
         noise = self.noise * np.random.default_rng([self.seed, number, draw]).standard_normal((2, *readings.forces.shape))
@@ -116,12 +116,12 @@ class Confusion(Experiment):
 def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
     """The counts, and the shares that were told right."""
     order = ", ".join(CLASSES)
-    found = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
+    quantities = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
     if table.share_right is not None:
-        found["share_right"] = Quantity(table.share_right, "1", "share of all estimates that told the class right")
+        quantities["share_right"] = Quantity(table.share_right, "1", "share of all estimates that told the class right")
         recalls = Quantity(table.recalls, "1", f"share of each true class told right: {order}; null if there is none")
-        found["recalls"] = recalls
-    return found
+        quantities["recalls"] = recalls
+    return quantities
 
 
 def class_of(kinds: Sequence[str]) -> str | None:
@@ -136,7 +136,7 @@ def estimated_class(estimate: Estimate) -> str:
     if estimate.classes is not None:
         classes = estimate.classes
         return max(classes, key=lambda name: classes[name])
-    return class_of([found.kind for found in estimate.inclusions]) or "lump"
+    return class_of([inclusion.kind for inclusion in estimate.inclusions]) or "lump"
 
 
 @dataclass

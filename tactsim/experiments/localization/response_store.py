@@ -52,11 +52,11 @@ def kept_response(
     """The response of a grasp as it was kept, or else computed now; ``how`` tells ways to compute it apart."""
     identity = [setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity(), *([how] if how else [])]
     place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]}.npz"
-    found = _read(place)
-    if found is None:
-        found = compute()
-        _keep(found, place)
-    return found
+    stored = _read(place)
+    if stored is None:
+        stored = compute()
+        _keep(stored, place)
+    return stored
 
 
 def _plain(provenance: dict[str, Any], folder: str) -> Grasp:

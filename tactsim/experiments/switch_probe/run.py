@@ -125,19 +125,19 @@ def _pressed(
     states: list[ProbeState] = []
     if quality is not None:
         states = list(probe_states(setup.indentation(tissue, rate), setup.array, width=setup.width, quality=quality))
-        found = _interpolated(states, time)
+        forces = _interpolated(states, time)
     else:
-        found = probe_forces(time, depth, curve=CHAPTER_5, modulus=shear_relaxation(tissue.material), width=setup.width)
-    return (found if setup.sides == "computed" else followed(setup, found, depth)), tuple(s.record for s in states)
+        forces = probe_forces(time, depth, curve=CHAPTER_5, modulus=shear_relaxation(tissue.material), width=setup.width)
+    return (forces if setup.sides == "computed" else followed(setup, forces, depth)), tuple(s.record for s in states)
 
 
 def _interpolated(states: list[ProbeState], time: Array) -> ProbeForces:
     """Accepted states at other times, monotone between them, zero before the first contact."""
     columns = np.array([(state.force, state.contact_height, *state.switch_forces) for state in states])
     nodes = np.array([0.0, *(state.time for state in states)])
-    found = PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(np.clip(time, 0.0, nodes[-1]))
-    found = np.maximum(found, 0.0)
-    return ProbeForces(found[:, 0], found[:, 2:], found[:, 1])
+    interpolated = PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(np.clip(time, 0.0, nodes[-1]))
+    interpolated = np.maximum(interpolated, 0.0)
+    return ProbeForces(interpolated[:, 0], interpolated[:, 2:], interpolated[:, 1])
 
 
 def followed(setup: SwitchProbeSetup, pressed: ProbeForces, depth: Array) -> ProbeForces:

@@ -76,13 +76,13 @@ class ThresholdTrial(TrialCase, Experiment):
         report.begin(sampling.approach)
         for index, noise in enumerate(self.noise_levels):
             each: dict[str, Any] = {"low_passes": self.low_passes, "triggers": triggers[index], "trials": self.trials}
-            found = sampling.trials(noise, **each, seed=(self.seed, 1, speed, index))
+            noisy = sampling.trials(noise, **each, seed=(self.seed, 1, speed, index))
             silent = sampling.trials(SILENT, **each, seed=())
             for k, low_pass in enumerate(self.low_passes):
                 level = float(triggers[index][k].level)
                 ideals = [sampling.ideal_error(chosen, level) for chosen in (None, low_pass)]
                 line = sampling.ideal_error(None, level, films=False) if self.sensor.has_films else ideals[0]
-                report.add(found[k], silent[k], [line, *ideals], level)
+                report.add(noisy[k], silent[k], [line, *ideals], level)
                 if (speed, index, k) == report.shown:
                     report.show(sampling, noise, low_pass, triggers[index][k])
 

@@ -18,15 +18,15 @@ NO_LINE = [[np.nan] * 3] * 2
 def localized(result: Result) -> ViewedGrasp:
     """The grasp that was read, with the estimates."""
     grasp, scene = viewed(result), result.scene_as(LocalizedGrasp)
-    centers = np.array([found.center for found in scene.estimates], dtype=float).reshape(-1, 3)
+    centers = np.array([estimate.center for estimate in scene.estimates], dtype=float).reshape(-1, 3)
     return replace(
         grasp,
         valid=grasp.valid if scene.valid is None else np.array(scene.valid),
         estimates=centers,
-        radii=np.array([np.nan if found.radius is None else found.radius for found in scene.estimates], dtype=float),
-        lines=np.array([found.line or NO_LINE for found in scene.estimates], dtype=float).reshape(-1, 2, 3),
+        radii=np.array([np.nan if estimate.radius is None else estimate.radius for estimate in scene.estimates], dtype=float),
+        lines=np.array([estimate.line or NO_LINE for estimate in scene.estimates], dtype=float).reshape(-1, 2, 3),
         regions={
-            away: [1e3 * np.array(line) for found in scene.estimates for line in (found.region or {}).get(view, ())]
+            away: [1e3 * np.array(line) for estimate in scene.estimates for line in (estimate.region or {}).get(view, ())]
             for view, away in AWAY.items()
         },
         findings=_findings(centers, result) if "present" in result.quantities else grasp.findings,
