@@ -121,11 +121,11 @@ class RateSum:
             rates = 1 / times
             differences = np.block([[np.zeros((1, 1)), -rates[None]], [rates[:, None], differences]])
             weights, times = np.append(self.weight_at_zero, weights), np.append(np.inf, times)
-        found = [self._between(k, differences, weights) for k in range(len(times) - 1)]
+        roots = [self._between(k, differences, weights) for k in range(len(times) - 1)]
         if self.constant and len(times):
-            found.append((len(times) - 1, self._above_last(differences[:, -1], weights)))
-        anchors = np.array([anchor for anchor, _ in found], dtype=int)
-        offsets = np.array([offset for _, offset in found])
+            roots.append((len(times) - 1, self._above_last(differences[:, -1], weights)))
+        anchors = np.array([anchor for anchor, _ in roots], dtype=int)
+        offsets = np.array([offset for _, offset in roots])
         pole_to_root = differences[:, anchors] - offsets
         root_to_root = pole_to_root[anchors] + offsets[:, None]
         return 1 / (1 / times[anchors] + offsets), self._residues(np.abs(pole_to_root), np.abs(root_to_root), weights.sum())

@@ -144,10 +144,10 @@ def _deviations(data: DmaData, frequencies: Array, replicates: int, seed: int, *
     drawn = refitted(data.parts.ravel())
     exact, level = basis @ drawn, level_of_noise(data.parts.ravel(), drawn)
     generator = np.random.default_rng(seed)
-    found = np.empty((replicates, len(curves)))
-    for row in found:
+    deviations = np.empty((replicates, len(curves)))
+    for row in deviations:
         compliance = exact * (1 + noise * generator.standard_normal(exact.size))
         spectrum = refitted(np.maximum(compliance, SMALLEST_RATIO * exact))
         row[:] = np.log(np.maximum(curves @ spectrum / (curves @ drawn), SMALLEST_RATIO))
         row /= level_of_noise(compliance, spectrum) / level
-    return found
+    return deviations

@@ -63,9 +63,9 @@ class EstimatedInclusion:
             raise InvalidQuantity(f"an estimated radius {self.radius} m; allowed: finite and positive, or none")
         if self.covariance is None:
             return
-        found = np.asarray(self.covariance, dtype=float)
-        if found.shape != (len(PARAMETERS),) * 2 or not np.isfinite(found).all():
-            raise InvalidQuantity(f"a covariance of shape {found.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
+        covariance = np.asarray(self.covariance, dtype=float)
+        if covariance.shape != (len(PARAMETERS),) * 2 or not np.isfinite(covariance).all():
+            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
 
 
 @dataclass(frozen=True, eq=False)

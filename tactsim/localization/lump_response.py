@@ -41,8 +41,8 @@ class LumpResponse:
         shape = (len(self.radii), *map(len, self.axes))
         if self.values.shape[:4] != shape or self.values.ndim != 7 or not np.isfinite(self.values).all():
             raise InvalidQuantity(f"values of shape {self.values.shape}; needed: finite, {shape} and (jaw, row, column)")
-        found = RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
-        object.__setattr__(self, "_interpolator", found)
+        interpolator = RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
+        object.__setattr__(self, "_interpolator", interpolator)
 
     @classmethod
     def of_density(

@@ -137,12 +137,12 @@ def read_weights(path: str | Path) -> LearnedWeights:
         layout = TaxelLayout.model_validate_json(str(file["layout"]))
         numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
         held_out = int(file["held_out"])
-        found = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
+        weights = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
         raise StorageError(f"{path} does not hold the weights of a learned estimator: {one_line(error, 120)}") from None
-    if not found.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
+    if not weights.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
-    return found
+    return weights
 
 
 def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
@@ -177,7 +177,7 @@ def _count(value: Array) -> int:
 
 def _network(file: dict[str, Array], number: int) -> Network:
     layers = range(_count(file[f"depth_{number}"]))
-    found = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
-    if not all(np.isfinite(array).all() for part in found for array in part):
+    layered = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
+    if not all(np.isfinite(array).all() for part in layered for array in part):
         raise ValueError("weights that are not finite")
-    return Network(*found)
+    return Network(*layered)

@@ -38,8 +38,8 @@ def named_material(name: str) -> MaterialSet:
     UnknownName
         With the nearest name.
     """
-    found: MaterialSet = shipped("material set", name, LIBRARY)
-    return found
+    material: MaterialSet = shipped("material set", name, LIBRARY)
+    return material
 
 
 B1A_PRINTED = MaterialSet(

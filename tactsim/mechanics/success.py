@@ -44,8 +44,8 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
     if values["min_volume_ratio"] <= 0:
         return f"an element is inside out, its volume ratio {values['min_volume_ratio']:.3g}; allowed: above 0"
     if values["max_penetration"] > tolerance * (1 + ROUND_OFF):
-        found, allowed = (format_quantity(length, "m") for length in (values["max_penetration"], tolerance))
-        return f"the penetration is {found}; allowed: {allowed}"
+        penetration, allowed = (format_quantity(length, "m") for length in (values["max_penetration"], tolerance))
+        return f"the penetration is {penetration}; allowed: {allowed}"
     error = values["penetration_force_error"]
     if error > LARGEST_FORCE_ERROR:
         return (

@@ -136,7 +136,7 @@ def _neighbours(simplices: Array) -> Array:
     _, number = np.unique(faces, axis=0, return_inverse=True)
     order = np.argsort(number.reshape(-1), kind="stable")
     same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
-    found = np.full(len(faces), -1)
+    neighbours = np.full(len(faces), -1)
     a, b = order[same], order[same + 1]
-    found[a], found[b] = b // 4, a // 4
-    return found.reshape(-1, 4)
+    neighbours[a], neighbours[b] = b // 4, a // 4
+    return neighbours.reshape(-1, 4)

@@ -73,15 +73,15 @@ def swept(section: QuadraticMesh, sectors: int, turn: float = 2 * np.pi) -> Swep
 
 def _prisms(triangles: Array, on_axis: Array, sectors: int) -> tuple[Array, Array]:
     """Tetrahedra (E, 4, 2) by section node and plane, and the triangle (E,) that each comes from."""
-    found, owners = [], []
+    prisms, owners = [], []
     for sector in range(sectors):
         for place, third in zip((2, 1, 0), _THIRDS, strict=True):
             keep = np.flatnonzero(~on_axis[triangles[:, place]])
             after = third[:, 1] if sector % 2 == 0 else 1 - third[:, 1]
             planes = np.broadcast_to(sector + after, (len(keep), 4))
-            found.append(np.stack([triangles[keep][:, third[:, 0]], planes], axis=-1))
+            prisms.append(np.stack([triangles[keep][:, third[:, 0]], planes], axis=-1))
             owners.append(keep)
-    return np.concatenate(found), np.concatenate(owners)
+    return np.concatenate(prisms), np.concatenate(owners)
 
 
 def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, sectors: int, turn: float) -> Swept:

@@ -93,10 +93,10 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
     for line in arrays.pop("warnings").tolist():
         words = line if file.quotable else "a part of the file was passed over or completed"
         warnings.warn_explicit(f"{one_line(file.named)}: {words}", MeshFileWarning, READER, 0)
-    found = _unpacked(arrays)
-    if not _consistent(found):
+    mesh = _unpacked(arrays)
+    if not _consistent(mesh):
         raise StorageError(f"{named}: the numbers of points, nodes of cells and data do not fit each other; is it damaged?")
-    return found
+    return mesh
 
 
 def _consistent(mesh: MeshArrays) -> bool:

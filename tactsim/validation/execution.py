@@ -52,15 +52,15 @@ class StudyRunner:
             for run in study.runs
         }
         identities = {key: load_case(path, overrides).case_id for key, (_, path, overrides) in tasks.items()}
-        found: dict[str, RunOutcome] = {}
+        outcomes: dict[str, RunOutcome] = {}
         if not self.fresh:
             stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
-            found = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
-        waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in found}
+            outcomes = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
+        waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in outcomes}
         for case_id, outcome in self._computed(dict(reversed(waiting.items())), progress):
-            found[case_id] = outcome
+            outcomes[case_id] = outcome
             self._store(outcome)
-        named = {key: found[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
+        named = {key: outcomes[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
         return {
             table: {study.name: tuple(named[table, study.name, run.id] for run in study.runs) for study in studies}
             for table, studies in tables.items()

@@ -144,7 +144,7 @@ def written(folder: Path, call: str = "kind: doubled, length: 0.5 m", *, figure:
 
 def computed(folder: Path) -> tuple[float | None, bool]:
     (row,) = compare("small", load_tables(folder).tables["small"], folder, {}).rows
-    return row.found, row.held
+    return row.computed, row.held
 
 
 def test_a_function_of_a_temporary_module_takes_part_until_it_is_forgotten(tmp_path: Path, module: Callable[..., Any]) -> None:

@@ -186,14 +186,14 @@ def _truths(data: xarray.Dataset, height: float) -> tuple[Truth, ...]:
     count, closing = data["inclusion_count"].values, data["closing"].values
     center, radius = data["inclusion_center"].values[:, 0], data["inclusion_radius"].values[:, 0]
     contrast, numbers = data["inclusion_contrast"].values[:, 0], data["sample"].values
-    found = []
+    truths = []
     for k, number in enumerate(numbers):
         if not count[k]:
-            found.append(Truth(int(number), float(closing[k])))
+            truths.append(Truth(int(number), float(closing[k])))
             continue
         x, y, z = map(float, center[k])
-        found.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
-    return tuple(found)
+        truths.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
+    return tuple(truths)
 
 
 def _readout(experiment: Grasp) -> MatrixReadout:

@@ -239,20 +239,20 @@ def differences(array: ArrayDescription, variable: Variable) -> Iterator[tuple[s
         "fill_value": "NaN" if variable.dtype.startswith("f") else variable.fill,
         **variable.attributes(),
     }
-    found: dict[str, Any] = {
+    stored: dict[str, Any] = {
         "dtype": array.dtype,
         "shape": [*array.shape[1:]],
         "dimension_names": [*array.dimensions],
         "fill_value": array.metadata["fill_value"],
         **array.attributes,
     }
-    for key in sorted(expected.keys() | found.keys()):
+    for key in sorted(expected.keys() | stored.keys()):
         if key not in expected:
-            yield key, f"{key} is {_shown(found[key])}, which tactsim does not write"
-        elif key not in found:
+            yield key, f"{key} is {_shown(stored[key])}, which tactsim does not write"
+        elif key not in stored:
             yield key, f"{key} is missing; expected: {_shown(expected[key])}"
-        elif found[key] != expected[key]:
-            yield key, f"{key} is {_shown(found[key])}; expected: {_shown(expected[key])}"
+        elif stored[key] != expected[key]:
+            yield key, f"{key} is {_shown(stored[key])}; expected: {_shown(expected[key])}"
 
 
 def wrong_arrays(arrays: Iterable[ArrayDescription], variables: Iterable[Variable]) -> Iterator[tuple[str, str]]:

@@ -84,11 +84,11 @@ def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:
 
 def stacked(samples: list[dict[str, Array]], variables: Iterable[Variable]) -> Block:
     """The block of single samples."""
-    found: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
+    block: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
     for variable in variables:
         values = [sample[variable.name] for sample in samples]
-        found[variable.name] = np.array([str(v) for v in values]) if variable.dtype == "str" else np.stack(values)
-    return found
+        block[variable.name] = np.array([str(v) for v in values]) if variable.dtype == "str" else np.stack(values)
+    return block
 
 
 class Journal:
