@@ -71,11 +71,13 @@ def below(node: ast.AST, prefix: str, *, public: bool = True, nested: bool = Fal
 
 @cache
 def definitions() -> tuple[Definition, ...]:
-    return tuple(found for path in modules() for found in below(tree(path), f"{path.relative_to(ROOT).as_posix()}:"))
+    return tuple(definition for path in modules() for definition in below(tree(path), f"{path.relative_to(ROOT).as_posix()}:"))
 
 
 def functions(*, public: bool = False) -> list[Definition]:
-    return [found for found in definitions() if isinstance(found.node, FUNCTIONS) and (found.public or not public)]
+    return [
+        definition for definition in definitions() if isinstance(definition.node, FUNCTIONS) and (definition.public or not public)
+    ]
 
 
 def own_nodes(function: ast.AST) -> Iterator[ast.AST]:
@@ -92,10 +94,10 @@ def length(function: Function) -> int:
     return body[-1].end_lineno - body[0].lineno + 1 if body else 0
 
 
-def positional(found: Definition) -> list[ast.arg]:
-    arguments = [*found.node.args.posonlyargs, *found.node.args.args]
-    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in found.node.decorator_list)
-    return arguments[1:] if found.method and not static else arguments
+def positional(definition: Definition) -> list[ast.arg]:
+    arguments = [*definition.node.args.posonlyargs, *definition.node.args.args]
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in definition.node.decorator_list)
+    return arguments[1:] if definition.method and not static else arguments
 
 
 def annotations(function: Function) -> list[tuple[str, str]]:
@@ -108,8 +110,8 @@ def compiled(function: Function) -> bool:
     return any("njit" in ast.unparse(decorator) for decorator in function.decorator_list)
 
 
-def says_raises(found: Definition) -> bool:
-    return "Raises" in (ast.get_docstring(found.node) or "")
+def says_raises(definition: Definition) -> bool:
+    return "Raises" in (ast.get_docstring(definition.node) or "")
 
 
 def raises(function: Function) -> bool:
@@ -155,13 +157,13 @@ def untyped_arguments() -> list[str]:
 
 
 def large_classes() -> list[str]:
-    found = []
+    large = []
     for definition in definitions():
         if isinstance(definition.node, ast.ClassDef):
             methods = [n for n in definition.node.body if isinstance(n, FUNCTIONS) and not n.name.startswith("_")]
             if len(methods) > MOST_METHODS and definition.place not in LARGE_CLASSES:
-                found.append(f"{definition.place}: {len(methods)} public methods")
-    return found
+                large.append(f"{definition.place}: {len(methods)} public methods")
+    return large
 
 
 def undocumented() -> list[str]:
@@ -183,13 +185,13 @@ def empty_names() -> list[str]:
 
 def household_names() -> list[str]:
     """Functions, arguments and variables of the engine and of mechanics by a household word."""
-    found = set()
+    broken = set()
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
         for node in ast.walk(tree(path)) if place.startswith((*ENGINE, "tactsim/mechanics/")) else ():
             names = [getattr(node, field, None) for field in ("name", "id", "attr", "arg")]
-            found |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
-    return sorted(found)
+            broken |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
+    return sorted(broken)
 
 
 def array_types() -> list[str]:
@@ -276,7 +278,7 @@ def cycles(imports: dict[str, set[str]]) -> list[list[str]]:
     order: dict[str, int] = {}
     lowest: dict[str, int] = {}
     stack: list[str] = []
-    found: list[list[str]] = []
+    groups: list[list[str]] = []
 
     def visit(module: str) -> None:
         order[module] = lowest[module] = len(order)
@@ -291,12 +293,12 @@ def cycles(imports: dict[str, set[str]]) -> list[list[str]]:
             group = stack[stack.index(module) :]
             del stack[stack.index(module) :]
             if len(group) > 1:
-                found.append(sorted(group))
+                groups.append(sorted(group))
 
     for module in sorted(imports):
         if module not in order:
             visit(module)
-    return found
+    return groups
 
 
 def test_no_two_modules_import_each_other_not_even_for_types():

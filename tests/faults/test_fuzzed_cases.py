@@ -81,10 +81,10 @@ def places(value: Any) -> Iterator[tuple[Any, Any]]:
 def changed(content: Any, changes: Sequence[Change]) -> Any:
     """The document after all changes."""
     for where, what, number in changes:
-        found = list(places(content))
-        if not found:
+        listed = list(places(content))
+        if not listed:
             return content
-        holder, key = found[int(where * len(found))]
+        holder, key = listed[int(where * len(listed))]
         if what == "delete":
             del holder[key]
         elif what == "repeat":

@@ -178,11 +178,11 @@ def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, v
         return json.dumps(content)
 
     try:
-        found = stored_choice(edited(folder, change))
+        choice = stored_choice(edited(folder, change))
     except TactsimError as error:
         assert error.exit_code == 5  # noqa: PT017  either it can be shown or it says why not
     else:
-        assert found is not None
+        assert choice is not None
 
 
 def test_a_result_of_millions_of_values_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -99,8 +99,8 @@ def test_a_set_of_files_killed_at_any_step_is_the_old_or_the_new(tmp_path: Path)
         write(out, "old")
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
             write(out, "new")
-        found = mark_of(out if out.exists() else out.with_name(".out.replaced"))
-        assert found in ("old", "new")
+        seen = mark_of(out if out.exists() else out.with_name(".out.replaced"))
+        assert seen in ("old", "new")
         write(out, "next")
         assert mark_of(out) == "next"
 

@@ -45,8 +45,8 @@ def test_the_interpolant_keeps_its_error():
     ],
 )
 def test_the_formulas_have_their_known_errors(formula, ratio, error, tolerance):
-    found = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
-    assert found == pytest.approx(error, abs=tolerance)
+    computed = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
+    assert computed == pytest.approx(error, abs=tolerance)
 
 
 def test_the_formulas_are_told_apart():

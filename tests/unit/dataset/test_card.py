@@ -34,14 +34,14 @@ def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.
     monkeypatch.setitem(sys.modules, "torch.utils.data", loaders)
     parts = re.findall(r"```python\n(.*?)```", card, flags=re.DOTALL)
     assert len(parts) == 3
-    found: dict = {}
+    names: dict = {}
     for part in parts:
-        exec(part.replace("STORE", str(place)), found)  # noqa: S102  the card is ours
-    assert found["done"].sizes["sample"] == 24
-    assert found["train"].sizes["sample"] + found["test"].sizes["sample"] < 24
-    assert found["loader"][0].inputs == ("read_force",)
-    assert found["loader"][0].targets == ("inner_radius",)
-    assert len(found["samples"]) == found["train"].sizes["sample"]
+        exec(part.replace("STORE", str(place)), names)  # noqa: S102  the card is ours
+    assert names["done"].sizes["sample"] == 24
+    assert names["train"].sizes["sample"] + names["test"].sizes["sample"] < 24
+    assert names["loader"][0].inputs == ("read_force",)
+    assert names["loader"][0].targets == ("inner_radius",)
+    assert len(names["samples"]) == names["train"].sizes["sample"]
 
 
 def test_the_card_tells_what_the_store_holds(store: tuple[Path, str]) -> None:

@@ -37,11 +37,11 @@ def test_compliance_is_that_of_the_model_and_the_vector_turns_back():
 
 def test_sensitivities_are_derivatives():
     p, step = constants().logarithms, 1e-6
-    found = part_sensitivities(p, FREQUENCIES)
+    computed = part_sensitivities(p, FREQUENCIES)
     for k in range(p.size):
         change = step * (np.arange(p.size) == k)
         slope = (compliance_parts(p + change, FREQUENCIES) - compliance_parts(p - change, FREQUENCIES)) / (2 * step)
-        np.testing.assert_allclose(found[..., k], slope, atol=1e-8 * np.abs(found).max())  # central differences
+        np.testing.assert_allclose(computed[..., k], slope, atol=1e-8 * np.abs(computed).max())  # central differences
 
 
 def test_objective_over_a_population_and_in_both_forms():

@@ -33,9 +33,9 @@ def weights(bias=5.0):
     )
 
 
-def kept(folder, found):
+def kept(folder, written):
     path = folder / "weights.npz"
-    path.write_bytes(found.content())
+    path.write_bytes(written.content())
     return path
 
 
@@ -47,9 +47,9 @@ def readings(layout=LAYOUT, size=SIZE):
 
 def test_weights_are_read_as_they_were_written(tmp_path):
     path, told = kept(tmp_path, weights()), readings()
-    found = read_weights(path)
+    loaded = read_weights(path)
     features = inputs(told.difference[None], told.reference[None], NOISE)[0]
-    for one, other in zip(found.place(features), weights().place(features), strict=True):
+    for one, other in zip(loaded.place(features), weights().place(features), strict=True):
         assert np.array_equal(one, other)
     estimate = LearnedEstimator.checked(path).estimate(told)
     assert estimate.present
@@ -106,9 +106,9 @@ def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
     monkeypatch.setattr(training, "HIDDEN", (32,))
     monkeypatch.setattr(training, "COPIES", 1)
     table = response()
-    found = training.trained(made_samples(48, table, seed=2), table)
+    trained = training.trained(made_samples(48, table, seed=2), table)
     judged = made_samples(40, table, seed=5)
-    numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, found)), judged, None), SIZE)
+    numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, trained)), judged, None), SIZE)
     guess = np.median([np.hypot(*(np.array(t.center)[:2] - 20e-3)) for t in judged.truths if t.present])
     assert numbers["detection_rate"]["value"] > 0.8
     assert numbers["lateral_error_with_misses"]["value"] < 0.5 * guess

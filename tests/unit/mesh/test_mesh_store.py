@@ -97,9 +97,9 @@ def test_a_damaged_entry_is_made_again(damage, mesher, tmp_path):
 
 def test_writers_at_the_same_time_end_with_one_mesh(mesher, tmp_path):
     with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda _: stored(tmp_path), range(4)))
-    assert len({one.content for one in found}) == 1
-    assert stored(tmp_path).content == found[0].content
+        meshes = list(pool.map(lambda _: stored(tmp_path), range(4)))
+    assert len({one.content for one in meshes}) == 1
+    assert stored(tmp_path).content == meshes[0].content
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".npz"]
 
 
@@ -119,8 +119,8 @@ def test_a_shipped_mesh_comes_first_and_a_wrong_one_is_refused(mesher, tmp_path)
     folder, made = tmp_path / "meshes", stored(tmp_path)
     ship(folder, made.block, key="0" * 16)
     ship(folder, made.block)
-    found = stored(tmp_path)
-    assert (found.origin, found.content, mesher.calls) == ("shipped", made.content, 1)
+    shipped = stored(tmp_path)
+    assert (shipped.origin, shipped.content, mesher.calls) == ("shipped", made.content, 1)
     (folder / "lump.npz").write_bytes(b"damaged")
     with pytest.raises(StorageError, match=r"lump\.npz"):
         stored(tmp_path)

@@ -22,9 +22,9 @@ def npz(**arrays: Any) -> bytes:
 
 def test_arrays_come_back() -> None:
     arrays = {"a": np.arange(6.0).reshape(2, 3), "words": np.array(["x", "yz"]), "none": np.zeros((0, 3))}
-    found = read_arrays(npz(**arrays), "file")
-    assert found.keys() == arrays.keys()
-    assert all(np.array_equal(found[name], array) for name, array in arrays.items())
+    loaded = read_arrays(npz(**arrays), "file")
+    assert loaded.keys() == arrays.keys()
+    assert all(np.array_equal(loaded[name], array) for name, array in arrays.items())
 
 
 def test_more_than_is_expected_is_refused_before_it_is_unpacked() -> None:

@@ -36,9 +36,9 @@ def mesh(tmp_path: Path) -> Path:
 
 def test_warnings_of_the_reader_are_warnings_here(mesh: Path) -> None:
     with pytest.warns(MeshFileWarning, match=r"cut\.msh: \$Elements not closed by \$EndElements") as caught:
-        found = read_mesh_file(opened(mesh, "mesh"))
+        loaded = read_mesh_file(opened(mesh, "mesh"))
     assert len(caught) == 1
-    assert [kind for kind, _ in found.cells] == ["triangle"]
+    assert [kind for kind, _ in loaded.cells] == ["triangle"]
 
 
 @pytest.mark.filterwarnings("default::tactsim.outside.mesh_files.MeshFileWarning")

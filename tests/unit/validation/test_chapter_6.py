@@ -98,8 +98,8 @@ def test_what_the_meshes_differ_by_is_taken_off() -> None:
 
 def test_the_jaws_are_told_apart() -> None:
     studies = Inputs(studies={"s": (grasp("a", middle(2.0), middle(2.5)), grasp("b", middle(4.0), middle(3.0)))})
-    found = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
-    assert found == [2.0, 0.5, 1.5]
+    computed = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
+    assert computed == [2.0, 0.5, 1.5]
 
 
 def test_a_change_is_read_at_the_closing_asked_for() -> None:
@@ -147,17 +147,17 @@ def test_only_the_broken_symmetry_is_told(mirror: str, place: tuple[int, int]) -
     studies = Inputs(studies={"s": (grasp("even", even), grasp("bent", even, bent))})
     for name in ("left_right", "front_back", "upper_lower"):
         assert taxel_asymmetry(studies, "s", "even", name) == 0  # type: ignore[arg-type]
-        found = taxel_asymmetry(studies, "s", "bent", name)  # type: ignore[arg-type]
-        assert (found > 0) == (name in (mirror, "upper_lower"))
+        computed = taxel_asymmetry(studies, "s", "bent", name)  # type: ignore[arg-type]
+        assert (computed > 0) == (name in (mirror, "upper_lower"))
     largest = bent[-1].max()
     assert taxel_asymmetry(studies, "s", "bent", mirror) == pytest.approx(0.1 / largest, rel=1e-12)  # type: ignore[arg-type]
 
 
 def test_a_taxel_reads_less_than_each_of_the_others() -> None:
     row = np.array([[[0.5, 0.9, 0.7]]])
-    found = inputs(a=row, b=row[..., ::-1])
-    assert taxel_contrast(found, "s", "a", taxel=(1, 1), others=((1, 2), (1, 3))) == pytest.approx(-0.2, rel=1e-12)
-    assert taxel_contrast(found, "s", "b", taxel=(1, 1), others=((1, 2), (1, 3))) > 0
+    simulated = inputs(a=row, b=row[..., ::-1])
+    assert taxel_contrast(simulated, "s", "a", taxel=(1, 1), others=((1, 2), (1, 3))) == pytest.approx(-0.2, rel=1e-12)
+    assert taxel_contrast(simulated, "s", "b", taxel=(1, 1), others=((1, 2), (1, 3))) > 0
 
 
 def test_the_change_of_a_pulse_leaves_out_what_came_before() -> None:
@@ -223,9 +223,11 @@ def check(rows: Sequence[Row], runner: StudyRunner) -> None:
         for study in TABLE_6_6.studies
         if (kept := tuple(run for run in study.runs if run.id in needed))
     ]
-    found = Inputs(folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"])
-    assert [row.id for row in rows if not compare_row(row, found).held] == []
-    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), found).held] == []
+    simulated = Inputs(
+        folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"]
+    )
+    assert [row.id for row in rows if not compare_row(row, simulated).held] == []
+    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), simulated).held] == []
 
 
 def test_the_row_of_one_short_simulation_holds(tmp_path: Path) -> None:

@@ -56,14 +56,14 @@ def test_a_film_test_refuses_lists_out_of_order(forces, times):
 
 
 def test_creep_of_the_thesis_comes_back_within_its_intervals():
-    found = values(FilmCreep.example().run(quiet))
+    quantities = values(FilmCreep.example().run(quiet))
     for name, slope, intercept in (
         ("instantaneous", 60900, 651200),
         ("delayed", 449900, 397700),
         ("viscosity", 1208200, 2892800),
     ):
-        assert abs(found[f"{name}_slope"] - slope) < 2 * found[f"{name}_slope_half_width"]
-        assert abs(found[f"{name}_intercept"] - intercept) < 2 * found[f"{name}_intercept_half_width"]
+        assert abs(quantities[f"{name}_slope"] - slope) < 2 * quantities[f"{name}_slope_half_width"]
+        assert abs(quantities[f"{name}_intercept"] - intercept) < 2 * quantities[f"{name}_intercept_half_width"]
 
 
 def test_creep_that_has_no_creep_in_it_fails(tmp_path):
@@ -77,11 +77,11 @@ def test_creep_that_has_no_creep_in_it_fails(tmp_path):
 
 def test_without_noise_the_model_finds_the_force_within_one_step_of_the_converter():
     for force in (Chirp(kind="chirp", duration=5.0), Square(kind="square", duration=3.0)):
-        found = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0)).run(quiet))
-        assert found["inversion_steps"] < 1
+        quantities = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0)).run(quiet))
+        assert quantities["inversion_steps"] < 1
     coarse = {"low": 0.0, "high": 5.0, "bits": 10}
-    found = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0, converter=coarse)).run(quiet))
-    assert found["inversion_steps"] < 1
+    quantities = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0, converter=coarse)).run(quiet))
+    assert quantities["inversion_steps"] < 1
 
 
 def test_noise_takes_the_model_further_than_one_step():

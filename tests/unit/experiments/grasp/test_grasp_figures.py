@@ -131,7 +131,7 @@ def test_an_artery_is_shown_at_its_highest_pressure(frame):
     frames = (replace(frame, time=steps[2].values["time"]), replace(frame, time=steps[-1].values["time"]))
     pulsing = replace(result, steps=steps, frames=frames)
     shown = shown_moment(pulsing)
-    assert [found.time for found in shown.frames] == [frames[0].time]
+    assert [frame.time for frame in shown.frames] == [frames[0].time]
     assert shown.steps == steps
     force = np.asarray(result.quantities["taxel_force_upper_history"].value)[2]
     np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)

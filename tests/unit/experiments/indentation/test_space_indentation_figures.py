@@ -40,16 +40,16 @@ def made_up(symmetry="half", status=Status.CONVERGED):
 
 @pytest.mark.parametrize(("symmetry", "sections"), [("quarter", 1), ("half", 2), ("whole", 2)])
 def test_cut_is_the_section_once_on_each_side_that_is_computed(symmetry, sections):
-    found = cut(made_up(symmetry).frames[-1])
-    assert len(found.cells["triangle6"]) == sections * len(SECTION.elements)
-    corners = found.points[found.cells["triangle6"][:, :3], :2]
+    section = cut(made_up(symmetry).frames[-1])
+    assert len(section.cells["triangle6"]) == sections * len(SECTION.elements)
+    corners = section.points[section.cells["triangle6"][:, :3], :2]
     sides = corners[:, 1:] - corners[:, :1]
     area = np.abs(np.linalg.det(sides)).sum() / 2
     assert area == pytest.approx(sections * 8e-3 * 4e-3, rel=1e-12)
     assert area != pytest.approx((3 - sections) * 8e-3 * 4e-3, rel=0.1)
-    edges, outline = Section(found).edges()
-    middles = found.points[edges[:, 1]]
-    np.testing.assert_allclose(middles, found.points[edges[:, [0, 2]]].mean(axis=1), atol=1e-15)
+    edges, outline = Section(section).edges()
+    middles = section.points[edges[:, 1]]
+    np.testing.assert_allclose(middles, section.points[edges[:, [0, 2]]].mean(axis=1), atol=1e-15)
     assert outline.any()
 
 

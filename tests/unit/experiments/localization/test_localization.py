@@ -35,16 +35,16 @@ ESTIMATOR = ThesisEstimator(background="reference")
 
 def grasp(forces, *, closing=1e-3, inclusions=(SPHERE,), apart=0.0, layout=None, extra=None):
     layout = layout or TaxelLayout()
-    found = {"displacement": Quantity(closing, "m", "")}
+    quantities = {"displacement": Quantity(closing, "m", "")}
     for jaw, side in enumerate(("upper", "lower")):
-        found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
-        found[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
+        quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
+        quantities[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
     scene = grasp_scene(SIZE, layout, inclusions, width=40e-3, depth=40e-3)
     x, y, z = scene.jaw_places["upper"]
     scene = scene.model_copy(update={"jaw_places": scene.jaw_places | {"upper": (x + apart, y, z)}})
     step = StepRecord(1, 3, 0.0, {"displacement": closing})
     return Result(
-        "grasp", Status.CONVERGED, "made up", found | (extra or {}), steps=(step,), units={"displacement": "m"}, scene=scene
+        "grasp", Status.CONVERGED, "made up", quantities | (extra or {}), steps=(step,), units={"displacement": "m"}, scene=scene
     )
 
 

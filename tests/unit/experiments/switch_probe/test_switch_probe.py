@@ -140,11 +140,11 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
         return touched(setup, chosen, rate, generator)
 
     monkeypatch.setattr(switch_probe, "touched", stopped)
-    found = probe(rates=(1e-3, 3e-3)).run()
-    assert found.status == status
-    assert "forces_1" in found.quantities
-    assert "forces_2" not in found.quantities
-    assert figures_for(found)["force_over_depth.png"]().startswith(b"\x89PNG")
+    result = probe(rates=(1e-3, 3e-3)).run()
+    assert result.status == status
+    assert "forces_1" in result.quantities
+    assert "forces_2" not in result.quantities
+    assert figures_for(result)["force_over_depth.png"]().startswith(b"\x89PNG")
     nothing = probe(rates=(3e-3,)).run()
     assert (nothing.status, nothing.steps, figures_for(nothing)) == (status, (), {})
 
@@ -173,26 +173,26 @@ def test_impossible_experiments_are_refused(changes, words):
 def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
     given = {"depth": 2e-3, "sides": "computed"}
     fast = probe(**given).run()
-    found = probe(model="fem", **COARSE, **given).run()
-    assert found.status is Status.CONVERGED, found.reason
+    result = probe(model="fem", **COARSE, **given).run()
+    assert result.status is Status.CONVERGED, result.reason
     expected = fast.quantities["forces_1"].value
-    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
+    np.testing.assert_allclose(result.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
     elastic = probe(tissues=(ELASTIC,), **given).run()
-    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
+    assert not np.allclose(result.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("rate", "fractions"), [(0.5e-3, (0.9,)), (1e-3, (0.9,)), (3e-3, (0.4,))])
 def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fractions):
     given = {"tissues": (tissue(fractions=fractions),), "rates": (rate,), "sides": "computed"}
-    fast, found = (probe(model=model, **given).run() for model in ("fast", "fem"))
+    fast, elements = (probe(model=model, **given).run() for model in ("fast", "fem"))
     expected = fast.quantities["forces_1"].value
-    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
+    np.testing.assert_allclose(elements.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
     elastic = probe(**given | {"tissues": (ELASTIC,)}).run()
-    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
-    heights = [run.quantities["contact_height_1"].value for run in (fast, found)]
+    assert not np.allclose(elements.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
+    heights = [run.quantities["contact_height_1"].value for run in (fast, elements)]
     assert heights[1] == pytest.approx(heights[0], rel=0.03)
-    pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, found)]
+    pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, elements)]
     assert pressed[0] == pytest.approx(pressed[1], rel=0.35), (
         "a strip under the last edge of the contact; superposition is rough there"
     )
@@ -200,8 +200,8 @@ def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fraction
 
 @pytest.mark.slow
 def test_the_curve_is_that_of_the_finite_elements():
-    fast, found = (probe(model=model, tissues=(ELASTIC,), sides="computed").run() for model in ("fast", "fem"))
-    np.testing.assert_allclose(found.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
-    assert found.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
+    fast, elements = (probe(model=model, tissues=(ELASTIC,), sides="computed").run() for model in ("fast", "fem"))
+    np.testing.assert_allclose(elements.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
+    assert elements.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
     relaxing = probe(sides="computed").run()
-    assert not np.allclose(found.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)
+    assert not np.allclose(elements.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)

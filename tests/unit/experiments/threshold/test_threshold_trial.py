@@ -127,14 +127,14 @@ def test_films_can_conduct_in_place_of_the_line():
     below_zero = Converter(low=-0.1, high=4.9)
     chain = SignalChain(converter=below_zero, low_pass=SignalChain().low_pass)
     sensor = ThresholdSensor(large=ForceSensor(film=Film()), small=ForceSensor(film=Film()), chain=chain)
-    found = run(sensor=sensor)
-    assert found.status is Status.CONVERGED
-    assert grid(found, "false_rate").max() == 0
-    parts = [grid(found, f"{name}_error")[0, 0, 0] for name in ("level", "film", "filter", "sampling", "noise")]
-    assert sum(parts) == pytest.approx(grid(found, "force_error")[0, 0, 0], rel=1e-9)
+    outcome = run(sensor=sensor)
+    assert outcome.status is Status.CONVERGED
+    assert grid(outcome, "false_rate").max() == 0
+    parts = [grid(outcome, f"{name}_error")[0, 0, 0] for name in ("level", "film", "filter", "sampling", "noise")]
+    assert sum(parts) == pytest.approx(grid(outcome, "force_error")[0, 0, 0], rel=1e-9)
     assert parts[1] != 0
     assert grid(run(), "film_error")[0, 0, 0] == 0
-    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(found).values())
+    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(outcome).values())
 
 
 def test_the_large_sensor_with_and_without_the_small_one_on_it():
