@@ -87,7 +87,7 @@ def grasp_folder(place: Path, forces: np.ndarray | None = None, **options: objec
 
 
 def localized_folder(place: Path) -> Path:
-    """The folder of a localization that found a ball and a tube, how far off it may be told of the first."""
+    """The folder of a localization that found a ball and a tube, how far off is known of the first."""
     grasp = made_up_grasp(taxel_forces(1))
     ball = EstimatedShape(kind="sphere", center=(0.023, 0.017, 0.012), radius=4e-3)
     tube = EstimatedShape(kind="tube", center=(0.02, 0.02, 0.01), radius=3e-3, line=((0, 0.02, 0.01), (0.04, 0.02, 0.01)))

@@ -209,7 +209,7 @@ def leaks(store: Store, status: Array) -> Iterator[Finding]:
     try:
         split, specimen, case = store.read("split"), store.read("specimen"), store.read("case_id")
     except StorageError:
-        return  # `value_findings` tells which chunk cannot be read
+        return  # `value_findings` names the chunk that cannot be read
     names = str(store.described["split"].attributes["flag_meanings"]).split()
     computed = np.flatnonzero(status != PENDING)
     unknown = computed[split[computed] >= len(names)]

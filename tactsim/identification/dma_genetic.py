@@ -41,7 +41,7 @@ def fit_genetic(data: DmaData, units: int = 8, *, form: str = "squared", setting
 
     Tournament selection, simulated binary crossover, polynomial mutation and survival of the fittest, with the parameters of
     pymoo, on the log constants between ``log_bounds``. It stops after the given generations: a longer search finds a lower
-    objective, nothing tells that the lowest is reached.
+    objective, nothing shows that the lowest is reached.
 
     Raises
     ------

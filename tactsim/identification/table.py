@@ -35,7 +35,7 @@ LONGEST_CELL = 80
 class Table:
     """Header and data lines of a file with their numbers, without blanks and comments.
 
-    ``quotable`` is as of ``OutsideFile``, ``numeric`` tells whether any row holds numbers.
+    ``quotable`` is as of ``OutsideFile``, ``numeric`` states whether any row holds numbers.
     """
 
     name: str

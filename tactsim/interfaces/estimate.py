@@ -39,7 +39,7 @@ class EstimatedInclusion:
 
     Attributes
     ----------
-    kind : "sphere", "tube", or "unknown" if the estimator does not tell
+    kind : "sphere", "tube", or "unknown" if the estimator does not say
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
     contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
@@ -77,8 +77,8 @@ class Estimate:
     present : whether anything is there
     inclusions : the strongest first; empty exactly if nothing is there
     reason : why, in words for a user
-    probability : that anything is there, from 0 to 1; None if the estimator does not tell
-    classes : probability of each class by its name, adding up to 1; None if the estimator does not tell classes apart
+    probability : that anything is there, from 0 to 1; None if the estimator does not say
+    classes : probability of each class by its name, adding up to 1; None if the estimator does not distinguish classes
     """
 
     present: bool

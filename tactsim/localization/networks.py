@@ -20,7 +20,7 @@ from tactsim.outside.text import one_line
 
 SCHEMA = "tactsim/learned/1"
 OUTPUTS = ("x", "y", "z", "radius")
-"""Order of what the networks tell of a lump."""
+"""Order of what the networks give of a lump."""
 TINY = 1e-9
 """Change over the whole force of the reference below which there is none."""
 
@@ -43,7 +43,7 @@ class Network:
 
 @dataclass(frozen=True, eq=False)
 class LearnedWeights:
-    r"""An ensemble that tells place and radius, and a network that tells whether there is a lump.
+    r"""An ensemble that gives place and radius, and a network that decides whether there is a lump.
 
     The inputs are what `inputs` makes of readings, over ``scale`` about ``middle``. Errors have the covariance of those of held
     out grasps, ``covariance`` (4, 4) over the block's height squared, times :math:`e^{2 (a + b \\ln |d| / F)}` with the change d,
@@ -168,7 +168,7 @@ def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
 
 
 def _count(value: Array) -> int:
-    """A number of parts that a file tells, of which it must hold that many."""
+    """A number of parts that a file states, of which it must hold that many."""
     count = int(value)
     if not 1 <= count <= MOST_PARTS:
         raise ValueError(f"{count} networks or layers; allowed: 1 to {MOST_PARTS}")

@@ -79,7 +79,7 @@ ICF_STABLE = MaterialSet(
     rms_relative_error=0.0171,
 )
 
-_ATRIAL_NOTE = "the data tell the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
+_ATRIAL_NOTE = "the data determine the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
 
 ATRIAL = MaterialSet(
     name="atrial",

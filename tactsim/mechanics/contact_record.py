@@ -146,7 +146,7 @@ class ContactRecord(ABC, Generic[Model]):
         }
 
     def warnings(self) -> list[str]:
-        """What a user is told of at least one step."""
+        """Warnings about at least one step."""
         return [*self.quality.warnings(), *self.unstable("a displacement of {}")]
 
     def unstable(self, where: str) -> list[str]:

@@ -17,7 +17,7 @@ LARGEST_RESIDUAL = NewtonOptions().tolerance
 ROUND_OFF = 1e-9
 """Relative excess of a penetration over its tolerance that is round-off."""
 SATURATED = 0.99
-"""Estimate beyond which nearly all of the force is missing and nothing more can be told from it."""
+"""Estimate beyond which nearly all of the force is missing and nothing more follows from it."""
 
 
 def judged(status: Status, reason: str, reported: Iterable[StepRecord], tolerance: float) -> tuple[Status, str]:

@@ -25,7 +25,7 @@ from tactsim.validation.study import RunOutcome, Study
 
 MODULE = "tactsim.validation.execution"
 BROKEN = b"!"
-"""How an answer begins that tells of a defect."""
+"""How an answer begins that reports a defect."""
 Task = tuple[str, str, tuple[str, ...]]
 """Name of the run, path of the case file and the overrides."""
 Studies = dict[str, tuple[RunOutcome, ...]]
@@ -110,8 +110,8 @@ def _outcome_of(answer: Answer[str]) -> RunOutcome:
         If it met a defect of this program.
     """
     if answer.content is None:
-        told = f"a process of the simulations ended ({answer.ending}); is there enough memory? take fewer workers"
-        raise ConvergenceError(told)
+        message = f"a process of the simulations ended ({answer.ending}); is there enough memory? take fewer workers"
+        raise ConvergenceError(message)
     if answer.content.startswith(BROKEN):
         raise TactsimError(f"a simulation failed: {answer.content[len(BROKEN) :].decode(errors='replace')}")
     return RunOutcome.model_validate_json(answer.content)

@@ -21,10 +21,10 @@ LONG = {"indentation"}
 @pytest.mark.parametrize("kind", sorted(RECORDERS))
 def test_variables_have_units_and_one_name_each(kind: str) -> None:
     recorder, experiment = recorder_for(kind, SweepSettings(samples=1), 2), kinds(Experiment)[kind].example()
-    told = variables(recorder, experiment)
-    assert {one.role for one in told} <= {"label", "reading"}
-    assert len({one.name for one in told}) == len(told)
-    for one in told:
+    declared = variables(recorder, experiment)
+    assert {one.role for one in declared} <= {"label", "reading"}
+    assert len({one.name for one in declared}) == len(declared)
+    for one in declared:
         assert one.unit == "1" or is_unit(one.unit), one.name
         assert one.description
         assert len(one.dimensions) == len(one.sizes)

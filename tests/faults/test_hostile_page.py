@@ -127,10 +127,10 @@ def test_a_pipe_or_a_device_as_a_file_of_frames_is_refused_with_advice(tmp_path:
     assert "--live - < " in done.stderr
 
 
-def test_a_closed_standard_input_is_told_on_the_page(tmp_path: Path) -> None:
+def test_a_closed_standard_input_is_reported_on_the_page(tmp_path: Path) -> None:
     with served("--live", "-", preexec_fn=lambda: os.close(0)) as server, server.page() as page:
-        told = [json.loads(content) for kind, content in take(received(page), 6) if kind == OP_TEXT]
-        assert any(one.get("state") == "standard input is closed" for one in told)
+        sent = [json.loads(content) for kind, content in take(received(page), 6) if kind == OP_TEXT]
+        assert any(one.get("state") == "standard input is closed" for one in sent)
         assert server.ended()[1] == ""
 
 
@@ -202,15 +202,15 @@ def test_any_command_is_read_or_refused_in_a_line(text: str) -> None:
     assert said.isprintable()
 
 
-def test_a_defect_is_told_in_one_line_and_once() -> None:
-    told: list[str] = []
-    with telling_defects(told.append):
+def test_a_defect_is_reported_in_one_line_and_once() -> None:
+    reported: list[str] = []
+    with telling_defects(reported.append):
         for _ in range(3):
             LOGGER.error("x", exc_info=ValueError("a\x1b[31m\nb"))
         asyncio.run(_failing_task())
-    assert told[0] == "warning: internal error of the page (ValueError: a\\x1b[31m\\nb); please report it"
-    assert len(told) == 2
-    assert "KeyError" in told[1]
+    assert reported[0] == "warning: internal error of the page (ValueError: a\\x1b[31m\\nb); please report it"
+    assert len(reported) == 2
+    assert "KeyError" in reported[1]
 
 
 async def _failing_task() -> None:

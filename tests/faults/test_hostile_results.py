@@ -142,7 +142,7 @@ def test_a_result_that_no_run_writes_is_refused_in_words(tmp_path: Path, capsys:
 
 
 @pytest.mark.parametrize(("place", "value"), BAD_SCENES)
-def test_scenes_that_do_not_fit_are_told_and_no_half_picture_is_left(
+def test_scenes_that_do_not_fit_are_reported_and_no_half_picture_is_left(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], place: Path_, value: Any
 ) -> None:
     folder = with_value(grasp_folder(tmp_path / "a"), place, value)
@@ -169,7 +169,7 @@ def test_scenes_that_do_not_fit_are_told_and_no_half_picture_is_left(
         ("kind", {}),
     ],
 )
-def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, value: Any) -> None:
+def test_a_stored_estimate_that_does_not_fit_is_reported(tmp_path: Path, key: str, value: Any) -> None:
     folder = localized_folder(tmp_path / "a")
 
     def change(text: str) -> str:

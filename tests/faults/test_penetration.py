@@ -87,7 +87,7 @@ def test_no_default_exceeds_what_a_small_displacement_allows():
     assert changed(SwitchProbe, depth=1e-4).penetration == pytest.approx(0.2e-6)
 
 
-def test_a_run_that_loses_force_to_penetration_fails_and_tells_what_to_take():
+def test_a_run_that_loses_force_to_penetration_fails_and_reports_what_to_take():
     result = run(Indentation, penetration_tolerance=2e-5, **SHALLOW)
     assert result.status is Status.FAILED
     assert "% of the force by its estimate" in result.reason

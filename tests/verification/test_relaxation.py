@@ -52,7 +52,7 @@ PATIENT = NewtonOptions(max_iterations=80, patience=25)
 
 
 class Block:
-    """A unit cylinder or cube; its top moved as told, or pressed by a plane."""
+    """A unit cylinder or cube; its top moved as prescribed, or pressed by a plane."""
 
     def __init__(self, measure, material, *, law=None, cells=1, glued=False, tolerance=1e-7):
         lines = np.linspace(0, 1, cells + 1)

@@ -142,8 +142,8 @@ def test_an_indentation_of_a_users_material_is_that_of_the_compiled_one_and_says
     assert own.status is known.status is Status.CONVERGED
     force = float(known.quantities["reaction_force"].value)
     assert float(own.quantities["reaction_force"].value) == pytest.approx(force, rel=SAME)
-    told = "specimen.material: material principal_ogden has no compiled form: assembly is interpreted, several times slower"
-    assert told in own.warnings
+    warning = "specimen.material: material principal_ogden has no compiled form: assembly is interpreted, several times slower"
+    assert warning in own.warnings
     assert not any("interpreted" in words for words in known.warnings)
     assert own.quantities["unstable_volume_fraction"].value == 0.0
     stiffer = pressed(PrincipalOgden(modulus=MODULUS, alpha=6.0))

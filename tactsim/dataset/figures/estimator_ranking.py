@@ -15,7 +15,7 @@ from tactsim.plotting.canvas import despined, new_figure, png, styled
 
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
-"""Of the estimators, told apart by the colour-blind: Okabe & Ito 2008."""
+"""Of the estimators, distinguishable by the colour-blind: Okabe & Ito 2008."""
 MARKERS = "osD^vP"
 MILLIMETRES = 1e3
 AXES = {

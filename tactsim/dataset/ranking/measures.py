@@ -37,7 +37,7 @@ class Outcome:
     """One estimate against the truth; lengths in m, None where there is none.
 
     ``lateral``, ``depth`` and ``radius`` are errors: distance in plan, estimated less true height, estimated less true radius.
-    ``covered`` tells whether the 90 % region holds the true centre; ``width`` and ``height`` are its sizes.
+    ``covered`` states whether the 90 % region holds the true centre; ``width`` and ``height`` are its sizes.
     """
 
     truth: Truth
@@ -89,7 +89,7 @@ def measures(judged: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
     """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
-    by the bootstrap over the samples; None where no sample tells.
+    by the bootstrap over the samples; None where no sample has any.
     """
     lumps = [one for one in judged if one.truth.present]
     plain = [one for one in judged if not one.truth.present]

@@ -147,7 +147,7 @@ def judged_samples(
 
 
 def stored_experiment(store: str | Path) -> Grasp:
-    """The first possible grasp of a store, which tells block, matrix and readout.
+    """The first possible grasp of a store, which holds block, matrix and readout.
 
     Raises
     ------

@@ -96,7 +96,7 @@ def _inner(fragment: Any, pointer: str) -> Any:
 
 
 def _place(value: Fragment, pointer: str) -> Fragment:
-    """A value, or a distribution of it; what tells members of a union apart is fixed."""
+    """A value, or a distribution of it; what discriminates members of a union is fixed."""
     if "const" in value:
         return value
     annotations = {key: value[key] for key in ANNOTATIONS if key in value}

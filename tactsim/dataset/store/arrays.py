@@ -266,7 +266,7 @@ def wrong_arrays(arrays: Iterable[ArrayDescription], variables: Iterable[Variabl
 
 
 def earlier_words(names: Iterable[str]) -> str:
-    """What is told of a store that never had some arrays."""
+    """What is reported of a store that never had some arrays."""
     return (
         f"an earlier version of tactsim began this data set, which did not store {', '.join(names)}; it can be read, and the "
         "long_name of each of its arrays says what that holds, but it can neither be gone on with nor checked by this version"

@@ -192,7 +192,7 @@ def read_attributes(folder: Path) -> dict[str, Any]:
         )
     missing = [name for name in KINDS if name not in attributes]
     if missing:
-        raise StorageError(f"{one_line(folder)} is damaged: {META} does not tell {', '.join(missing)}; bring back a copy")
+        raise StorageError(f"{one_line(folder)} is damaged: {META} does not state {', '.join(missing)}; bring back a copy")
     for name, kind in KINDS.items():
         if not isinstance(attributes[name], kind):
             raise StorageError(f"{one_line(folder)} is damaged: {name} in {META} is no {kind.__name__}; bring back a copy")

@@ -220,7 +220,7 @@ def stored_variables(store: Store) -> Iterator[Variable]:
 
 
 def _was_left_out(store: Store, name: str, sample: int) -> bool:
-    """Whether a chunk of an earlier store is no file because all of it is the fill value: the checksum of one sample tells."""
+    """Whether a chunk of an earlier store is no file because all of it is the fill value: the checksum of one sample decides."""
     if name == MARKED:
         return True
     if name in NOT_SUMMED:

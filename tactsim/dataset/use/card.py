@@ -176,7 +176,7 @@ def description(path: str | Path) -> str:
     lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {row[0]:<36} {row[1]:<28} {row[2]:<6} {row[3]}" for row in variable_rows(store)]
-    return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check tells more" for name in store.missing)])
+    return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 
 
 def status_counts(store: Store) -> dict[str, int]:

@@ -164,7 +164,7 @@ def _column(name: Hashable, values: xarray.DataArray, data: xarray.Dataset) -> A
     if name == "split":
         known = split_names(data)
         if content.size and content.max() >= len(known):
-            raise StorageError("a sample has an unknown split; tactsim data check tells which")
+            raise StorageError("a sample has an unknown split; tactsim data check names it")
         return [known[int(number)] for number in content]
     return content if content.dtype.kind in "fiub" else [str(value) for value in content]
 

@@ -119,7 +119,7 @@ def _draw_differences(axis: Axes, result: Result, part: str) -> None:
 
 
 def _draw_foot(figure: Figure, result: Result) -> None:
-    """How many constants the data tell, or why the run did not end well."""
+    """How many constants the data determine, or why the run did not end well."""
     if result.status is not Status.CONVERGED:
         mark_failure(figure, result)
         return

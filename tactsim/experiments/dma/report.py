@@ -1,4 +1,4 @@
-"""What an identification from dynamic mechanical analysis reports: curves, quantities, and what the data do not tell."""
+"""What an identification from dynamic mechanical analysis reports: curves, quantities, and what the data leave open."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SHOWN_GENERATIONS = 50
 
 @dataclass(frozen=True, eq=False)
 class DmaFinding:
-    """A fit, its band, and what the data tell of its constants."""
+    """A fit, its band, and what the data determine of its constants."""
 
     fit: DmaFit
     band: ComplianceBand

@@ -126,7 +126,7 @@ class DurometerRecord(IndentationRecord):
         """Those of an indentation, and what ASTM D2240 says of the reading and of the specimen."""
         warnings = super().warnings()
         if self._went_all_the_way() and not self.balance:
-            warnings.append("the reading is below 0: off the scale; the force at the whole travel tells more")
+            warnings.append("the reading is below 0: off the scale; the force at the whole travel says more")
         if self.setup.specimen.radius < WIDE:
             given, asked = (format_quantity(value, "m") for value in (self.setup.specimen.radius, WIDE))
             warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")

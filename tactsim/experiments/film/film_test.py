@@ -29,7 +29,7 @@ PositiveTime = Annotated[Time, Field(gt=0, le=LONGEST)]
 class FilmTest(Experiment):
     """A force suddenly put on a film and held, for each of several forces.
 
-    The signal of the film is told with what electronics make of it: a resistance, or the voltage of a charge amplifier.
+    The signal of the film is reported with what electronics make of it: a resistance, or the voltage of a charge amplifier.
 
     Source: thesis, sections 2.2 and 2.3, Fig. 2.5, 2.6b, 2.9 and 2.10.
     """
@@ -42,12 +42,12 @@ class FilmTest(Experiment):
     times: Annotated[tuple[PositiveTime, ...], Field(min_length=1, max_length=1000)] = (
         *(0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0),
     )
-    """Times since the force began, increasing; the immediate answer at 0 s is always told."""
+    """Times since the force began, increasing; the immediate answer at 0 s is always reported."""
     reading_time: PositiveTime = 1.0
     """Time since the force began at which the signal is plotted against the force and a line is laid through."""
 
     amplifier: ChargeAmplifier | None = None
-    """What turns the capacitance of a capacitive film into a voltage; null tells the capacitance only."""
+    """What turns the capacitance of a capacitive film into a voltage; null reports the capacitance only."""
 
     history_units: ClassVar[dict[str, str]] = {
         "force": "N",

@@ -40,7 +40,7 @@ class SensorResponse(Experiment):
     calibration: AnyCalibration = THESIS_LINE
     """What turns conductance back into force; by default F = 20.94 C - 0.132."""
     ranges: Annotated[tuple[Annotated[Force, Field(ge=0)], ...], Field(min_length=2)] = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0, 25.0)
-    """Borders of the ranges of force for which the error is told, increasing."""
+    """Borders of the ranges of force for which the error is reported, increasing."""
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 

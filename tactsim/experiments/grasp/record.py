@@ -159,7 +159,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """What a user is told of readout, mesh, readings, overhang, volumes, sizes and materials."""
+        """Warnings about readout, mesh, readings, overhang, volumes, sizes and materials."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
             warnings = list(readout_warnings(readout, self._read, self.experiment.matrix.area))

@@ -195,7 +195,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """What a user is told of volumes, units, ellipticity, and of a history that leaves what it is meant for."""
+        """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
         warnings = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])

@@ -55,7 +55,7 @@ class Confusion(Experiment):
     seed: Annotated[int, Field(ge=0)] = 1
     """Of the noise."""
     estimator: AnyEstimator = HypothesesEstimator()
-    """What tells the classes apart."""
+    """What distinguishes the classes."""
 
     history_units: ClassVar[dict[str, str]] = {"right": "1"}
 
@@ -83,7 +83,7 @@ class Confusion(Experiment):
     def _findings(self, counted: _Counted) -> Findings:
         table = counted.table
         return Findings(
-            f"{int(np.trace(table.counts))} of {table.total} estimates told the class right",
+            f"{int(np.trace(table.counts))} of {table.total} estimates named the right class",
             counted.steps,
             quantities=table_quantities(table),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation), seed {self.seed}",),
@@ -114,12 +114,12 @@ class Confusion(Experiment):
 
 
 def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
-    """The counts, and the shares that were told right."""
+    """The counts, and the shares that were right."""
     order = ", ".join(CLASSES)
     quantities = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
     if table.share_right is not None:
-        quantities["share_right"] = Quantity(table.share_right, "1", "share of all estimates that told the class right")
-        recalls = Quantity(table.recalls, "1", f"share of each true class told right: {order}; null if there is none")
+        quantities["share_right"] = Quantity(table.share_right, "1", "share of all estimates that named the right class")
+        recalls = Quantity(table.recalls, "1", f"share of each true class named right: {order}; null if there is none")
         quantities["recalls"] = recalls
     return quantities
 
@@ -132,7 +132,7 @@ def class_of(kinds: Sequence[str]) -> str | None:
 
 
 def estimated_class(estimate: Estimate) -> str:
-    """The likeliest class; of an estimator that tells none apart, that of what it found, which then counts as a lump."""
+    """The likeliest class; of an estimator without classes, that of what it located, which then counts as a lump."""
     if estimate.classes is not None:
         classes = estimate.classes
         return max(classes, key=lambda name: classes[name])

@@ -48,7 +48,7 @@ class Localization(Experiment):
           reference: results/grasp_plain
           estimator: {kind: thesis, background: reference}
 
-    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and tells
+    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and gives
     how uncertain place, radius and contrast are.
     """
 

@@ -17,7 +17,7 @@ class EstimatedShape(FrozenModel):
     """An inclusion as an estimator gives it."""
 
     kind: str
-    """"sphere", "tube", or "unknown" if the estimator does not tell."""
+    """"sphere", "tube", or "unknown" if the estimator does not say."""
     center: Point
     """In m in the undeformed block."""
     radius: float | None = None

@@ -152,7 +152,7 @@ def followed(setup: SwitchProbeSetup, pressed: ProbeForces, depth: Array) -> Pro
 
 
 def recorded(setup: SwitchProbeSetup, pressed: ProbeForces, generator: np.random.Generator) -> tuple[Array, Array, int]:
-    """Force (n,) and switches (n, count) in N as the electronics tell them, and the number of saturated samples."""
+    """Force (n,) and switches (n, count) in N as the electronics read them, and the number of saturated samples."""
     chain, line = setup.chain, setup.calibration
     conductance = line.conductance(np.column_stack([pressed.force, pressed.switches]))
     recording = chain.acquire(conductance, generator)

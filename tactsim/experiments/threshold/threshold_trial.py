@@ -28,7 +28,7 @@ class ThresholdTrial(TrialCase, Experiment):
     """Indentations at several speeds, sampled with several noises through several low passes, each many times.
 
     The error is that of the reported threshold force against the force on the plate at the instant at which the tissue touches
-    the small sensor. It is told apart: level (the small sensor must be pressed before it triggers), film (what it conducts
+    the small sensor. It is split into: level (the small sensor must be pressed before it triggers), film (what it conducts
     against the calibration line), filter (lag of both readings), sampling (time and rounding) and noise; the five add up to the
     mean error.
 

@@ -1,4 +1,4 @@
-"""The estimator of a case file, any registered kind told apart by ``kind``; and those that are offered without settings."""
+"""The estimator of a case file, any registered kind, chosen by ``kind``; and those that are offered without settings."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ AnyEstimator = Annotated[Estimator, Registered(Estimator)]
 
 
 def offered_estimators() -> dict[str, Estimator]:
-    """Name -> every variant of every registered estimator, those first that need and tell least."""
+    """Name -> every variant of every registered estimator, those first that need and give least."""
     variants: dict[str, Estimator] = {}
     for cls in kinds(Estimator).values():
         variants |= cls.variants()

@@ -1,4 +1,4 @@
-"""The card of a data set: what it tells, and that the lines of code in it run."""
+"""The card of a data set: what it says, and that the lines of code in it run."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.
     assert len(names["samples"]) == names["train"].sizes["sample"]
 
 
-def test_the_card_tells_what_the_store_holds(store: tuple[Path, str]) -> None:
+def test_the_card_reports_what_the_store_holds(store: tuple[Path, str]) -> None:
     place, card = store
     held = Store.open(place)
     for name, array in held.described.items():

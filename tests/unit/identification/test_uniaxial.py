@@ -141,7 +141,7 @@ def random_curve(seed: int) -> UniaxialCurve:
     return curve_of(material, stretch, 1 + 0.02 * generator.normal(size=50))
 
 
-def test_a_stable_fit_of_any_curve_is_found_or_the_reason_told():
+def test_a_stable_fit_of_any_curve_is_found_or_the_reason_reported():
     """Curves whose stress has the wrong sign are refused before; a strongly softening one has no stable material near it."""
     fitted = refused = 0
     for seed in range(40):
@@ -197,7 +197,7 @@ def test_the_free_fit_of_the_printed_curve_warns():
     assert not fit.stability.strongly_elliptic
 
 
-def test_what_cannot_be_fitted_is_told():
+def test_what_cannot_be_fitted_is_reported():
     curve = curve_of(NeoHookean(c10=3e3), np.array([0.7, 0.8, 0.9]))
     with pytest.raises(UnknownName, match="did you mean 'stable'"):
         fit_uniaxial(curve, "stabel")

@@ -1,4 +1,4 @@
-"""Candidates, evidence, and the estimator that tells one lump, two lumps, an artery and nothing apart."""
+"""Candidates, evidence, and the estimator that distinguishes one lump, two lumps, an artery and nothing."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_a_tube_is_the_integral_of_a_constant_density_over_it():
     assert chosen.signals[:, 0] != pytest.approx(4 / np.pi * volumes, rel=0.1), "a tube is round"
 
 
-def test_overlapping_bodies_are_told():
+def test_overlapping_bodies_are_reported():
     response = block_response()
     candidates = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
     one = int(np.linalg.norm(candidates.centers - SIZE / 2, axis=1).argmin())
@@ -118,7 +118,7 @@ def test_the_evidence_of_pairs_is_their_mean_over_all(response):
 
 
 @pytest.mark.parametrize("name", ["none", "lump", "two_lumps", "artery"])
-def test_classes_are_told_apart(response, name):
+def test_classes_are_distinguished(response, name):
     changes = {
         "none": np.zeros((2, 3, 3)),
         "lump": balls(response, (15e-3, 25e-3, 11e-3)),

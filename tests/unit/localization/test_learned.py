@@ -46,15 +46,15 @@ def readings(layout=LAYOUT, size=SIZE):
 
 
 def test_weights_are_read_as_they_were_written(tmp_path):
-    path, told = kept(tmp_path, weights()), readings()
+    path, given = kept(tmp_path, weights()), readings()
     loaded = read_weights(path)
-    features = inputs(told.difference[None], told.reference[None], NOISE)[0]
+    features = inputs(given.difference[None], given.reference[None], NOISE)[0]
     for one, other in zip(loaded.place(features), weights().place(features), strict=True):
         assert np.array_equal(one, other)
-    estimate = LearnedEstimator.checked(path).estimate(told)
+    estimate = LearnedEstimator.checked(path).estimate(given)
     assert estimate.present
     assert estimate.inclusions[0].region.contains(np.array(estimate.inclusions[0].center))
-    assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(told).present
+    assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(given).present
 
 
 def test_inputs_do_not_know_the_size_of_the_change_but_for_one():

@@ -99,10 +99,10 @@ def test_plain_tissue_has_nothing_in_it(response):
 
 
 def test_an_uncertain_reference_widens_the_region_and_hides_what_it_could_explain(response):
-    told = readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 4.0)
-    sure, unsure = (ModelBasedEstimator(background_error=error, background_scale=0.0).estimate(told) for error in (0.0, 0.005))
+    given = readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 4.0)
+    sure, unsure = (ModelBasedEstimator(background_error=error, background_scale=0.0).estimate(given) for error in (0.0, 0.005))
     assert unsure.inclusions[0].region.sizes()[0] > sure.inclusions[0].region.sizes()[0]
-    scaled = Readings(1.05 * told.reference, LAYOUT, SIZE, reference=told.reference, noise=NOISE, response=response)
+    scaled = Readings(1.05 * given.reference, LAYOUT, SIZE, reference=given.reference, noise=NOISE, response=response)
     assert not ModelBasedEstimator(background_scale=0.05, background_error=0.001).estimate(scaled).present
     assert ModelBasedEstimator(**SURE).estimate(scaled).present
 

@@ -73,7 +73,7 @@ def test_a_material_passes_as_it_is():
         ({"kind": "polynomial", "coefficients": {"c100": "3 kPa"}}, "c100"),
     ],
 )
-def test_what_is_no_material_is_told(value, words):
+def test_what_is_no_material_is_reported(value, words):
     with pytest.raises(ValidationError, match=words):
         read(value)
 

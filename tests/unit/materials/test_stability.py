@@ -80,7 +80,7 @@ def test_the_conditions_are_those_of_the_acoustic_form(first, second, seed):
 
 
 def test_both_verdicts_occur_and_another_condition_is_seen():
-    """Twin: Drucker's condition is another one, and is told apart by the same states."""
+    """Twin: Drucker's condition is another one, and is distinguished by the same states."""
     generator = np.random.default_rng(21)
     truth, elliptic, drucker = [], [], []
     for seed in range(120):

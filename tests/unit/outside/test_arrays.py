@@ -49,7 +49,7 @@ def test_objects_are_refused() -> None:
         read_arrays(npz(a=np.array([{"x": 1}], dtype=object)), "file")
 
 
-def test_damage_is_told() -> None:
+def test_damage_is_reported() -> None:
     content = npz(a=np.arange(100.0), b=np.arange(3))
     for cut in range(0, len(content) - 1, 7):
         with pytest.raises(StorageError, match="file is damaged"):

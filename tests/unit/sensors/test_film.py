@@ -152,7 +152,7 @@ def test_varying_coefficients_in_2_1_14_do_not_give_2_3_1():
 
 
 @pytest.mark.parametrize(
-    ("times", "forces", "told"),
+    ("times", "forces", "message"),
     [
         ([0, 1], [1, -0.1], "force -0.1 N of sample 1"),
         ([0, 1], [1, 101.0], "allowed: 0 to 100 N"),
@@ -164,8 +164,8 @@ def test_varying_coefficients_in_2_1_14_do_not_give_2_3_1():
         ([0, 1], [1, 1, 1], "one for each of 2 times"),
     ],
 )
-def test_bad_histories_are_refused(times, forces, told):
-    with pytest.raises(InvalidQuantity, match=told):
+def test_bad_histories_are_refused(times, forces, message):
+    with pytest.raises(InvalidQuantity, match=message):
         Film().conductance(times, forces)
 
 

@@ -146,7 +146,7 @@ def test_a_switch_that_first_presses_on_the_way_back_is_not_recorded():
     assert [closing.switch for closing in touch.closings] == [1, 2, 3, 4]
     assert touch.mean_rate(array) is None
     (wide,) = read_switches(SwitchArray(fall=0.2), time, force, switches).touches
-    assert len(wide.closings) == 5, "a fall that is never reached tells nothing"
+    assert len(wide.closings) == 5, "a fall that is never reached shows nothing"
 
 
 def test_a_pause_and_a_second_push_are_one_touch():

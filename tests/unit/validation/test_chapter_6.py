@@ -76,7 +76,7 @@ def change(studies: Inputs, runs: Sequence[str], which: Any, **others: Any) -> f
     return taxel_change(studies, "s", which, tuple(runs), **others)
 
 
-def test_the_least_and_the_greatest_change_tell_a_sign() -> None:
+def test_the_least_and_the_greatest_change_have_a_sign() -> None:
     rising = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.7), d=middle(2.7))
     turning = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.4), d=middle(2.7))
     assert change(rising, "abcd", "least along") == pytest.approx(0.2, rel=1e-12)  # round-off
@@ -96,7 +96,7 @@ def test_what_the_meshes_differ_by_is_taken_off() -> None:
     assert change(studies, "ab", "least from base", bases=plain) == pytest.approx(0.2, rel=1e-12)
 
 
-def test_the_jaws_are_told_apart() -> None:
+def test_the_jaws_are_distinguished() -> None:
     studies = Inputs(studies={"s": (grasp("a", middle(2.0), middle(2.5)), grasp("b", middle(4.0), middle(3.0)))})
     computed = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
     assert computed == [2.0, 0.5, 1.5]
@@ -129,7 +129,7 @@ def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, s
         type(row).model_validate({**row.model_dump(), "evaluate": call})
 
 
-def test_what_did_not_converge_or_is_not_there_is_told() -> None:
+def test_what_did_not_converge_or_is_not_there_is_reported() -> None:
     failed = Inputs(studies={"s": (grasp("a", middle(1.0)), grasp("b", middle(2.0), status="failed"))})
     with pytest.raises(InputError, match="s, b did not converge: end"):
         change(failed, "ab", "least along")
@@ -141,7 +141,7 @@ def test_what_did_not_converge_or_is_not_there_is_told() -> None:
 
 
 @pytest.mark.parametrize(("mirror", "place"), [("left_right", (1, 2)), ("front_back", (2, 1)), ("upper_lower", (1, 1))])
-def test_only_the_broken_symmetry_is_told(mirror: str, place: tuple[int, int]) -> None:
+def test_only_the_broken_symmetry_is_reported(mirror: str, place: tuple[int, int]) -> None:
     even, bent = middle(2.0), middle(2.0)
     bent[-1][place] += 0.1
     studies = Inputs(studies={"s": (grasp("even", even), grasp("bent", even, bent))})
@@ -196,7 +196,7 @@ def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
         ("state: {above: 100 N, finding: wrong}", "wrong dimension"),
     ],
 )
-def test_a_bad_limit_is_told(tmp_path: Path, state: str, said: str) -> None:
+def test_a_bad_limit_is_reported(tmp_path: Path, state: str, said: str) -> None:
     with pytest.raises(CaseError, match=said):
         finding(tmp_path, state)
 

@@ -36,7 +36,7 @@ def test_a_table_is_read_in_si(tmp_path: Path) -> None:
         ("title: A small table", "title: [", "not valid YAML"),
     ],
 )
-def test_a_fault_is_told_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_a_fault_is_reported_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
     assert old in TABLE
     with pytest.raises(CaseError) as caught:
         load_tables(write_tables(tmp_path, TABLE.replace(old, new, 1)))
@@ -44,12 +44,12 @@ def test_a_fault_is_told_with_its_place(tmp_path: Path, old: str, new: str, said
     assert "small.yaml:" in str(caught.value)
 
 
-def test_an_unknown_table_is_told(tmp_path: Path) -> None:
+def test_an_unknown_table_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UnknownName, match=r"did you mean 'small'"):
         load_tables(write_tables(tmp_path), ["smal"])
 
 
-def test_a_missing_manifest_is_told(tmp_path: Path) -> None:
+def test_a_missing_manifest_is_reported(tmp_path: Path) -> None:
     with pytest.raises(StorageError, match=r"manifest\.yaml"):
         load_tables(tmp_path)
 

@@ -56,7 +56,7 @@ def view_figure(result: Result) -> Figure:
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)
-        _tell(axes[1], result)
+        _write_captions(axes[1], result)
         factor, unit = scale_of(grasp.largest_pressure, "Pa")
         norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
         bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
@@ -146,7 +146,7 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
         axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
 
 
-def _tell(axis: Axes, result: Result) -> None:
+def _write_captions(axis: Axes, result: Result) -> None:
     """The names of the inclusions in their colour."""
     named = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
     if named:

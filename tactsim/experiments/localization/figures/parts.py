@@ -39,12 +39,12 @@ def _findings(centers: Array, result: Result) -> tuple[str, ...]:
     if not quantities["present"].value:
         return ("Nothing there.",)
     places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in centers]
-    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
-    told += [f"Estimated at {place}" for place in places]
+    lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
-        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+        lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
-    return tuple(told)
+        lines.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+    return tuple(lines)

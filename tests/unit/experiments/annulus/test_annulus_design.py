@@ -90,7 +90,7 @@ def test_a_sensor_that_is_never_touched_has_no_time():
     assert result_of(parse_document(document, "result.json")).quantities["time_to_touch"].value[0][1][0] is None
 
 
-def test_small_displacements_are_told_apart(thesis):
+def test_small_displacements_are_distinguished(thesis):
     quantities = values(thesis)
     assert (quantities["outside_small_displacement"] == (quantities["displacement"] / 3e-3 > 0.1)).all()
     assert len(thesis.warnings) == 2
@@ -111,11 +111,11 @@ def test_a_thin_layer_rises_more_for_its_displacement():
 
 
 def test_history_and_progress():
-    told = []
-    result = design().run(told.append)
+    steps = []
+    result = design().run(steps.append)
     assert result.status is Status.CONVERGED
-    assert [step.values["recess"] for step in told] == [*GIVEN["recesses"]] * 2
-    assert {name for step in told for name in step.values} == set(AnnulusDesign.history_units)
+    assert [step.values["recess"] for step in steps] == [*GIVEN["recesses"]] * 2
+    assert {name for step in steps for name in step.values} == set(AnnulusDesign.history_units)
 
 
 def test_an_interrupted_run_keeps_its_rows():

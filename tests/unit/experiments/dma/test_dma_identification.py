@@ -61,9 +61,9 @@ def test_figure(result):
     drawings = figures_for(result)
     assert list(drawings) == ["dma_identification.png"]
     assert drawings["dma_identification.png"]().startswith(b"\x89PNG")
-    told = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
+    text_ = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
     for words in ("elastic compliance", "95 % band, simultaneous", "genetic algorithm", "combinations of the 17 constants"):
-        assert words in told
+        assert words in text_
 
 
 def test_the_same_seeds_give_the_same_result(result):

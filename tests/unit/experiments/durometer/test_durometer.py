@@ -119,7 +119,8 @@ def test_a_narrow_specimen_is_warned_of():
         raise KeyboardInterrupt
 
     assert any(
-        "edge of the specimen is 8 mm away" in told for told in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
+        "edge of the specimen is 8 mm away" in warning
+        for warning in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
     )
 
 

@@ -83,7 +83,7 @@ def test_readings_off_the_scale_share_a_rank():
         assert "is not finite" not in document_text(ElastomerRanking.example().run(), "0" * 16)
 
 
-def test_a_curve_that_was_cut_short_is_told():
+def test_a_curve_that_was_cut_short_is_reported():
     findings = report(finding(end=1e-3)).findings(())
     assert "predicted_reading" not in findings.steps[-1].values
     assert "modulus_of_reading" not in findings.steps[-1].values
@@ -104,19 +104,19 @@ def test_the_atrium():
 
 @pytest.fixture(scope="module")
 def ranked():
-    told = []
+    steps = []
     made = ElastomerRanking(
         shapes=STABLE_SHAPES[2:], sensor=SENSOR, durometer={"mesh": {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}}
     )
-    return made.run(told.append), told
+    return made.run(steps.append), steps
 
 
 def test_the_whole_run(ranked):
-    result, told = ranked
+    result, steps = ranked
     assert result.status == "converged"
-    assert list(result.steps) == told
-    assert len(told) == 7
-    assert {name for step in told for name in step.values} == set(ElastomerRanking.history_units)
+    assert list(result.steps) == steps
+    assert len(steps) == 7
+    assert {name for step in steps for name in step.values} == set(ElastomerRanking.history_units)
     moduli = result.quantities["modulus_of_threshold"].value[0]
     pressure = result.quantities["own_threshold_pressure"].value[0]
     assert moduli[0] / 10e3 == pytest.approx(89.8e3 / pressure, rel=1e-12)
@@ -154,7 +154,7 @@ def test_a_threshold_that_is_not_reached_is_a_failure():
     assert result.steps == ()
 
 
-def test_an_interruption_is_told(monkeypatch):
+def test_an_interruption_is_reported(monkeypatch):
     def stop(self, shape):
         raise KeyboardInterrupt
 
@@ -163,7 +163,7 @@ def test_an_interruption_is_told(monkeypatch):
     assert (result.status, result.steps, result.quantities) == ("interrupted", (), {})
 
 
-def test_a_solver_that_gives_up_is_told(monkeypatch):
+def test_a_solver_that_gives_up_is_reported(monkeypatch):
     def give_up(self, shape):
         raise Unfinished("no")
 

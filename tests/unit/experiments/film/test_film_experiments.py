@@ -21,7 +21,7 @@ def values(result):
 
 
 def quiet(record):
-    """Nothing to tell."""
+    """No progress."""
 
 
 def test_a_film_test_reports_2_3_1_at_its_forces_and_times():
@@ -36,7 +36,7 @@ def test_a_film_test_reports_2_3_1_at_its_forces_and_times():
     assert values(result)["reading_resistance"] == pytest.approx(expected[1], rel=1e-9)
 
 
-def test_a_force_beyond_the_creep_tests_is_told():
+def test_a_force_beyond_the_creep_tests_is_reported():
     assert "measured up to 8 N" in FilmTest(forces=(1.0, 5.0, 20.0)).run(quiet).warnings[0]
 
 
@@ -97,7 +97,7 @@ def test_the_same_seed_gives_the_same_readings():
     assert read[0] != read[2]
 
 
-def test_saturated_samples_are_flagged_and_told():
+def test_saturated_samples_are_flagged_and_reported():
     chain = SignalChain(sampling_rate=200.0, converter={"low": 0.0, "high": 0.3, "bits": 12})
     result = SensorResponse(force=Square(kind="square", duration=2.0), chain=chain).run(quiet)
     assert 0.4 < values(result)["saturated_fraction"] < 0.6
@@ -181,9 +181,9 @@ def test_files_that_cannot_be_read_are_named(tmp_path):
 
 def test_errors_by_range_and_hysteresis():
     force = np.array([0.1, 0.6, 1.1, 1.0])
-    told = range_errors(force, force + np.array([0.1, -0.2, 0.3, 0.1]), (0.0, 1.0, 1.1))
-    assert [r.samples for r in told] == [2, 2]
-    assert told[0].largest == pytest.approx(0.2)
+    ranges = range_errors(force, force + np.array([0.1, -0.2, 0.3, 0.1]), (0.0, 1.0, 1.1))
+    assert [r.samples for r in ranges] == [2, 2]
+    assert ranges[0].largest == pytest.approx(0.2)
     time = np.linspace(0, 1, 2001)
     triangle = 1 - np.abs(2 * time - 1)
     assert hysteresis(triangle, triangle + 0.1 * (time > 0.5)) == pytest.approx(0.1, rel=0.05)

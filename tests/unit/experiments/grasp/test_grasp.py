@@ -102,7 +102,7 @@ def test_what_a_run_records():
     assert quantities["taxel_force_lower_history"][-1] == quantities["taxel_force_lower"]
     assert result.steps[-1].values["taxel_force_upper_1_3"] == quantities["taxel_force_upper"][0][2]
     assert {name for step in result.steps for name in step.values} <= set(result.units)
-    assert any(result.scene.mesh.content in told for told in result.assumptions)
+    assert any(result.scene.mesh.content in assumption for assumption in result.assumptions)
     assert [result.scene.jaw_places[side][2] for side in JAWS] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
     assert len(result.frames) == 2
     frame = result.frames[-1]
@@ -298,7 +298,7 @@ def test_touching_lumps_are_refused_in_cells_too():
         grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
 
 
-def test_a_ragged_lump_is_told():
+def test_a_ragged_lump_is_reported():
     lump = {"shape": BALL, "material": "lump"}
     result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
     assert any("the mesh gives sphere 1" in words for words in result.warnings)

@@ -54,19 +54,19 @@ def test_cut_is_the_section_once_on_each_side_that_is_computed(symmetry, section
 
 
 @pytest.mark.parametrize("symmetry", list(TURNS))
-def test_figure_tells_what_is_seen(symmetry):
-    told = " ".join(text.get_text() for text in space_indentation_figure(made_up(symmetry)).findobj(Text))
+def test_figure_shows_what_is_seen(symmetry):
+    written = " ".join(text.get_text() for text in space_indentation_figure(made_up(symmetry)).findobj(Text))
     for words in ("A title", "cut y = 0", "pressure in", "inner sensor", "displacement in"):
-        assert words in told
-    assert ("sectors of the annulus" in told) == (symmetry != "quarter")
+        assert words in written
+    assert ("sectors of the annulus" in written) == (symmetry != "quarter")
 
 
 def test_failed_run_is_marked_and_fields_may_be_missing():
     failed = made_up(status=Status.FAILED)
-    told = " ".join(text.get_text() for text in space_indentation_figure(replace(failed, frames=())).findobj(Text))
-    assert "FAILED" in told
-    assert "because" in told
-    assert "cut" not in told
+    written = " ".join(text.get_text() for text in space_indentation_figure(replace(failed, frames=())).findobj(Text))
+    assert "FAILED" in written
+    assert "because" in written
+    assert "cut" not in written
 
 
 def test_drawings_are_png_and_none_without_steps():

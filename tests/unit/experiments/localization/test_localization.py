@@ -68,7 +68,7 @@ def value(result, name):
     return np.asarray(result.quantities[name].value)
 
 
-def test_a_stored_ball_is_found_and_the_errors_told(folders):
+def test_a_stored_ball_is_found_and_the_errors_reported(folders):
     result = run(folders)
     assert value(result, "present") == 1
     assert np.abs(value(result, "estimated_center") - SPHERE.center).max() < 1e-3
@@ -118,7 +118,7 @@ def test_every_matrix_has_views(layout):
     assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
 
 
-def test_dead_taxels_are_interpolated_and_told(folders):
+def test_dead_taxels_are_interpolated_and_reported(folders):
     result = run(folders, dead=(("upper", 2, 2), ("lower", 3, 1)))
     assert value(result, "present") == 1
     assert any("neighbours: 2" in words for words in result.warnings)

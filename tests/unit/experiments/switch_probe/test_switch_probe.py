@@ -70,13 +70,13 @@ def test_the_rankings_of_figure_5_8(three):
 
 
 def test_every_touch_is_read(three):
-    for number, told in enumerate(three.scene.touches, 1):
-        assert told.count == 1
-        assert [closing.switch for closing in told.closings] == [1, 2, 3, 4, 5]
-        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(told.rate, rel=0.03)
+    for number, touch in enumerate(three.scene.touches, 1):
+        assert touch.count == 1
+        assert [closing.switch for closing in touch.closings] == [1, 2, 3, 4, 5]
+        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(touch.rate, rel=0.03)
         intervals = three.quantities[f"switching_intervals_{number}"].value
         assert intervals[1:] == pytest.approx(
-            1e-3 / told.rate, rel=0.05
+            1e-3 / touch.rate, rel=0.05
         )  # the pressure on each switch is higher, so its threshold is met sooner
         read, true = three.quantities[f"switching_forces_{number}"].value, three.quantities[f"forces_{number}"].value
         assert ((read < true * 1.05) & (read > true * 0.85)).all(), "half a strip early, late by the threshold"
@@ -123,13 +123,13 @@ def test_figures(three):
     drawings = figures_for(three)
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
-    told = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
+    written = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
     for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
-        assert words in told
+        assert words in written
     single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
-    told = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
-    assert "not every switch closed" in told
+    written = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
+    assert "not every switch closed" in written
 
 
 @pytest.mark.parametrize(("error", "status"), [(KeyboardInterrupt(), "interrupted"), (ConvergenceError("no luck"), "failed")])
