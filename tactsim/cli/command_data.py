@@ -147,7 +147,7 @@ def _confusion(arguments: argparse.Namespace) -> int:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
     folder = arguments.out or Path(CONFUSION)
     _refuse_place(folder)
-    classifying = [one for one in offered_estimators().values() if one.tells_classes]
+    classifying = [one for one in offered_estimators().values() if one.gives_classes]
     estimator, given = classifying[0], _noise(arguments)
     noise = ROUNDING_NOISE if given is None else given
     split, seed = arguments.split, arguments.seed

@@ -12,7 +12,7 @@ from tactsim.identification.dma_objective import part_sensitivities
 from tactsim.identification.dma_spectrum import relative_noise
 
 DETERMINED = 0.5
-"""Assumption: the data determine a constant, or a product of powers of them, if the standard error of its logarithm is below this."""
+"""Assumption: data determine a constant, or a product of powers of them, if the standard error of its logarithm is below this."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,7 +44,17 @@ class StudyRunner:
     """Where results are kept; by default the user's cache folder."""
 
     def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> dict[str, Studies]:
-        """The outcome of every run of every study, by table and study; equal cases are run once."""
+        """The outcome of every run of every study, by table and study; equal cases are run once.
+
+        Raises
+        ------
+        CaseError
+            If a case of a study is refused.
+        ConvergenceError
+            If a process died.
+        TactsimError
+            If a process met a defect of this program.
+        """
         tasks = {
             (table, study.name, run.id): (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
             for table, studies in tables.items()
@@ -118,7 +128,13 @@ def _outcome_of(answer: Answer[str]) -> RunOutcome:
 
 
 def simulated(task: Task) -> RunOutcome:
-    """Runs one case to its end; a refusal on the way is an outcome that failed."""
+    """Runs one case to its end; a refusal on the way is an outcome that failed.
+
+    Raises
+    ------
+    CaseError
+        If the case is refused.
+    """
     name, path, overrides = task
     case = load_case(path, overrides)
     try:

@@ -190,7 +190,15 @@ class Manifest(FrozenModel):
 
 
 def in_si(value: str | float, unit: str) -> float:
-    """A number as a table writes it in SI: text with a unit, or a plain number for what has none."""
+    """A number as a table writes it in SI: text with a unit, or a plain number for what has none.
+
+    Raises
+    ------
+    ValueError
+        If a plain number stands for what has a unit.
+    InvalidQuantity
+        If the text is no quantity of this unit.
+    """
     if isinstance(value, str):
         return parse_quantity(value, unit)
     if unit != "1":

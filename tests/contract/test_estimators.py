@@ -43,7 +43,7 @@ def test_what_is_found_lies_in_the_block_and_is_finite(name: str, readings: Read
             assert not one.region.contains(center + 1.0)
             assert all(np.isfinite(line).all() for away in range(3) for line in one.region.shadow(away))
     assert estimate.probability is None or estimate.probability > 0.5
-    assert (estimate.classes is not None) == OFFERED[name].tells_classes
+    assert (estimate.classes is not None) == OFFERED[name].gives_classes
 
 
 @pytest.mark.parametrize("name", [name for name, one in OFFERED.items() if one.needs_reference])

@@ -24,7 +24,13 @@ JAWS = ("upper jaw", "lower jaw")
 
 
 def card_figures(store: str | Path) -> dict[str, Drawing]:
-    """File name -> drawing; empty for a data set without a sample that is done."""
+    """File name -> drawing; empty for a data set without a sample that is done.
+
+    Raises
+    ------
+    StorageError
+        If the data set cannot be read.
+    """
     data = load(store)
     if not data.sizes["sample"]:
         return {}

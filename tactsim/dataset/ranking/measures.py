@@ -198,7 +198,13 @@ class Ranked:
 def ranking(
     estimators: Mapping[str, Estimator], samples: JudgedSamples, response: LumpResponse | None, *, seed: int = 1
 ) -> list[Ranked]:
-    """Every estimator on every sample at every noise, the least score first."""
+    """Every estimator on every sample at every noise, the least score first.
+
+    Raises
+    ------
+    InputError
+        If an estimator needs what the samples lack.
+    """
     ranked = []
     for name, estimator in estimators.items():
         runs = {multiple: outcomes(estimator, samples, response, multiple=multiple, seed=seed) for multiple in NOISES}

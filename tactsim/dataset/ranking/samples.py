@@ -153,6 +153,8 @@ def stored_experiment(store: str | Path) -> Grasp:
     ------
     InputError
         If it holds no grasps.
+    StorageError
+        If it is no data set, or its case cannot be read.
     """
     sweep = stored_sweep(Store.open(store))
     try:

@@ -31,6 +31,11 @@ def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str |
     text : of the sweep
     lost : the reason for which the samples are given up; nothing is run then
     folder : of the sweep's file, in which the files that it names are looked for first
+
+    Raises
+    ------
+    CaseError
+        If the text is not that of a sweep, or what it stores is wrong for every sample.
     """
     sweep = sweep_of_text(text, folder)
     layout = layout_of(sweep)

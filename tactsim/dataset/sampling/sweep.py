@@ -97,7 +97,13 @@ def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: i
 
 @lru_cache(maxsize=4)
 def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
-    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first."""
+    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first.
+
+    Raises
+    ------
+    CaseError
+        If the text is not that of a sweep.
+    """
     document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
     return _sweep(document, lambda problem: "the sweep", None, checked=True)
 

@@ -90,7 +90,13 @@ def is_torn(name: str, arrays: Iterable[str]) -> bool:
 
 
 def remove_torn(folder: Path, arrays: Iterable[str]) -> None:
-    """Removes what a killed run left half written."""
+    """Removes what a killed run left half written.
+
+    Raises
+    ------
+    StorageError
+        If one cannot be removed, or a link stands in the folder.
+    """
     names = set(arrays)
     for name in [name for name in walked(folder) if is_torn(name, names)]:
         with naming(folder / name, "remove"):
@@ -98,7 +104,13 @@ def remove_torn(folder: Path, arrays: Iterable[str]) -> None:
 
 
 def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: Iterable[str]) -> list[str]:
-    """Files that tactsim does not write there, sorted; ``own`` are the names of all arrays of the store."""
+    """Files that tactsim does not write there, sorted; ``own`` are the names of all arrays of the store.
+
+    Raises
+    ------
+    StorageError
+        If a link stands in the folder.
+    """
     known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
     chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
     names, listed = set(own), os.path.lexists(folder / OWN_LIST)

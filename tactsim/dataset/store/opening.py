@@ -145,7 +145,13 @@ class Store:
         return ARRAYS in self.attributes
 
     def pending(self) -> Array:
-        """Numbers of the samples that are not computed."""
+        """Numbers of the samples that are not computed.
+
+        Raises
+        ------
+        StorageError
+            If the status cannot be read.
+        """
         return np.flatnonzero(self.read("status") == PENDING)
 
 
@@ -269,7 +275,13 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
 
 
 def consolidated_metadata(folder: Path) -> dict[str, Any]:
-    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them."""
+    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them.
+
+    Raises
+    ------
+    StorageError
+        If the file is missing or damaged.
+    """
     gathered = _group(folder).get("consolidated_metadata")
     metadata = gathered.get("metadata") if isinstance(gathered, dict) else None
     return {name: one for name, one in metadata.items() if NAME.fullmatch(name)} if isinstance(metadata, dict) else {}

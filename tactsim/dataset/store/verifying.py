@@ -65,7 +65,13 @@ def computed_chunks(store: Store, variables: Sequence[Variable], status: Array) 
 
 def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Array]:
     """Why samples must be computed again -> their numbers; chunks that cannot be read are removed, so that others take their
-    place."""
+    place.
+
+    Raises
+    ------
+    StorageError
+        If a chunk cannot be removed.
+    """
     damage: dict[str, list[Array]] = {}
     status = _readable_status(store, damage)
     for read in computed_chunks(store, variables, status):
@@ -86,7 +92,13 @@ def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Ar
 
 
 def mark_pending(store: Store, samples: Array) -> None:
-    """Says of samples that they are not computed."""
+    """Says of samples that they are not computed.
+
+    Raises
+    ------
+    StorageError
+        If the status cannot be read or written.
+    """
     status = store.array("status")
     per_chunk = int(status.chunks[0])
     with naming(store.path):

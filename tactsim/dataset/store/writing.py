@@ -60,7 +60,13 @@ def set_attributes(store: Store, **attributes: Any) -> None:
 
 
 def consolidate(path: Path) -> None:
-    """Gathers the metadata in one file, which opens fast and without a word about other files beside the arrays."""
+    """Gathers the metadata in one file, which opens fast and without a word about other files beside the arrays.
+
+    Raises
+    ------
+    StorageError
+        If a description is damaged, or the file cannot be written.
+    """
     import zarr
 
     with naming(path), reading(path), warnings.catch_warnings():
@@ -72,7 +78,13 @@ def consolidate(path: Path) -> None:
 
 
 def resize(store: Store, samples: int, variables: Iterable[Variable]) -> None:
-    """Makes room for this many samples in every array, in that of the status last."""
+    """Makes room for this many samples in every array, in that of the status last.
+
+    Raises
+    ------
+    StorageError
+        If an array is missing or cannot be written.
+    """
     with naming(store.path):
         for variable in sorted(variables, key=lambda variable: variable.name == "status"):
             array = store.array(variable.name)
@@ -82,7 +94,13 @@ def resize(store: Store, samples: int, variables: Iterable[Variable]) -> None:
 
 
 def restore(store: Store, variables: Iterable[Variable]) -> list[str]:
-    """Makes arrays anew that are gone, filled with nothing; returns their names."""
+    """Makes arrays anew that are gone, filled with nothing; returns their names.
+
+    Raises
+    ------
+    StorageError
+        If one cannot be written.
+    """
     gone = [variable for variable in variables if variable.name not in store.described]
     present = store.described["status" if "status" in store.described else next(iter(store.described))]
     with naming(store.path):
@@ -96,6 +114,11 @@ def write(store: Store, block: Block, variables: Sequence[Variable]) -> None:
     """Puts samples into the arrays and down to the disk: all variables, and only then their status.
 
     Each chunk is replaced as a whole, so that a kill leaves the earlier or the later one.
+
+    Raises
+    ------
+    StorageError
+        If an array is missing or cannot be written.
     """
     others = [variable for variable in variables if variable.name != "status"]
     status = [variable for variable in variables if variable.name == "status"]

@@ -18,7 +18,7 @@ from tactsim.units import format_quantity
 RAGGED, SUCTION = 0.05, 0.01
 """Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is warned."""
 VISIBLE = 0.01
-"""Asymmetry of a symmetric grasp's forces of which a user is warned: as much as the least lump that can be felt changes a taxel."""
+"""Asymmetry of a symmetric grasp's forces of which a user is warned: what the least palpable lump changes a taxel by."""
 
 
 def ragged(block: BlockMesh) -> list[str]:

@@ -19,6 +19,6 @@ def offered_estimators() -> dict[str, Estimator]:
 
     def demand(name: str) -> tuple[bool, bool, bool, str]:
         one = variants[name]
-        return one.needs_reference, one.needs_response, one.tells_classes, name
+        return one.needs_reference, one.needs_response, one.gives_classes, name
 
     return {name: variants[name] for name in sorted(variants, key=demand)}

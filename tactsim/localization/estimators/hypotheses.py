@@ -47,7 +47,7 @@ class HypothesesEstimator(Estimator):
     """
 
     needs_response: ClassVar[bool] = True
-    tells_classes: ClassVar[bool] = True
+    gives_classes: ClassVar[bool] = True
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """Classes that are considered."""
