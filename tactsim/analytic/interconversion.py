@@ -139,8 +139,8 @@ class RateSum:
 
         Source: Gu & Eisenstat 1994, doi:10.1137/S089547989223924X, whose weights of given roots these are.
         """
-        own = np.eye(len(root_to_root), dtype=bool)
-        ratios = pole_to_root[: len(own)] / np.where(own, 1.0, root_to_root)
+        diagonal = np.eye(len(root_to_root), dtype=bool)
+        ratios = pole_to_root[: len(diagonal)] / np.where(diagonal, 1.0, root_to_root)
         last = 1 / self.constant if self.constant else pole_to_root[-1] / total
         return ratios.prod(axis=0) * last
 

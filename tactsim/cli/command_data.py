@@ -180,10 +180,10 @@ def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    record, own = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), OwnFiles(folder)
-    own.refuse_foreign(*REPORT, *figures)
+    record, files = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), OwnFiles(folder)
+    files.refuse_foreign(*REPORT, *figures)
     for name, written in {**dict(zip(REPORT, (record, text.encode()), strict=True)), **figures}.items():
-        own.replace(name, written)
+        files.replace(name, written)
 
 
 def _refuse_place(folder: Path) -> None:

@@ -89,11 +89,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 @contextmanager
 def _printed_warnings() -> Iterator[None]:
     """A block whose warnings of libraries are printed when it ends, those that no result holds."""
-    with collected_warnings() as said:
+    with collected_warnings() as collected:
         try:
             yield
         finally:
-            for line in said.lines():
+            for line in collected.lines():
                 console.note(f"warning: {line}")
 
 

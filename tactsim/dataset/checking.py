@@ -85,11 +85,11 @@ def check(path: str | Path) -> Checked:
 
 def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
     """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
-    own = {variable.name for variable in variables}
+    names = {variable.name for variable in variables}
     never = store.never_stored(variable.name for variable in variables)
     if never:
         yield Finding("form", (), earlier_words(never))
-    for name in sorted(store.faults.keys() & own):
+    for name in sorted(store.faults.keys() & names):
         yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
     for variable in variables:
         if variable.name in store.faults or variable.name in never:
@@ -155,9 +155,9 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
         more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
         shown = ", ".join(one_line(name, 80) for name in foreign[:10])
         yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
-    own = OwnFiles(store.path)
-    for name in sorted(own.sums()):
-        if own.written(name) is None:
+    files = OwnFiles(store.path)
+    for name in sorted(files.sums()):
+        if files.written(name) is None:
             state = "is not what tactsim wrote" if (store.path / name).exists() else "is gone"
             yield Finding("file", (), f"{one_line(name, 80)} {state}; move away what stands there, --resume writes it anew")
 
@@ -216,16 +216,16 @@ def leaks(store: Store, status: Array) -> Iterator[Finding]:
     if unknown.size:
         yield Finding("damaged", tuple(unknown.tolist()), f"the split is none of {', '.join(names)}; {AGAIN}")
     for what, keys in (("specimen", specimen), ("case", case)):
-        own = computed if what == "specimen" else computed[case[computed] != ""]
-        _, inverse = np.unique(keys[own], return_inverse=True)
-        low, high = np.full(len(own), 10**6), np.full(len(own), -1)
-        np.minimum.at(low, inverse, split[own].astype(int))
-        np.maximum.at(high, inverse, split[own].astype(int))
-        leaking = own[low[inverse] != high[inverse]] if len(own) else own
+        kept = computed if what == "specimen" else computed[case[computed] != ""]
+        _, inverse = np.unique(keys[kept], return_inverse=True)
+        low, high = np.full(len(kept), 10**6), np.full(len(kept), -1)
+        np.minimum.at(low, inverse, split[kept].astype(int))
+        np.maximum.at(high, inverse, split[kept].astype(int))
+        leaking = kept[low[inverse] != high[inverse]] if len(kept) else kept
         if leaking.size:
             yield Finding("leakage", tuple(leaking.tolist()), f"a {what} is in two splits; do not train on this data set")
-        if what == "case" and len(own):
-            twice = own[np.bincount(inverse)[inverse] > 1]
+        if what == "case" and len(kept):
+            twice = kept[np.bincount(inverse)[inverse] > 1]
             if twice.size:
                 yield Finding("duplicate", tuple(twice.tolist()), "the same case more than once; leave out all but one")
 

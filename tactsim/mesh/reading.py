@@ -79,14 +79,14 @@ def _tetrahedra(foreign: ForeignMesh, name: str) -> tuple[str, Array]:
 
 def _regions(foreign: ForeignMesh, region_map: Mapping[int | str, int] | None, tag: str | None, name: str, kind: str) -> Array:
     """Region number of every tetrahedron."""
-    own = [k for k, (other, _) in enumerate(foreign.cells) if other == kind]
+    parts = [k for k, (other, _) in enumerate(foreign.cells) if other == kind]
     if region_map is None:
-        return np.zeros(sum(len(foreign.cells[k][1]) for k in own), np.int64)
+        return np.zeros(sum(len(foreign.cells[k][1]) for k in parts), np.int64)
     chosen = tag or next((known for known in TAGS if known in foreign.tags), None)
     if chosen is None or chosen not in foreign.tags:
         has = ", ".join(sorted(foreign.tags)) or "none"
         raise InputError(f"{name}: the cells carry no {chosen or 'region tag'}; whole-number cell data in the file: {has}")
-    tags = np.concatenate([foreign.tags[chosen][k] for k in own])
+    tags = np.concatenate([foreign.tags[chosen][k] for k in parts])
     numbers = {}
     for key, region in region_map.items():
         if isinstance(key, str) and key not in foreign.tag_names:

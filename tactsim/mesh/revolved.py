@@ -124,9 +124,9 @@ def shifted_outside(nodes: Array, offset: float, *, radius: float, rest: float) 
 
     The map is smooth and one to one while ``offset`` stays below ``largest_offset``; ``radius`` is that of the side.
     """
-    way = np.clip((np.hypot(nodes[:, 0], nodes[:, 1]) - rest) / (radius - rest), 0.0, 1.0)
+    share = np.clip((np.hypot(nodes[:, 0], nodes[:, 1]) - rest) / (radius - rest), 0.0, 1.0)
     moved = nodes.copy()
-    moved[:, 0] += offset * way**2 * (3 - 2 * way)
+    moved[:, 0] += offset * share**2 * (3 - 2 * share)
     return moved
 
 

@@ -145,7 +145,7 @@ def main(path: str, answer: str, largest: str) -> int:
     MemoryError
         If the arrays take more bytes than ``largest``; meshio's own errors end the process, too.
     """
-    mesh, said = _read(path)
+    mesh, lines = _read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
     point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}
     cell_data = {name: [np.atleast_1d(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
@@ -168,7 +168,7 @@ def main(path: str, answer: str, largest: str) -> int:
         cell_names=np.array(list(cell_data), dtype=str),
         group_names=np.array(list(groups), dtype=str),
         group_numbers=np.array(list(groups.values()), dtype=np.int64),
-        warnings=np.array(said, dtype=str),
+        warnings=np.array(lines, dtype=str),
         **arrays,
     )
     Path(answer).write_bytes(content.getvalue())

@@ -76,7 +76,7 @@ def pictures(surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> list[byt
         if done.out_of_time:
             raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
         if done.code or not all(path.is_file() for path in drawn):
-            raise TactsimError(f"pyvista cannot render here: {_cause(done.said, done.code)} ({REMEDY})")
+            raise TactsimError(f"pyvista cannot render here: {_cause(done.error_output, done.code)} ({REMEDY})")
         return [path.read_bytes() for path in drawn]
 
 

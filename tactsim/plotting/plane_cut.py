@@ -74,8 +74,8 @@ def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> Plan
     nodal_values = np.column_stack([nodes[:, axis] - level, nodes[:, others]])
     elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
     crossed = _crossed(nodal_values, elements)
-    own = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
-    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], own[:, :, None]], axis=2)))
+    cut_values = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
+    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], cut_values[:, :, None]], axis=2)))
     pieces, number = _cut_triangles(_divided(nodal_values[faces]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest

@@ -78,10 +78,10 @@ def outcomes(
     InputError
         If the estimator needs what the samples lack.
     """
-    own = response if estimator.needs_response else None
-    if estimator.needs_response and own is None:
+    model = response if estimator.needs_response else None
+    if estimator.needs_response and model is None:
         raise InputError(f"the estimator {estimator.kind} needs the response of the tissue")
-    readings = samples.readings(own, multiple=multiple, seed=seed)
+    readings = samples.readings(model, multiple=multiple, seed=seed)
     return [outcome(estimator.estimate(each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
 
 
@@ -169,8 +169,8 @@ def binned(judged: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[
         by_label[label] = []
         for k, (low, high) in enumerate(pairwise(edges)):
             inside = (values >= low) & ((values <= high) if k == len(edges) - 2 else (values < high))
-            own = [one for one, held in zip(lumps, inside, strict=True) if held]
-            by_label[label].append({"low": float(low), "high": float(high), **measures(own, block_size)})
+            members = [one for one, held in zip(lumps, inside, strict=True) if held]
+            by_label[label].append({"low": float(low), "high": float(high), **measures(members, block_size)})
     return by_label
 
 

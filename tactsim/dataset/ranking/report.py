@@ -58,9 +58,9 @@ def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
             continue
         ratios[one.name] = {}
         for name in ("lateral_error_with_misses", "depth_error_with_misses"):
-            own, other = one.measures[name], base.measures[name]
-            if own is not None and other is not None and other["value"] > 0:
-                ratios[one.name][name] = own["value"] / other["value"]
+            ours, other = one.measures[name], base.measures[name]
+            if ours is not None and other is not None and other["value"] > 0:
+                ratios[one.name][name] = ours["value"] / other["value"]
     return ratios
 
 

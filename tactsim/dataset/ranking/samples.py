@@ -140,10 +140,10 @@ def judged_samples(
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
-    own = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
+    electronic = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
     given = noise if noise is not None else 0.0 if source == "read_force" else ROUNDING_NOISE
-    stated = float(np.hypot(own, given))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, own)
+    stated = float(np.hypot(electronic, given))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)
 
 
 def stored_experiment(store: str | Path) -> Grasp:

@@ -72,9 +72,9 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
     if drawn.case is not None:
         values |= layout.recorder.labels(drawn.case.experiment)
         if not lost:
-            with collected_warnings() as said:
+            with collected_warnings() as collected:
                 status, reason, read = _run(sweep, layout, drawn)
-            reason = "; ".join([reason, *said.lines()])
+            reason = "; ".join([reason, *collected.lines()])
             values |= read
     values |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
     values |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}

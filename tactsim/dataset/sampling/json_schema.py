@@ -100,12 +100,12 @@ def _place(value: Fragment, pointer: str) -> Fragment:
     if "const" in value:
         return value
     annotations = {key: value[key] for key in ANNOTATIONS if key in value}
-    own = {key: item for key, item in value.items() if key not in annotations}
+    content = {key: item for key, item in value.items() if key not in annotations}
     kinds = sorted(set(_kinds(value)))
-    if own == QUANTITY:
+    if content == QUANTITY:
         return {**annotations, "anyOf": [QUANTITY, {"$ref": f"#/$defs/{VARYING['quantity']}"}]}
     varying = [*({"$ref": f"#/$defs/{VARYING[kind]}"} for kind in kinds), _choice({"$ref": pointer})]
-    return {**annotations, "anyOf": [_inner(own, f"{pointer}/anyOf/0"), *varying]}
+    return {**annotations, "anyOf": [_inner(content, f"{pointer}/anyOf/0"), *varying]}
 
 
 def _choice(option: Fragment) -> Fragment:

@@ -165,12 +165,12 @@ def _put(store: Store, block: Block, variable: Variable) -> list[Path]:
     array, folder, changed = store.array(variable.name), store.path / variable.name, []
     numbers, per_chunk = block["sample"], int(array.chunks[0])
     for chunk in np.unique(numbers // per_chunk).tolist():
-        own = numbers // per_chunk == chunk
+        inside = numbers // per_chunk == chunk
         begin, end = chunk * per_chunk, min((chunk + 1) * per_chunk, array.shape[0])
         content = store.path / store.described[variable.name].chunk_key(chunk)
         new = [place for place in content.parents[: len(variable.dimensions) + 1] if not place.exists()]
         values = np.asarray(array[begin:end])
-        values[numbers[own] - begin] = block[variable.name][own]
+        values[numbers[inside] - begin] = block[variable.name][inside]
         array[begin:end] = values
         changed += [
             content,

@@ -43,14 +43,14 @@ def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
 
 def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
     """Lists card and figures that an earlier tactsim wrote, which kept no list of its files."""
-    card, own = path / CARD, OwnFiles(path)
+    card, files = path / CARD, OwnFiles(path)
     if (path / OWN_LIST).exists() or not card.is_file() or card.is_symlink():
         return
     with open(card, "rb") as file:
         head = file.read(1000).decode("utf-8", "replace")
     if TAGS in head.splitlines():
         for name in (CARD, *(f"{FIGURES}/{figure}" for figure in figures)):
-            own.adopt(name)
+            files.adopt(name)
 
 
 def plain(text: object) -> str:
@@ -113,8 +113,8 @@ def empty_split_lines(names: Sequence[str]) -> list[str]:
 
 
 def _figures(path: Path) -> list[str]:
-    own = OwnFiles(path)
-    drawn = sorted(name for name in own.sums() if name.startswith(f"{FIGURES}/") and own.written(name))
+    files = OwnFiles(path)
+    drawn = sorted(name for name in files.sums() if name.startswith(f"{FIGURES}/") and files.written(name))
     return ["## Figures", *(f"![{Path(name).stem}]({name})" for name in drawn), ""] if drawn else []
 
 
@@ -153,11 +153,11 @@ def _names(layout: Layout, role: str) -> list[str]:
     return [variable.name for variable in layout.variables if variable.role == role and variable.dtype != "str"]
 
 
-def _limits(own: str) -> list[str]:
+def _limits(stated: str) -> list[str]:
     return [
         "## Known limits",
         *(f"- {line}" for line in GENERAL_LIMITS),
-        *(f"- {plain(line)}" for line in own.splitlines() if line.strip()),
+        *(f"- {plain(line)}" for line in stated.splitlines() if line.strip()),
         "",
     ]
 

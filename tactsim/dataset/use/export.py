@@ -103,7 +103,7 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
     if done.out_of_time:
         raise StorageError(f"cannot write {one_line(target)}: it took longer than {LONGEST:g} s")
     if done.code:
-        full = "No space left" in done.said or "File too large" in done.said
+        full = "No space left" in done.error_output or "File too large" in done.error_output
         raise StorageError(
             f"cannot write {one_line(target)}: {'no room left on the disk' if full else done.last_line or done.ending}"
         )

@@ -183,12 +183,12 @@ class RankingReport:
         quantities |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in columns.items()}
         words = "predicted minus printed reading, by shape and elastomer"
         quantities["reading_difference"] = Quantity(differences, "1", words)
-        own = [self._own(shape) for shape in shapes]
+        at_own_modulus = [self._own(shape) for shape in shapes]
         for name, unit, words in (
             ("own_threshold_pressure", "Pa", "threshold pressure by the constants of each shape"),
             ("own_reading", "1", "reading by the constants of each shape; 0 is off the scale"),
         ):
-            quantities[name] = Quantity([pair[name] for pair in own], unit, words)
+            quantities[name] = Quantity([pair[name] for pair in at_own_modulus], unit, words)
         return quantities | self._atrium
 
     def _own(self, shape: int) -> dict[str, float | None]:

@@ -130,8 +130,8 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
 def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: Any, label: str) -> None:
     steps = [step.values for step in result.steps if _is(step.values, result, which)]
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
-    way_in = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
-    axis.plot(1e3 * depth[way_in], force[way_in], color=colour, label=label)
+    loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
+    axis.plot(1e3 * depth[loading], force[loading], color=colour, label=label)
     scene = result.scene_as(SwitchProbeScene)
     heights = 1e3 * np.array(scene.heights)
     for touch in scene.touches:

@@ -110,10 +110,12 @@ def _motion(setup: SwitchProbeSetup, rate: float) -> _Motion:
 
     The probe turns with the first sample at its depth, so that one is there.
     """
-    way, step = setup.duration(rate), 1 / setup.chain.sampling_rate
-    time = setup.chain.times(REST + step + (way if setup.model == "fem" else 2 * way)) - REST
-    turn = float(time[np.searchsorted(time, way - ROUND_OFF * step)])
-    depth = np.interp(time, [-REST, 0.0, way, max(turn, way), turn + way], [0.0, 0.0, setup.depth, setup.depth, 0.0])
+    duration, step = setup.duration(rate), 1 / setup.chain.sampling_rate
+    time = setup.chain.times(REST + step + (duration if setup.model == "fem" else 2 * duration)) - REST
+    turn = float(time[np.searchsorted(time, duration - ROUND_OFF * step)])
+    depth = np.interp(
+        time, [-REST, 0.0, duration, max(turn, duration), turn + duration], [0.0, 0.0, setup.depth, setup.depth, 0.0]
+    )
     depth[time == turn] = setup.depth
     return _Motion(time, depth)
 

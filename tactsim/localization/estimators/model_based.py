@@ -128,8 +128,8 @@ class ModelBasedEstimator(Estimator):
         grid = np.stack(np.meshgrid(*response.axes, indexing="ij"), axis=-1).reshape(-1, 3)
         room = np.minimum(grid, size - grid).min(axis=1)
         cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
-        signals = [response.values[k].reshape(len(grid), -1)[own] for k, own in zip(chosen, cells, strict=True)]
-        radii = np.repeat(response.radii[chosen], [len(own) for own in cells])
+        signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
+        radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])
         every = np.concatenate(cells)
         return Candidates(every, grid[every], radii, np.concatenate(signals))
 

@@ -53,7 +53,7 @@ def test_a_child_that_takes_too_much_memory_is_refused_it(module) -> None:
 
 def test_a_child_that_talks_without_end_fills_no_memory(module) -> None:
     done = run_child(module("for k in range(300000): print('x' * 99)\nprint('end')"), [], time_limit=60)
-    assert len(done.said) <= processes.LAST_WORDS
+    assert len(done.error_output) <= processes.LAST_WORDS
     assert done.last_line == "end"
 
 

@@ -106,9 +106,9 @@ def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
     return [Surface(plate, _BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
 
 
-def _placed(grasp: LoadedTaxels, side: str, own: Array) -> Array:
+def _placed(grasp: LoadedTaxels, side: str, points: Array) -> Array:
     """Points (n, 3) in the jaw's own axes, in those of the block."""
-    return own @ grasp.scene.jaws[side].rotation.T + grasp.scene.place(side)
+    return points @ grasp.scene.jaws[side].rotation.T + grasp.scene.place(side)
 
 
 def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
@@ -141,8 +141,8 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
     axis.text(0.0, -0.03, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
     for side in JAWS:
         jaw, sign = grasp.scene.jaws[side], 1.0 if side == "upper" else -1.0
-        own = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
-        x, y = camera.project(_placed(grasp, side, own[None]))[0]
+        plate_corner = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
+        x, y = camera.project(_placed(grasp, side, plate_corner[None]))[0]
         axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
 
 
