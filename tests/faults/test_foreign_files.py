@@ -50,10 +50,10 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
         begin = time.monotonic()
         assert main(list(arguments)) in codes
         assert time.monotonic() - begin < PATIENCE
-        said = capsys.readouterr().err
-        assert "internal error" not in said
-        assert "Traceback" not in said
-        return said
+        printed = capsys.readouterr().err
+        assert "internal error" not in printed
+        assert "Traceback" not in printed
+        return printed
 
     return run
 

@@ -42,8 +42,8 @@ def test_nothing_that_strangers_send_reaches_the_terminal_or_another_page(tmp_pa
         assert server.answers()
         other.sendall(framed(b'{"do":"show","step":0}') + framed(b"[]"))
         assert "does not know" in fault_or_code(other), "the page that was open all the time still has answers"
-        duration, said = server.ended()
-    assert said == ""
+        duration, printed = server.ended()
+    assert printed == ""
     assert duration < END
 
 
@@ -82,8 +82,8 @@ def test_the_page_ends_at_once_with_pages_that_do_not_listen_a_sender_and_an_est
         deaf.sendall(framed(b'{"do":"estimator","name":"hypotheses"}') + framed(b"?") * 2000)
         lost.sendall(framed(b'{"do":"play"}'))
         time.sleep(1.0)
-        duration, said = server.ended()
-    assert said == ""
+        duration, printed = server.ended()
+    assert printed == ""
     assert duration < END
 
 
@@ -193,13 +193,13 @@ VERBS = st.sampled_from(["drawn", "play", "pause", "show", "estimator", "source"
     | st.builds(lambda verb, more: json.dumps({**more, "do": verb}), VERBS, st.dictionaries(KEYS, JSON, max_size=3))
 )
 def test_any_command_is_read_or_refused_in_a_line(text: str) -> None:
-    said = "ok"
+    expected = "ok"
     try:
         read_command(text)
     except InputError as error:
-        said = str(error)
-    assert len(said) < 400
-    assert said.isprintable()
+        expected = str(error)
+    assert len(expected) < 400
+    assert expected.isprintable()
 
 
 def test_a_defect_is_reported_in_one_line_and_once() -> None:

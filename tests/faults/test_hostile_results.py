@@ -132,12 +132,12 @@ def test_a_result_that_no_run_writes_is_refused_in_words(tmp_path: Path, capsys:
     picture = tmp_path / "a.png"
     for arguments in ([], ["--save", str(picture)], ["--web", "--no-browser"]):
         assert main(["show", str(folder), *arguments]) == 5
-        said = capsys.readouterr()
-        assert said.err.startswith("error: ")
-        assert "internal error" not in said.err
-        assert "Traceback" not in said.err
-        assert "\x1b" not in said.err
-        assert len(said.err) < 1000
+        printed = capsys.readouterr()
+        assert printed.err.startswith("error: ")
+        assert "internal error" not in printed.err
+        assert "Traceback" not in printed.err
+        assert "\x1b" not in printed.err
+        assert len(printed.err) < 1000
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
@@ -149,10 +149,10 @@ def test_scenes_that_do_not_fit_are_reported_and_no_half_picture_is_left(
     assert main(["show", str(folder)]) == 0
     capsys.readouterr()
     code = main(["show", str(folder), "--save", str(tmp_path / "a.png")])
-    said = capsys.readouterr().err
+    printed = capsys.readouterr().err
     assert code in (0, 2, 5)
-    assert code == 0 or "warning: " in said
-    assert "internal error" not in said
+    assert code == 0 or "warning: " in printed
+    assert "internal error" not in printed
     assert sorted(path.name for path in tmp_path.iterdir()) == (["a"] if code else ["a", "a.png"])
     shown_on_the_page(folder)
 

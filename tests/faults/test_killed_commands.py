@@ -80,11 +80,11 @@ def test_a_run_refused_at_any_step_says_so_and_loses_nothing(
         capsys.readouterr()
         with disk(At(number, lambda: OSError(code, os.strerror(code)), for_good=False)):
             ended = run(out, "x")
-        said = capsys.readouterr().err
+        printed = capsys.readouterr().err
         assert ended in (0, 5)
         assert mark_of(out) is (ended == 0)
-        assert (os.strerror(code) in said) == (ended == 5)
-        assert "internal" not in said
+        assert (os.strerror(code) in printed) == (ended == 5)
+        assert "internal" not in printed
 
 
 def test_a_set_of_files_killed_at_any_step_is_the_old_or_the_new(tmp_path: Path) -> None:

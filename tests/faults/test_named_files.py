@@ -80,10 +80,10 @@ def test_what_cannot_be_read_is_reported_with_file_line_and_key(
     place.unlink()
     put(place)
     assert main(["run", str(case), "--out", str(tmp_path / "out")]) == 5
-    said = capsys.readouterr().err
+    printed = capsys.readouterr().err
     line = next(k for k, text in enumerate(case.read_text().splitlines(), 1) if DATA in text)
-    assert said.startswith(f"error: {case}:{line}: {KEY}: cannot read the file data/{DATA}: ")
-    assert words in said
+    assert printed.startswith(f"error: {case}:{line}: {KEY}: cannot read the file data/{DATA}: ")
+    assert words in printed
     assert sorted(os.listdir(tmp_path)) == ["mine", "work"]
 
 

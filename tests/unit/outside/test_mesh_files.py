@@ -43,9 +43,9 @@ def test_warnings_of_the_reader_are_warnings_here(mesh: Path) -> None:
 
 @pytest.mark.filterwarnings("default::tactsim.outside.mesh_files.MeshFileWarning")
 def test_they_are_reported_as_those_of_the_library(mesh: Path) -> None:
-    with collected_warnings() as said:
+    with collected_warnings() as collected:
         read_mesh_file(opened(mesh, "mesh"))
-    assert [line.split(":")[0] for line in said.lines()] == ["meshio"]
+    assert [line.split(":")[0] for line in collected.lines()] == ["meshio"]
 
 
 def test_a_whole_file_is_read_without_a_word(mesh: Path) -> None:

@@ -113,19 +113,19 @@ def test_a_change_is_read_at_the_closing_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("runs", "which", "bases", "said"),
+    ("runs", "which", "bases", "message"),
     [
         ("ab", "least along", "abc", "3 bases for 2 runs"),
         ("a", "least from base", "", "no base"),
         ("a", "least along", "", "one run"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, said: str) -> None:
-    with pytest.raises(InvalidQuantity, match=said):
+def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, message: str) -> None:
+    with pytest.raises(InvalidQuantity, match=message):
         change(Inputs(), runs, which, bases=tuple(bases))
     row = next(row for row in TABLE_6_6.rows if getattr(row.evaluate, "kind", "") == "taxel_change")
     call = {"kind": "taxel_change", "study": "s", "runs": tuple(runs), "change": which, "bases": tuple(bases)}
-    with pytest.raises(ValidationError, match=said):
+    with pytest.raises(ValidationError, match=message):
         type(row).model_validate({**row.model_dump(), "evaluate": call})
 
 
@@ -188,7 +188,7 @@ def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("state", "said"),
+    ("state", "message"),
     [
         ("state: {above: 1 N/m, below: 2 N/m, finding: both}", "either above or below"),
         ("state: {finding: neither}", "either above or below"),
@@ -196,8 +196,8 @@ def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
         ("state: {above: 100 N, finding: wrong}", "wrong dimension"),
     ],
 )
-def test_a_bad_limit_is_reported(tmp_path: Path, state: str, said: str) -> None:
-    with pytest.raises(CaseError, match=said):
+def test_a_bad_limit_is_reported(tmp_path: Path, state: str, message: str) -> None:
+    with pytest.raises(CaseError, match=message):
         finding(tmp_path, state)
 
 

@@ -25,17 +25,17 @@ def test_recorded_states_hold(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "left", "said"),
+    ("old", "new", "left", "message"),
     [
         ("125 N/m", "125.4 N/m", 0, "LEFT: was reproduced"),
         ("250 N/m", "240 N/m", 1, "LEFT: outside by 0.5208, was 0.5"),
         ("250 N/m", "125 N/m", 1, "LEFT: outside by 1, was 0.5"),
     ],
 )
-def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, said: str) -> None:
+def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, message: str) -> None:
     rows = outcomes(tmp_path, TABLE.replace(old, new))
     assert [row.held for row in rows] == [k != left for k in range(3)]
-    assert rows[left].state == said
+    assert rows[left].state == message
 
 
 def test_after_an_erratum(tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def test_an_interrupted_run_keeps_its_rows():
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         ({"ratios": (0.5, 0.1)}, "ratios must increase"),
         ({"forces": (1.0, 3.5)}, "beyond the largest one of 3 N"),
@@ -139,8 +139,8 @@ def test_an_interrupted_run_keeps_its_rows():
         ({"tissue": {"times": "seconds"}}, "viscosities"),
     ],
 )
-def test_what_makes_no_design_is_refused(changes, said):
-    with pytest.raises(ValidationError, match=said):
+def test_what_makes_no_design_is_refused(changes, message):
+    with pytest.raises(ValidationError, match=message):
         design(**changes)
 
 
