@@ -165,10 +165,7 @@ def quantity_type(unit: str, example: str) -> Any:
     pattern = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^0-9\s].*$"
     schema = {"type": "string", "pattern": pattern, "examples": [example], "unit": unit}
     return Annotated[
-        float,
-        BeforeValidator(_reader(unit)),
-        WithJsonSchema(schema, mode="validation"),
-        Field(json_schema_extra={"unit": unit}),
+        float, BeforeValidator(_reader(unit)), WithJsonSchema(schema, mode="validation"), Field(json_schema_extra={"unit": unit})
     ]
 
 

@@ -47,13 +47,7 @@ class ComplianceBand:
 
 
 def least_squares_band(
-    fit: DmaFit,
-    frequencies: Array,
-    *,
-    confidence: float = 0.95,
-    simultaneous: bool = True,
-    replicates: int = 400,
-    seed: int = 1,
+    fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
     r"""Band about a least-squares fit, from a parametric bootstrap of the spectrum.
 
@@ -82,13 +76,7 @@ def least_squares_band(
 
 
 def genetic_band(
-    fit: DmaFit,
-    frequencies: Array,
-    *,
-    confidence: float = 0.95,
-    simultaneous: bool = True,
-    replicates: int = 400,
-    seed: int = 1,
+    fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
     r"""Band about a fit of eq. 4.5.2 by search: the noise's part as in ``least_squares_band``, and the search's on top.
 

@@ -172,10 +172,5 @@ def _put(store: Store, block: Block, variable: Variable) -> list[Path]:
         values = np.asarray(array[begin:end])
         values[numbers[inside] - begin] = block[variable.name][inside]
         array[begin:end] = values
-        changed += [
-            content,
-            *new,
-            content.parents[len(new)],
-            *([folder / META] if content.parents[len(new)] == folder else ()),
-        ]
+        changed += [content, *new, content.parents[len(new)], *([folder / META] if content.parents[len(new)] == folder else ())]
     return changed

@@ -32,13 +32,7 @@ class DurometerRecord(IndentationRecord):
     } | {"spring_force": "N", "hertz_force": "N"}
 
     def __init__(
-        self,
-        setup: IndentationSetup,
-        model: PressedModel,
-        path: StartedPath,
-        *,
-        scale: DurometerScale,
-        spring_tolerance: float,
+        self, setup: IndentationSetup, model: PressedModel, path: StartedPath, *, scale: DurometerScale, spring_tolerance: float
     ):
         super().__init__(setup, model, path)
         self.scale, self.spring_tolerance = scale, spring_tolerance

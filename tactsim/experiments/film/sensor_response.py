@@ -138,9 +138,7 @@ class SensorResponse(Experiment):
             "rms_error_unfiltered": Quantity(root_mean_square(raw - force), "N", "the same without the low pass"),
             "largest_error": Quantity(float(np.abs(read - force).max()), "N", "largest difference of read and applied force"),
             "hysteresis": Quantity(
-                hysteresis(force, raw) / float(force.max() or 1.0),
-                "1",
-                "widest loop of the unfiltered reading over the force",
+                hysteresis(force, raw) / float(force.max() or 1.0), "1", "widest loop of the unfiltered reading over the force"
             ),
             "saturated_fraction": Quantity(float(recording.saturated.mean()), "1", "samples outside the range of the converter"),
         }

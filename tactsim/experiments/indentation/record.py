@@ -9,12 +9,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 
 from tactsim.experiments.indentation.comparison import Comparison
-from tactsim.experiments.indentation.scene import (
-    Indentation3dScene,
-    IndentationScene,
-    PressedBodyScene,
-    TimedIndentationScene,
-)
+from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium

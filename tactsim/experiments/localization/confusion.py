@@ -14,13 +14,7 @@ from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
-from tactsim.experiments.localization.source import (
-    Source,
-    folder_words,
-    readings_of,
-    stored_grasp,
-    with_reference,
-)
+from tactsim.experiments.localization.source import Source, folder_words, readings_of, stored_grasp, with_reference
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings

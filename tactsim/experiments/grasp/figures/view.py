@@ -57,15 +57,20 @@ def view_figure(result: Result) -> Figure:
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)
         _write_captions(axes[1], result)
-        factor, unit = scale_of(grasp.largest_pressure, "Pa")
-        norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-        bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
-        bar.set_label(f"mean pressure on the taxel in {unit}: colour and length of its bar on the back of the jaw")
-        bar.outline.set_linewidth(0.5)
+        pressure_bar(figure, axes, grasp, "pressure", "its bar on the back of the jaw")
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
         title = result.title or "Grasp"
         entitle(figure, f"{title}: {ending(result)}{status}")
     return figure
+
+
+def pressure_bar(figure: Figure, axes: Any, grasp: LoadedTaxels, meaning: str, bars: str) -> None:
+    """The colours of the bars on the taxels; ``meaning`` is what their colour and the length of ``bars`` show."""
+    factor, unit = scale_of(grasp.largest_pressure, "Pa")
+    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+    bar.set_label(f"mean {meaning} on the taxel in {unit}: colour and length of {bars}")
+    bar.outline.set_linewidth(0.5)
 
 
 def scene(frame: FieldFrame, grasp: LoadedTaxels) -> list[Surface]:
