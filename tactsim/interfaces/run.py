@@ -11,7 +11,6 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 from typing import ClassVar, Self, final
 
 from tactsim.deadline import check_time, time_limit
@@ -68,11 +67,7 @@ class Course:
     @classmethod
     def computed(cls, findings: Findings) -> Self:
         """The course of a kind that computes everything at once."""
-        return cls(findings.steps, partial(_same, findings))
-
-
-def _same(findings: Findings) -> Findings:
-    return findings
+        return cls(findings.steps, lambda: findings)
 
 
 class Runnable(CaseKind):

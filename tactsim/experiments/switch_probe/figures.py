@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any, Literal
 
 import numpy as np
@@ -70,7 +71,7 @@ def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest
         figure = new_figure(max(narrowest, 1.6 + 3.1 * len(panels)), 3.8)
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
-            for colour, (name, touch) in zip(_colours(len(panel.curves)), panel.curves, strict=True):
+            for colour, (name, touch) in zip(cycle(COLOURS), panel.curves, strict=False):
                 _draw_curve(axis, result, touch, colour, name)
             _finish(axis, result, panel.title)
         _title(figure, result, f"{title}; dots: read as each switch closed, at its height")
@@ -142,10 +143,6 @@ def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: An
 
 def _is(values: dict[str, float], result: Result, which: tuple[str, float]) -> bool:
     return result.scene_as(SwitchProbeScene).tissues[int(values["tissue"]) - 1] == which[0] and values["rate"] == which[1]
-
-
-def _colours(count: int) -> list[str]:
-    return [COLOURS[k % len(COLOURS)] for k in range(count)]
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:
