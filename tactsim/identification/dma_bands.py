@@ -81,7 +81,7 @@ def genetic_band(
     r"""Band about a fit of eq. 4.5.2 by search: the noise's part as in ``least_squares_band``, and the search's on top.
 
     What the search approaches, the least of eq. 4.5.2 in its squared form, is the unweighted non-negative spectrum, which is
-    found exactly; its bootstrap gives c s. How far the search stayed from it is known at each frequency, so that the band is
+    computed exactly; its bootstrap gives c s. How far the search stayed from it is known at each frequency, so that the band is
 
     .. math:: \hat D \, e^{\pm (c s + |\ln \hat D - \ln D_{min}|)}
 

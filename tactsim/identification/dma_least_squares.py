@@ -40,7 +40,7 @@ MOST_EVALUATIONS, MOST_ROUNDS, TOLERANCE = 2000, 8, 1e-13
 
 @dataclass(frozen=True, eq=False)
 class DmaFit:
-    """Constants with how they were found."""
+    """Constants with how they were identified."""
 
     method: str
     constants: KelvinConstants

@@ -70,7 +70,7 @@ class EstimatedInclusion:
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """What an estimator found; no inclusions means that nothing is there.
+    """What an estimator located; no inclusions means that nothing is there.
 
     Attributes
     ----------

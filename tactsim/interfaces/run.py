@@ -28,7 +28,7 @@ ACCEPTED_STEPS = "the accepted steps are kept, the run is incomplete"
 
 @dataclass(frozen=True)
 class Findings:
-    """What a run found, complete or not; fields as those of `Result`."""
+    """What a run computed, complete or not; fields as those of `Result`."""
 
     reason: str
     """Why a run that came to its end is what ``status`` says; not used if it ended before."""
@@ -82,7 +82,7 @@ class Runnable(CaseKind):
 
     @abstractmethod
     def begin(self) -> Course:
-        """What computes the steps and knows what they found; what is made before the first step, such as a mesh, is made here.
+        """What computes the steps and collects their results; what is made before the first step, such as a mesh, is made here.
 
         ::
 
@@ -131,7 +131,7 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
     InputError, Unfinished
         As `Runnable.begin`.
     OutOfMemory
-        If the memory does not suffice to begin, or to say what was found.
+        If the memory does not suffice to begin, or to report what was computed.
     """
     started = time.perf_counter()
     try:

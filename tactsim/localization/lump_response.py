@@ -18,7 +18,7 @@ from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
 FINER = 4
-"""Parts per side of a voxel by which the share of a voxel in a ball is found."""
+"""Parts per side of a voxel by which the share of a voxel in a ball is computed."""
 
 
 @dataclass(frozen=True, eq=False)

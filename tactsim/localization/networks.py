@@ -59,7 +59,7 @@ class LearnedWeights:
     covariance: Array
     growth: Array
     held_out: int = 0
-    """Grasps with a lump from which the covariance was found."""
+    """Grasps with a lump from which the covariance was estimated."""
 
     def probability(self, features: Array) -> float:
         """That there is a lump, for features (inputs,)."""

@@ -49,7 +49,7 @@ Model = TypeVar("Model", bound=ContactModel)
 
 
 class ContactRecord(ABC, Generic[Model]):
-    """Collects the accepted states of a run, and says what was found.
+    """Collects the accepted states of a run, and reports the findings.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from tactsim.units import Area, format_quantity
 HOLM = 100.0
 """Largest force in N of Holm's contact resistance (thesis, before eq. 2.1.12)."""
 INVERSION = 1e-12
-"""Relative accuracy of a force found from its conductance."""
+"""Relative accuracy of a force computed from its conductance."""
 ITERATIONS = 60
 CREEP = ("instantaneous", "delayed", "viscosity")
 """Coefficients of the creep as a composite names them."""

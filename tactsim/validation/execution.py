@@ -110,7 +110,7 @@ class StudyRunner:
 
 
 def _outcome_of(answer: Answer[str]) -> RunOutcome:
-    """What a process found.
+    """What a process computed.
 
     Raises
     ------

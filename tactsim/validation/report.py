@@ -36,7 +36,7 @@ def terminal_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> s
 
 
 def count_rows(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> list[tuple[Any, ...]]:
-    """Per table: chapter, name, rows found of rows that must be there, and rows by how they ended; last the totals."""
+    """Per table: chapter, name, rows there of rows that must be, and rows by how they ended; last the totals."""
     ended = {outcome.name: outcome for outcome in outcomes}
     promised = loaded.manifest.tables
     names = [name for name in promised if name in ended or any(fault.startswith(f"{name}:") for fault in loaded.faults)]

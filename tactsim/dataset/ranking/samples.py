@@ -121,7 +121,7 @@ def judged_samples(
 ) -> JudgedSamples:
     """The samples of a store, or of one of its parts, that estimators can be judged on.
 
-    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, found by repeated
+    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, estimated by repeated
     readings of the reference; for ``taxel_force`` the default is what rounding to 0.1 N does (thesis 6.2).
 
     Raises

@@ -25,7 +25,7 @@ TIMES = (1e-6, 1e6)
 
 @dataclass(frozen=True)
 class ShapeFinding:
-    """What the two simulations of a shape found."""
+    """Results of the two simulations of a shape."""
 
     shape: Shape
     youngs_modulus: float

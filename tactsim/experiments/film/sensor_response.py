@@ -143,7 +143,7 @@ class SensorResponse(Experiment):
             "saturated_fraction": Quantity(float(recording.saturated.mean()), "1", "samples outside the range of the converter"),
         }
         if inversion is not None:
-            words = "largest error of the force found by the inverse of the film, in steps of the converter there"
+            words = "largest error of the force computed by the inverse of the film, in steps of the converter there"
             quantities["inversion_steps"] = Quantity(inversion, "1", f"{words}; up to the first saturated sample")
         return quantities | self._by_range(force, raw, model, good)
 

@@ -28,7 +28,7 @@ class Comparison:
     def values(self, time: float, prescribed: float, computed: dict[str, float]) -> dict[str, float]:
         """Displacement in m and force in N of the closed form at a time in s, and the relative difference of the answer.
 
-        ``prescribed`` is the force or displacement at that time, ``found`` the answer.
+        ``prescribed`` is the force or displacement at that time, ``computed`` the values of the simulation.
         """
         now = np.array([time])
         if self._drive.by_force:

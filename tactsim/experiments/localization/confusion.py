@@ -164,7 +164,7 @@ class ConfusionTable:
 
     @property
     def recalls(self) -> list[float | None]:
-        """Share of each true class that was found as such; None for a class that does not occur."""
+        """Share of each true class that was named as such; None for a class that does not occur."""
         return [float(row[k] / row.sum()) if row.sum() else None for k, row in enumerate(self.counts)]
 
 

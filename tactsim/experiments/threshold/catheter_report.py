@@ -1,4 +1,4 @@
-"""What the sensors of a tip report: thresholds, the hardest one found, and how often it is the wrong one."""
+"""What the sensors of a tip report: thresholds, the hardest one, and how often it is the wrong one."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class CatheterReport:
         }
 
     def _hardest(self) -> dict[str, Quantity]:
-        """The sensor found by the mean reports, its margin, and the chances over the trials."""
+        """The hardest sensor by the mean reports, its margin, and the chances over the trials."""
         means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
         wrong, elsewhere, undecided = self._chances()
         quantities = {

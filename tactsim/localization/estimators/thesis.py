@@ -94,7 +94,7 @@ class ThesisEstimator(Estimator):
         return float(readings.noise * (2.0 if self.background == "reference" else np.sqrt(2.0)))
 
     def _weights(self, total: Array, base: float) -> Array:
-        """Share of each place (row, column) in the position found; they add up to 1."""
+        """Share of each place (row, column) in the estimated position; they add up to 1."""
         if self.lateral == "centroid":
             weights = np.maximum(total - base, 0.0)
         else:

@@ -191,7 +191,7 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
 
 
 def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
-    """What the lines mean, and what was found."""
+    """What the lines mean, and the estimates."""
     axis.axis("off")
     added = "sums" if shown == "force" else "means"
     handles: list[Any] = [

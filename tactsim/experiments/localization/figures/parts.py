@@ -1,4 +1,4 @@
-"""What the figures of a localization show: the grasp that was read, with the estimated inclusions and what was found."""
+"""What the figures of a localization show: the grasp that was read, with the estimated inclusions in bodies and words."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def localized(result: Result) -> ViewedGrasp:
 
 
 def _findings(centers: Array, result: Result) -> tuple[str, ...]:
-    """What was found in words, of estimates centred at ``centers`` (n, 3) in m."""
+    """The result in words, of estimates centred at ``centers`` (n, 3) in m."""
     quantities = result.quantities
     if not quantities["present"].value:
         return ("Nothing there.",)

@@ -34,7 +34,7 @@ _SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3
 
 
 def space_figure(result: Result) -> Figure:
-    """What is truly there beside what was found, in the undeformed tissue, seen from the front, right and above."""
+    """True beside estimated inclusions, in the undeformed tissue, seen from the front, right and above."""
     shown = localized(result)
     grasp = _grasp(shown)
     outside = [_tissue(shown.scene.size), *(surface for side in JAWS for surface in jaw_surfaces(grasp, side))]

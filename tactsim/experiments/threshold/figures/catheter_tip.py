@@ -1,4 +1,4 @@
-"""The tip of a catheter over its tissues, each sensor coloured by the hardness it found, and the hardest one marked."""
+"""The tip of a catheter over its tissues, each sensor coloured by the hardness it reports, and the hardest one marked."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def catheter_tip_figure(result: Result) -> Figure:
 
 
 def _answer(result: Result) -> str:
-    """What was found, in words."""
+    """The hardest sensor in words."""
     quantities = result.quantities
     if "hardest_sensor" not in quantities:
         return "no sensor found a threshold"
