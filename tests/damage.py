@@ -96,7 +96,7 @@ def damaged(content: bytes, damages: Sequence[Damage]) -> bytes:
 def _replaced(content: bytes, at: int, new: bytes, borders: bytes) -> bytes:
     """The content with another word or line where a place is."""
     begin = max((content.rfind(bytes([border]), 0, at) for border in borders), default=-1) + 1
-    ends = [found for border in borders if (found := content.find(bytes([border]), at)) >= 0]
+    ends = [end for border in borders if (end := content.find(bytes([border]), at)) >= 0]
     return content[:begin] + new + content[min(ends, default=len(content)) :]
 
 
@@ -149,7 +149,7 @@ FORMATS: dict[str, tuple[str, Callable[[], meshio.Mesh], dict[str, Any]]] = {
 
 def written_meshes(folder: Path) -> dict[str, tuple[str, bytes]]:
     """Ending and content of a small valid file in each format."""
-    found: dict[str, tuple[str, bytes]] = {}
+    copies: dict[str, tuple[str, bytes]] = {}
     for number, (name, (suffix, mesh, options)) in enumerate(FORMATS.items()):
         path = folder / f"{number}{suffix}"
         written = mesh()
@@ -161,9 +161,9 @@ def written_meshes(folder: Path) -> dict[str, tuple[str, bytes]]:
             path = path.with_name("ugrid.lb8.ugrid")
         with np.errstate(all="ignore"), suppress(ImportError):
             meshio.write(path, written, **options)
-            found[name] = (".lb8.ugrid" if name == "ugrid" else suffix, path.read_bytes())
-    assert len(found) >= len(FORMATS) - 2
-    return found
+            copies[name] = (".lb8.ugrid" if name == "ugrid" else suffix, path.read_bytes())
+    assert len(copies) >= len(FORMATS) - 2
+    return copies
 
 
 def weights() -> bytes:

@@ -55,7 +55,7 @@ def forked_pretended_command() -> list[str]:
 
 
 class _Server:
-    """Forks a child for every connection and tells its number and in the end its exit status."""
+    """Forks a child for every connection and reports its number and in the end its exit status."""
 
     def __init__(self, place: str):
         self.listening = socket.socket(socket.AF_UNIX)

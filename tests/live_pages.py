@@ -56,15 +56,15 @@ def taxel_forces(steps: int = 4, count: int = 3, *, lump: float = 0.5, place: tu
 
 def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title: str = TITLE) -> Result:
     """The result of a grasp with these forces (step, jaw, row, column) in N, closed by 1 mm in 1 s."""
-    found = taxel_forces() if forces is None else forces
-    steps, count = len(found), found.shape[-1]
+    given = taxel_forces() if forces is None else forces
+    steps, count = len(given), given.shape[-1]
     layout = TaxelLayout(rows=count, columns=count, pitch=30e-3 / count, size=27e-3 / count)
     course = np.linspace(1 / steps, 1, steps)
     quantities = {"displacement": Quantity(CLOSING, "m", ""), "time": Quantity(1.0, "s", "")}
     for jaw, side in enumerate(SIDES):
-        quantities[f"taxel_force_{side}"] = Quantity(found[-1, jaw].tolist(), "N", "")
+        quantities[f"taxel_force_{side}"] = Quantity(given[-1, jaw].tolist(), "N", "")
         if steps > 1:
-            quantities[f"taxel_force_{side}_history"] = Quantity(found[:, jaw].tolist(), "N", "")
+            quantities[f"taxel_force_{side}_history"] = Quantity(given[:, jaw].tolist(), "N", "")
     if steps > 1:
         quantities["time_history"] = Quantity(course.tolist(), "s", "")
         quantities["displacement_history"] = Quantity((CLOSING * course).tolist(), "m", "")
@@ -87,7 +87,7 @@ def grasp_folder(place: Path, forces: np.ndarray | None = None, **options: objec
 
 
 def localized_folder(place: Path) -> Path:
-    """The folder of a localization that found a ball and a tube, how far off it may be told of the first."""
+    """The folder of a localization that found a ball and a tube, how far off is known of the first."""
     grasp = made_up_grasp(taxel_forces(1))
     ball = EstimatedShape(kind="sphere", center=(0.023, 0.017, 0.012), radius=4e-3)
     tube = EstimatedShape(kind="tube", center=(0.02, 0.02, 0.01), radius=3e-3, line=((0, 0.02, 0.01), (0.04, 0.02, 0.01)))
@@ -95,8 +95,8 @@ def localized_folder(place: Path) -> Path:
     quantities = grasp.quantities | {name: Quantity(value, "m", "") for name, value in deviations.items()}
     known = grasp_fields(grasp.scene_as(SimulatedGrasp))
     scene = LocalizedGrasp.model_validate({**known, "estimates": (ball, tube), "estimator": "hypotheses", "noise": 0.0})
-    found = replace(grasp, kind="localization", reason="a ball and a tube", quantities=quantities, scene=scene)
-    return write_result(found, place, case_id="abc", provenance={})
+    localization = replace(grasp, kind="localization", reason="a ball and a tube", quantities=quantities, scene=scene)
+    return write_result(localization, place, case_id="abc", provenance={})
 
 
 def made_up_store(folder: Path, *, done: int = 4) -> Path:
@@ -108,14 +108,14 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
         number = next(numbers)
         if number >= done:
             raise ConvergenceError("residual <i>1</i>")
-        found = made_up_grasp((1 + 0.1 * number) * taxel_forces(1))
+        grasp = made_up_grasp((1 + 0.1 * number) * taxel_forces(1))
         values = {"time": 1.0, "displacement": CLOSING, "reaction_force": 1.0}
         beside = {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside") for side in SIDES}
         numbers_of = {name: Quantity(0.0, unit, "") for name, (unit, _) in GraspRecorder.quantities.items()}
         units = {"time": "s", "displacement": "m", "reaction_force": "N"}
-        quantities = found.quantities | beside | numbers_of
+        quantities = grasp.quantities | beside | numbers_of
         return Course.computed(
-            Findings("", (StepRecord(1, 1, 0.0, values),), quantities=quantities, units=units, scene=found.scene)
+            Findings("", (StepRecord(1, 1, 0.0, values),), quantities=quantities, units=units, scene=grasp.scene)
         )
 
     with patch.object(Grasp, "begin", begin):

@@ -75,19 +75,19 @@ def plain_grasp() -> PlainGrasp:
 def truths(count: int, seed: int = 1) -> tuple[Truth, ...]:
     """Lumps at random; every eighth sample has none."""
     generator = np.random.default_rng(seed)
-    told = []
+    grasps = []
     for number in range(count):
         center = tuple(map(float, generator.uniform([8e-3, 8e-3, 6e-3], [32e-3, 32e-3, 14e-3])))
         closing, radius = float(generator.uniform(0.5e-3, 1.2e-3)), float(generator.uniform(3e-3, 5e-3))
         there = (center, radius, float(SIZE[2] - center[2]), 10.0) if number % 8 else (None,) * 4
-        told.append(Truth(number, closing, *there))
-    return tuple(told)
+        grasps.append(Truth(number, closing, *there))
+    return tuple(grasps)
 
 
-def made_forces(told: tuple[Truth, ...], table: LumpResponse, contrast: float = 2.0) -> np.ndarray:
+def made_forces(grasps: tuple[Truth, ...], table: LumpResponse, contrast: float = 2.0) -> np.ndarray:
     """What the taxels feel (n, 2, 3, 3) in N, without noise."""
-    forces = plain_forces(np.array([truth.closing for truth in told]))
-    for k, truth in enumerate(told):
+    forces = plain_forces(np.array([truth.closing for truth in grasps]))
+    for k, truth in enumerate(grasps):
         if truth.center is not None:
             forces[k] += contrast * table.signal(np.array([truth.center]), np.array([truth.radius]))[0]
     return forces
@@ -95,25 +95,25 @@ def made_forces(told: tuple[Truth, ...], table: LumpResponse, contrast: float = 
 
 def made_samples(count: int, table: LumpResponse, *, noise: float = NOISE, seed: int = 1) -> JudgedSamples:
     """Samples to be judged, without a store."""
-    told = truths(count, seed)
-    return JudgedSamples(told, made_forces(told, table), np.ones(count), None, plain_grasp(), "taxel_force", noise)  # type: ignore[arg-type]
+    grasps = truths(count, seed)
+    return JudgedSamples(grasps, made_forces(grasps, table), np.ones(count), None, plain_grasp(), "taxel_force", noise)  # type: ignore[arg-type]
 
 
 def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLayout = LAYOUT, size: np.ndarray = SIZE) -> str:
     """The folder of a result of plain tissue."""
     forces = plain_forces(closings)
     many = len(closings) > 1
-    told = {"displacement": Quantity(float(closings[-1]), "m", "")}
+    quantities = {"displacement": Quantity(float(closings[-1]), "m", "")}
     if many:
-        told["displacement_history"] = Quantity(closings.tolist(), "m", "")
+        quantities["displacement_history"] = Quantity(closings.tolist(), "m", "")
     for jaw, side in enumerate(("upper", "lower")):
         own = np.resize(forces[:, jaw], (len(closings), layout.rows, layout.columns))
-        told[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
+        quantities[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
         if many:
-            told[f"taxel_force_{side}_history"] = Quantity(own.tolist(), "N", "")
+            quantities[f"taxel_force_{side}_history"] = Quantity(own.tolist(), "N", "")
     scene = grasp_scene(size, layout, width=40e-3, depth=40e-3)
     steps = tuple(StepRecord(k + 1, 3, 0.0, {"displacement": float(c)}) for k, c in enumerate(closings))
-    result = Result("grasp", Status.CONVERGED, "made up", told, steps=steps, units={"displacement": "m"}, scene=scene)
+    result = Result("grasp", Status.CONVERGED, "made up", quantities, steps=steps, units={"displacement": "m"}, scene=scene)
     write_result(result, folder, case_id="0" * 16, provenance={})
     return str(folder)
 
@@ -134,18 +134,18 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
     place = folder / "made.zarr"
     with opened_run(load_sweep(path), place, resume=False, accept_changes=False):
         pass
-    store, told = Store.open(place, writing=True), truths(40)
+    store, grasps = Store.open(place, writing=True), truths(40)
     if not done:
         return place
-    forces = made_forces(told, table)
-    there = np.array([truth.present for truth in told])
+    forces = made_forces(grasps, table)
+    there = np.array([truth.present for truth in grasps])
     values = {
-        "closing": [truth.closing for truth in told],
+        "closing": [truth.closing for truth in grasps],
         "inclusion_count": there.astype(int),
         "inclusion_kind": SPHERE * there[:, None],
-        "inclusion_center": [[truth.center or [np.nan] * 3] for truth in told],
-        "inclusion_radius": [[truth.radius or np.nan] for truth in told],
-        "inclusion_contrast": [[truth.contrast or np.nan] for truth in told],
+        "inclusion_center": [[truth.center or [np.nan] * 3] for truth in grasps],
+        "inclusion_radius": [[truth.radius or np.nan] for truth in grasps],
+        "inclusion_contrast": [[truth.contrast or np.nan] for truth in grasps],
         "time_s": np.ones((40, 1)),
         "taxel_force": forces[:, None],
         "split": np.where(np.arange(40) < 30, 0, 2),

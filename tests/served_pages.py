@@ -69,7 +69,7 @@ class Served:
 
 @contextmanager
 def served(*arguments: str, **options: object) -> Iterator[Served]:
-    """The command in a process of its own, forked from one that has loaded it, once it has told its address."""
+    """The command in a process of its own, forked from one that has loaded it, once it has printed its address."""
     command = [*forked_command("-W", "error"), "show", *arguments, "--web", "--no-browser"]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
     with subprocess.Popen(command, text=True, **streams) as process:  # type: ignore[call-overload]

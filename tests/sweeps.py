@@ -109,7 +109,7 @@ def assert_same(one: Path, other: Path) -> None:
 def main() -> None:
     """``python sweeps.py FILE STORE``: for every line that it reads, a fresh process that goes on with a store, folding often.
 
-    Each tells its number and then whether it begins; the last line is the exit code of the last.
+    Each reports its number and then whether it begins; the last line is the exit code of the last.
     """
     import os
     import sys

@@ -38,16 +38,16 @@ def pretended_run(experiment: Grasp, *, time_limit: float | None) -> Result:
     """A result with what the data set reads."""
     force, noise = felt(experiment), np.random.default_rng(experiment.readout.seed).normal(0, 1e-3, (2, 3, 3))  # type: ignore[union-attr]
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}
-    told = {"readout_time": Quantity([1.0], "s", "")}
+    quantities = {"readout_time": Quantity([1.0], "s", "")}
     for jaw, side in enumerate(("upper", "lower")):
-        told[f"taxel_force_{side}"] = Quantity(force[jaw].tolist(), "N", "")
-        told[f"read_force_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "N", "")
-        told[f"voltage_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "V", "")
-        told |= {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside")}
+        quantities[f"taxel_force_{side}"] = Quantity(force[jaw].tolist(), "N", "")
+        quantities[f"read_force_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "N", "")
+        quantities[f"voltage_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "V", "")
+        quantities |= {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside")}
     for name, unit in (("max_penetration", "m"), ("min_volume_ratio", "1"), ("unstable_volume_fraction", "1")):
-        told[name] = Quantity(0.0, unit, "")
+        quantities[name] = Quantity(0.0, unit, "")
     step = StepRecord(0, 1, 0.0, {"time": 1.0, "displacement": 1e-3, "reaction_force": 1.0})
-    return Result("grasp", Status.CONVERGED, "", told, steps=(step,), units=units)
+    return Result("grasp", Status.CONVERGED, "", quantities, steps=(step,), units=units)
 
 
 @pytest.fixture(scope="module")
@@ -77,25 +77,25 @@ def errors_of(store: Path) -> dict[str, float]:
 
 
 def test_lumps_are_found_better_than_by_guessing(grasps: Path) -> None:
-    told = errors_of(grasps)
-    assert told["test_samples"] >= 10
-    assert told["lateral_error_mm"] < 0.6 * told["trivial_lateral_error_mm"]  # forces that follow the lump tell where it is
-    assert told["error_mm"] < 0.7 * told["trivial_error_mm"]
+    errors = errors_of(grasps)
+    assert errors["test_samples"] >= 10
+    assert errors["lateral_error_mm"] < 0.6 * errors["trivial_lateral_error_mm"]  # forces that follow the lump show where it is
+    assert errors["error_mm"] < 0.7 * errors["trivial_error_mm"]
 
 
-def test_forces_of_other_lumps_tell_nothing(grasps: Path) -> None:
+def test_forces_of_other_lumps_show_nothing(grasps: Path) -> None:
     """The twin: with the readings dealt anew among the samples, nothing can be learned."""
     store = Store.open(grasps, writing=True)
     kept = store.read("read_force")
     store.group["read_force"][...] = np.random.default_rng(1).permutation(kept)
     try:
-        told = errors_of(grasps)
+        errors = errors_of(grasps)
     finally:
         store.group["read_force"][...] = kept
-    assert told["error_mm"] > 0.9 * told["trivial_error_mm"]
+    assert errors["error_mm"] > 0.9 * errors["trivial_error_mm"]
 
 
-def test_too_few_samples_are_told(grasps: Path, tmp_path: Path) -> None:
+def test_too_few_samples_are_reported(grasps: Path, tmp_path: Path) -> None:
     missing = run_example(tmp_path)
     assert missing.returncode == 5
     assert "holds no zarr.json" in missing.stderr

@@ -18,7 +18,7 @@ README = (ROOT / "README.md").read_text()
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", README, re.M | re.S)
 FILES = iter(re.findall(r"Save this as\s+`(\w+\.yaml)`", README))
 NAMES = [next(FILES) if language == "yaml" else "" for language, _ in BLOCKS]
-"""Under which name the text tells to save each case."""
+"""Under which name the text says to save each case."""
 FIRST = 1
 """The block that starts the installed command itself; the others fork it from a process that has loaded it."""
 

@@ -19,9 +19,17 @@ MOST_POSITIONAL, MOST_METHODS = 5, 10
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 ENGINE = tuple(f"tactsim/{room}/" for room in ("analytic", "contact", "fem", "identification", "materials", "mesh", "sensors"))
-HOUSEHOLD = {"told", "_told", "WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push"}
-HOUSEHOLD |= {"Stretch", "Answer", "Pace", "pace", "_pace", "carried", "_carried", "resumed"}
-"""Names that say nothing in the rooms of the engine and in mechanics, where the field has a word."""
+HOUSEHOLD = {"found", "_found", "told", "_told", "said"}
+"""Names that say nothing: a value goes by what it is."""
+HOUSEHOLD_IN_ENGINE = {"WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push", "resumed", "Stretch"}
+HOUSEHOLD_IN_ENGINE |= {"Answer", "Pace", "pace", "_pace", "carried", "_carried"}
+"""The same in the rooms of the engine and in mechanics, where the field has a word."""
+KEYS = {
+    "tactsim/dataset/ranking/measures.py: found",
+    "tactsim/experiments/dma/scene.py: told",
+    "tactsim/experiments/dma/report.py: told",
+}
+"""Keys of files, which stay."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
     "tactsim/mechanics/posed_contact.py:PosedContact": "one contact with its history; each method is one step of its life",
@@ -33,7 +41,7 @@ LARGE_CLASSES = {
 """Classes that may have more public methods, and why."""
 
 
-UNTOLD = tuple(f"tactsim/{room}/" for room in ("cli", "dataset", "live", "validation"))
+SILENT = ("tactsim/live/",)
 """Rooms whose functions need not say yet what they raise."""
 
 
@@ -71,11 +79,13 @@ def below(node: ast.AST, prefix: str, *, public: bool = True, nested: bool = Fal
 
 @cache
 def definitions() -> tuple[Definition, ...]:
-    return tuple(found for path in modules() for found in below(tree(path), f"{path.relative_to(ROOT).as_posix()}:"))
+    return tuple(definition for path in modules() for definition in below(tree(path), f"{path.relative_to(ROOT).as_posix()}:"))
 
 
 def functions(*, public: bool = False) -> list[Definition]:
-    return [found for found in definitions() if isinstance(found.node, FUNCTIONS) and (found.public or not public)]
+    return [
+        definition for definition in definitions() if isinstance(definition.node, FUNCTIONS) and (definition.public or not public)
+    ]
 
 
 def own_nodes(function: ast.AST) -> Iterator[ast.AST]:
@@ -92,10 +102,10 @@ def length(function: Function) -> int:
     return body[-1].end_lineno - body[0].lineno + 1 if body else 0
 
 
-def positional(found: Definition) -> list[ast.arg]:
-    arguments = [*found.node.args.posonlyargs, *found.node.args.args]
-    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in found.node.decorator_list)
-    return arguments[1:] if found.method and not static else arguments
+def positional(definition: Definition) -> list[ast.arg]:
+    arguments = [*definition.node.args.posonlyargs, *definition.node.args.args]
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in definition.node.decorator_list)
+    return arguments[1:] if definition.method and not static else arguments
 
 
 def annotations(function: Function) -> list[tuple[str, str]]:
@@ -108,8 +118,8 @@ def compiled(function: Function) -> bool:
     return any("njit" in ast.unparse(decorator) for decorator in function.decorator_list)
 
 
-def says_raises(found: Definition) -> bool:
-    return "Raises" in (ast.get_docstring(found.node) or "")
+def says_raises(definition: Definition) -> bool:
+    return "Raises" in (ast.get_docstring(definition.node) or "")
 
 
 def raises(function: Function) -> bool:
@@ -155,13 +165,13 @@ def untyped_arguments() -> list[str]:
 
 
 def large_classes() -> list[str]:
-    found = []
+    large = []
     for definition in definitions():
         if isinstance(definition.node, ast.ClassDef):
             methods = [n for n in definition.node.body if isinstance(n, FUNCTIONS) and not n.name.startswith("_")]
             if len(methods) > MOST_METHODS and definition.place not in LARGE_CLASSES:
-                found.append(f"{definition.place}: {len(methods)} public methods")
-    return found
+                large.append(f"{definition.place}: {len(methods)} public methods")
+    return large
 
 
 def undocumented() -> list[str]:
@@ -172,7 +182,7 @@ def undocumented() -> list[str]:
 def silent_about_errors() -> list[str]:
     """Public functions that raise and have no section that says what."""
     silent = [f.place for f in functions(public=True) if raises(f.node) and not says_raises(f)]
-    return [place for place in silent if not place.startswith(UNTOLD)]
+    return [place for place in silent if not place.startswith(SILENT)]
 
 
 def empty_names() -> list[str]:
@@ -182,14 +192,17 @@ def empty_names() -> list[str]:
 
 
 def household_names() -> list[str]:
-    """Functions, arguments and variables of the engine and of mechanics by a household word."""
-    found = set()
+    """Functions, arguments and variables by a household word."""
+    broken = set()
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
-        for node in ast.walk(tree(path)) if place.startswith((*ENGINE, "tactsim/mechanics/")) else ():
-            names = [getattr(node, field, None) for field in ("name", "id", "attr", "arg")]
-            found |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
-    return sorted(found)
+        if place.startswith(("tactsim/live/", "tactsim/case/")):
+            continue
+        words = HOUSEHOLD | (HOUSEHOLD_IN_ENGINE if place.startswith((*ENGINE, "tactsim/mechanics/")) else set())
+        for node in ast.walk(tree(path)):
+            names = (getattr(node, field, None) for field in ("name", "id", "attr", "arg"))
+            broken |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in words}
+    return sorted(broken - KEYS)
 
 
 def array_types() -> list[str]:
@@ -248,6 +261,7 @@ BROKEN = {
     large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
+    household_names: "found = 1",
     printing: "print(1)",
     machine_paths: "PLACE = '" + "/home/" + "someone/case.yaml'",
 }
@@ -276,7 +290,7 @@ def cycles(imports: dict[str, set[str]]) -> list[list[str]]:
     order: dict[str, int] = {}
     lowest: dict[str, int] = {}
     stack: list[str] = []
-    found: list[list[str]] = []
+    groups: list[list[str]] = []
 
     def visit(module: str) -> None:
         order[module] = lowest[module] = len(order)
@@ -291,12 +305,12 @@ def cycles(imports: dict[str, set[str]]) -> list[list[str]]:
             group = stack[stack.index(module) :]
             del stack[stack.index(module) :]
             if len(group) > 1:
-                found.append(sorted(group))
+                groups.append(sorted(group))
 
     for module in sorted(imports):
         if module not in order:
             visit(module)
-    return found
+    return groups
 
 
 def test_no_two_modules_import_each_other_not_even_for_types():

@@ -112,8 +112,8 @@ class RateSum:
     def roots(self) -> tuple[Array, Array]:
         """Reciprocals in s of the roots of f, and 1 / f' there, in increasing order of the root.
 
-        A root lies between each two neighbouring poles and, for c > 0, one above the last. Each is found as its offset from the
-        nearer pole, so that all differences of rates keep their digits (Li 1993, LAPACK Working Note 89).
+        A root lies between each two neighbouring poles and, for c > 0, one above the last. Each is computed as its offset from
+        the nearer pole, so that all differences of rates keep their digits (Li 1993, LAPACK Working Note 89).
         """
         weights, times = self.weights[::-1], self.times[::-1]
         differences = rate_differences(times)
@@ -121,11 +121,11 @@ class RateSum:
             rates = 1 / times
             differences = np.block([[np.zeros((1, 1)), -rates[None]], [rates[:, None], differences]])
             weights, times = np.append(self.weight_at_zero, weights), np.append(np.inf, times)
-        found = [self._between(k, differences, weights) for k in range(len(times) - 1)]
+        roots = [self._between(k, differences, weights) for k in range(len(times) - 1)]
         if self.constant and len(times):
-            found.append((len(times) - 1, self._above_last(differences[:, -1], weights)))
-        anchors = np.array([anchor for anchor, _ in found], dtype=int)
-        offsets = np.array([offset for _, offset in found])
+            roots.append((len(times) - 1, self._above_last(differences[:, -1], weights)))
+        anchors = np.array([anchor for anchor, _ in roots], dtype=int)
+        offsets = np.array([offset for _, offset in roots])
         pole_to_root = differences[:, anchors] - offsets
         root_to_root = pole_to_root[anchors] + offsets[:, None]
         return 1 / (1 / times[anchors] + offsets), self._residues(np.abs(pole_to_root), np.abs(root_to_root), weights.sum())
@@ -139,8 +139,8 @@ class RateSum:
 
         Source: Gu & Eisenstat 1994, doi:10.1137/S089547989223924X, whose weights of given roots these are.
         """
-        own = np.eye(len(root_to_root), dtype=bool)
-        ratios = pole_to_root[: len(own)] / np.where(own, 1.0, root_to_root)
+        diagonal = np.eye(len(root_to_root), dtype=bool)
+        ratios = pole_to_root[: len(diagonal)] / np.where(diagonal, 1.0, root_to_root)
         last = 1 / self.constant if self.constant else pole_to_root[-1] / total
         return ratios.prod(axis=0) * last
 

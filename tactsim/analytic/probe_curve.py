@@ -1,4 +1,4 @@
-"""Elastic curve of chapter 5's probe in its default geometry, found once by finite elements."""
+"""Elastic curve of chapter 5's probe in its default geometry, computed once by finite elements."""
 
 from __future__ import annotations
 

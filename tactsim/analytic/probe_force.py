@@ -43,8 +43,8 @@ class ProbeCurve:
             raise InvalidQuantity(
                 f"depths of {depth.min():g} m to {depth.max():g} m; the curve holds from 0 to {self.depth[-1]:g} m"
             )
-        found = self._interpolated(depth)
-        return found[:, 0], found[:, 1], found[:, 2:]
+        columns = self._interpolated(depth)
+        return columns[:, 0], columns[:, 1], columns[:, 2:]
 
 
 @dataclass(frozen=True, eq=False)

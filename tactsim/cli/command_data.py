@@ -45,7 +45,7 @@ examples:
   tactsim data confusion classes.zarr --reference results/plain --noise '0.63 mN' --out confusion
 """
 MOST_FINDINGS, MOST_NOTES = 100, 10
-"""Lines that are told; the rest of the findings are counted."""
+"""Lines that are printed; the rest of the findings are counted."""
 REPORT = ("report.json", "report.md")
 RANKING, CONFUSION = "ranking", "confusion"
 
@@ -147,8 +147,8 @@ def _confusion(arguments: argparse.Namespace) -> int:
         raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
     folder = arguments.out or Path(CONFUSION)
     _refuse_place(folder)
-    told = [one for one in offered_estimators().values() if one.tells_classes]
-    estimator, given = told[0], _noise(arguments)
+    classifying = [one for one in offered_estimators().values() if one.gives_classes]
+    estimator, given = classifying[0], _noise(arguments)
     noise = ROUNDING_NOISE if given is None else given
     split, seed = arguments.split, arguments.seed
     table, others = store_confusion(arguments.store, _references(arguments)[0], estimator, split=split, noise=noise, seed=seed)
@@ -180,10 +180,10 @@ def _write(folder: Path, content: Mapping[str, Any], text: str, figures: Mapping
 
     with naming(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    record, own = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), OwnFiles(folder)
-    own.refuse_foreign(*REPORT, *figures)
+    record, files = (json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), OwnFiles(folder)
+    files.refuse_foreign(*REPORT, *figures)
     for name, written in {**dict(zip(REPORT, (record, text.encode()), strict=True)), **figures}.items():
-        own.replace(name, written)
+        files.replace(name, written)
 
 
 def _refuse_place(folder: Path) -> None:
@@ -206,8 +206,8 @@ def _refuse_file(path: Path) -> None:
     try:
         LearnedEstimator.checked(path)
     except TactsimError as error:
-        told = f"{one_line(path)} exists and is no estimator that tactsim wrote; choose another with --out ({error})"
-        raise StorageError(told) from None
+        refusal = f"{one_line(path)} exists and is no estimator that tactsim wrote; choose another with --out ({error})"
+        raise StorageError(refusal) from None
 
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:

@@ -72,13 +72,13 @@ def _list() -> int:
 def _report(arguments: argparse.Namespace) -> int:
     from tactsim.materials.report import material_report
 
-    found = _materials(arguments.material)
-    console.out("\n\n".join(material_report(name, material) for name, material in found.items()))
+    materials = _materials(arguments.material)
+    console.out("\n\n".join(material_report(name, material) for name, material in materials.items()))
     if arguments.save is not None:
         from tactsim.cli.figures.material_curves import material_figure, png
 
-        for name, material in found.items():
-            place = arguments.save if len(found) == 1 else _numbered(arguments.save, name)
+        for name, material in materials.items():
+            place = arguments.save if len(materials) == 1 else _numbered(arguments.save, name)
             _save(png(material_figure(material, name)), place)
     return 0
 
@@ -134,10 +134,10 @@ def _materials(name: str) -> dict[str, Material]:
     looks_like_a_file = Path(name).suffix in (".yaml", ".yml") or Path(name).exists()
     if name in LIBRARY or not looks_like_a_file:
         return {name: named_material(name).material}
-    found = dict(_inside(load_case(name).experiment, ()))
-    if not found:
+    materials = dict(_inside(load_case(name).experiment, ()))
+    if not materials:
         raise InputError(f"{name}: the case has no material")
-    return found
+    return materials
 
 
 def _inside(value: object, path: tuple[str, ...]) -> list[tuple[str, Material]]:

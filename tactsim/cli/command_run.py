@@ -73,12 +73,12 @@ def run(arguments: argparse.Namespace) -> int:
         document, place = read_document(arguments.case, arguments.set)
         with collected_warnings() as read:
             case = validated_case(document, place)
-            told = check_inputs(case, document, place)
+            listed = check_inputs(case, document, place)
         directory = arguments.out or Path("results") / arguments.case.stem
         with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
-            with collected_warnings() as said:
+            with collected_warnings() as raised:
                 result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
-            result = replace(result, warnings=(*result.warnings, *told, *read.lines(), *said.lines()))
+            result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
 

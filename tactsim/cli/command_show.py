@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.result is None:
         raise InputError(
             "RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE; "
-            "tactsim show --help tells more"
+            "tactsim show --help says more"
         )
     if (arguments.result / "zarr.json").is_file():
         return _show_data_set(arguments)

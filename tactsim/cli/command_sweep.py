@@ -156,13 +156,13 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
         return lambda tally: None
     last = -PROGRESS_SECONDS
 
-    def told(tally: Tally) -> None:
+    def report(tally: Tally) -> None:
         nonlocal last
         if time.monotonic() - last >= PROGRESS_SECONDS:
             console.note(tally.line())
             last = time.monotonic()
 
-    return told
+    return report
 
 
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:

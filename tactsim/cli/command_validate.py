@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 NAME = "validate"
 SUMMARY = "compare with the tables of the thesis"
 DESCRIPTION = """\
-Computes every number of the thesis that its tables (cases/thesis/*.yaml) record, and tells for
+Computes every number of the thesis that its tables (cases/thesis/*.yaml) record, and states for
 each row whether it is reproduced, reproduced after an erratum, outside by a factor, a finding
 above or below a limit, or an assumption. A known deviation does not fail; a row that leaves its
 recorded state, or is absent, does. Simulations are taken from a cache unless --fresh is given.

@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_environment(os.environ, Path())
         parsed = _parser().parse_args(arguments)
         debug = parsed.debug
-        with _told_warnings():
+        with _printed_warnings():
             return int(parsed.run(parsed))
     except SystemExit as end:  # argparse ends --help and --version this way
         return int(end.code or 0)
@@ -75,10 +75,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return StorageError.exit_code
     except OSError as error:
         what = f" {one_line(error.filename)}" if error.filename else ""
-        told = f"the system refused{what}: {error.strerror or one_line(error)}"
-        console.error(traceback.format_exc() if debug else told)
+        message = f"the system refused{what}: {error.strerror or one_line(error)}"
+        console.error(traceback.format_exc() if debug else message)
         return StorageError.exit_code
-    except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is told as such
+    except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is reported as such
         trace = traceback.format_exc() if debug else "run again with --debug for the details"
         console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it; {trace}")
         return TactsimError.exit_code
@@ -87,13 +87,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 @contextmanager
-def _told_warnings() -> Iterator[None]:
+def _printed_warnings() -> Iterator[None]:
     """A block whose warnings of libraries are printed when it ends, those that no result holds."""
-    with collected_warnings() as said:
+    with collected_warnings() as collected:
         try:
             yield
         finally:
-            for line in said.lines():
+            for line in collected.lines():
                 console.note(f"warning: {line}")
 
 

@@ -21,8 +21,8 @@ def result_report(result: Result, title: str = "") -> str:
         for name, q in result.quantities.items()
     ]
     lines += [f"  warning: {one_line(warning)}" for warning in result.warnings]
-    told = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
-    lines.append(f"  {', '.join(told)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
+    counted = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
+    lines.append(f"  {', '.join(counted)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
     return "\n".join(lines)
 
 
@@ -42,8 +42,8 @@ def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
 def _ending(result: Result) -> str:
     """Status and reason, once where the reason begins with the status."""
     reason = one_line(result.reason)
-    told = reason and not reason.startswith(str(result.status))
-    return f"{result.status}: {reason}" if told else reason or str(result.status)
+    adds = reason and not reason.startswith(str(result.status))
+    return f"{result.status}: {reason}" if adds else reason or str(result.status)
 
 
 def format_values(quantity: Quantity) -> str:

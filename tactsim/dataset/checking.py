@@ -85,11 +85,11 @@ def check(path: str | Path) -> Checked:
 
 def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterator[Finding]:
     """Arrays that are gone, cannot be read, or have other types, shapes or units than the sweep writes."""
-    own = {variable.name for variable in variables}
+    names = {variable.name for variable in variables}
     never = store.never_stored(variable.name for variable in variables)
     if never:
         yield Finding("form", (), earlier_words(never))
-    for name in sorted(store.faults.keys() & own):
+    for name in sorted(store.faults.keys() & names):
         yield Finding("form", (), f"{store.faults[name]}; or remove it and go on with --resume, which makes it anew")
     for variable in variables:
         if variable.name in store.faults or variable.name in never:
@@ -119,16 +119,16 @@ def _wording(store: Store, variables: Iterable[Variable], sweep: Sweep, same_cod
 
 def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]:
     """Attributes of the store that do not follow from its sweep."""
-    expected, found = attributes_of(sweep, layout), store.attributes
-    same_code = found["codes"][-1] == code_identity()
-    for name in sorted((expected.keys() | found.keys()) - set(MADE_LATER)):
+    expected, written = attributes_of(sweep, layout), store.attributes
+    same_code = written["codes"][-1] == code_identity()
+    for name in sorted((expected.keys() | written.keys()) - set(MADE_LATER)):
         if name == "description" and not same_code:
             continue
-        if found.get(name) != expected.get(name):
-            words = f"{name} is {one_line(found.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
+        if written.get(name) != expected.get(name):
+            words = f"{name} is {one_line(written.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
             yield Finding("attribute", (), f"{words}; bring back a copy of zarr.json")
     names = [variable.name for variable in layout.variables]
-    if store.keeps_all_chunks and sorted(found[ARRAYS]) != sorted(names):
+    if store.keeps_all_chunks and sorted(written[ARRAYS]) != sorted(names):
         yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
 
 
@@ -155,9 +155,9 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
         more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
         shown = ", ".join(one_line(name, 80) for name in foreign[:10])
         yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
-    own = OwnFiles(store.path)
-    for name in sorted(own.sums()):
-        if own.written(name) is None:
+    files = OwnFiles(store.path)
+    for name in sorted(files.sums()):
+        if files.written(name) is None:
             state = "is not what tactsim wrote" if (store.path / name).exists() else "is gone"
             yield Finding("file", (), f"{one_line(name, 80)} {state}; move away what stands there, --resume writes it anew")
 
@@ -209,74 +209,74 @@ def leaks(store: Store, status: Array) -> Iterator[Finding]:
     try:
         split, specimen, case = store.read("split"), store.read("specimen"), store.read("case_id")
     except StorageError:
-        return  # `value_findings` tells which chunk cannot be read
+        return  # `value_findings` names the chunk that cannot be read
     names = str(store.described["split"].attributes["flag_meanings"]).split()
     computed = np.flatnonzero(status != PENDING)
     unknown = computed[split[computed] >= len(names)]
     if unknown.size:
         yield Finding("damaged", tuple(unknown.tolist()), f"the split is none of {', '.join(names)}; {AGAIN}")
     for what, keys in (("specimen", specimen), ("case", case)):
-        own = computed if what == "specimen" else computed[case[computed] != ""]
-        _, inverse = np.unique(keys[own], return_inverse=True)
-        low, high = np.full(len(own), 10**6), np.full(len(own), -1)
-        np.minimum.at(low, inverse, split[own].astype(int))
-        np.maximum.at(high, inverse, split[own].astype(int))
-        leaking = own[low[inverse] != high[inverse]] if len(own) else own
+        kept = computed if what == "specimen" else computed[case[computed] != ""]
+        _, inverse = np.unique(keys[kept], return_inverse=True)
+        low, high = np.full(len(kept), 10**6), np.full(len(kept), -1)
+        np.minimum.at(low, inverse, split[kept].astype(int))
+        np.maximum.at(high, inverse, split[kept].astype(int))
+        leaking = kept[low[inverse] != high[inverse]] if len(kept) else kept
         if leaking.size:
             yield Finding("leakage", tuple(leaking.tolist()), f"a {what} is in two splits; do not train on this data set")
-        if what == "case" and len(own):
-            twice = own[np.bincount(inverse)[inverse] > 1]
+        if what == "case" and len(kept):
+            twice = kept[np.bincount(inverse)[inverse] > 1]
             if twice.size:
                 yield Finding("duplicate", tuple(twice.tolist()), "the same case more than once; leave out all but one")
 
 
 def value_findings(store: Store, layout: Layout, status: Array) -> list[Finding]:
     """Content that is gone, unreadable or changed, numbers that are not finite, readings that never change, equal samples."""
-    found = Faults()
+    faults = Faults()
     for read in computed_chunks(store, layout.variables, status):
         for name, reason in read.unreadable.items():
-            found.unreadable.append(Finding("damaged", tuple(read.numbers.tolist()), f"{name}: {reason}"))
+            faults.unreadable.append(Finding("damaged", tuple(read.numbers.tolist()), f"{name}: {reason}"))
         for name, lost in read.gone.items():
-            found.gone.setdefault(name, []).extend(lost.tolist())
-        found.changed += read.changed.tolist()
+            faults.gone.setdefault(name, []).extend(lost.tolist())
+        faults.changed += read.changed.tolist()
         if len(read.values) == len(layout.variables):
-            _look(read, layout, found, len(store.attributes["codes"]))
-    return _as_findings(found)
+            _look(read, layout, faults, len(store.attributes["codes"]))
+    return _as_findings(faults)
 
 
-def _look(read: ChunkRead, layout: Layout, found: Faults, codes: int) -> None:
+def _look(read: ChunkRead, layout: Layout, faults: Faults, codes: int) -> None:
     """Looks at the samples of a chunk that are done."""
     readings = [variable for variable in layout.variables if variable.role == "reading"]
-    found.uncoded += read.numbers[read.values["code"] >= codes].tolist()
+    faults.uncoded += read.numbers[read.values["code"] >= codes].tolist()
     for row in np.flatnonzero(read.values["status"] == DONE).tolist():
         number, sample = int(read.numbers[row]), {name: values[row] for name, values in read.values.items()}
         for variable in readings:
             values = sample[variable.name]
             if not (variable.optional or np.isfinite(values).all()):
-                found.infinite.setdefault(variable.name, []).append(number)
+                faults.infinite.setdefault(variable.name, []).append(number)
             if _may_not_rest(variable) and np.ptp(values) == 0:
-                found.constant.setdefault(variable.name, []).append(number)
+                faults.constant.setdefault(variable.name, []).append(number)
         key = b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)
-        found.equal += [number] if key in found.seen else []
-        found.seen.add(key)
+        faults.equal += [number] if key in faults.seen else []
+        faults.seen.add(key)
 
 
 def _may_not_rest(variable: Variable) -> bool:
     return not variable.prescribed and bool(variable.sizes) and int(np.prod(variable.sizes)) > 1
 
 
-def _as_findings(found: Faults) -> list[Finding]:
-    findings = [*found.unreadable]
-    findings += [Finding("gone", tuple(numbers), f"{name} is no longer there; {AGAIN}") for name, numbers in found.gone.items()]
-    if found.changed:
-        findings.append(Finding("checksum", tuple(found.changed), f"the content is not what was written; {AGAIN}"))
-    if found.uncoded:
-        findings.append(Finding("damaged", tuple(found.uncoded), f"code is no entry of the attribute codes; {AGAIN}"))
-    findings += [Finding("not finite", tuple(numbers), f"{name}; leave them out") for name, numbers in found.infinite.items()]
-    constant = found.constant.items()
+def _as_findings(faults: Faults) -> list[Finding]:
+    findings = [*faults.unreadable]
+    findings += [Finding("gone", tuple(numbers), f"{name} is no longer there; {AGAIN}") for name, numbers in faults.gone.items()]
+    if faults.changed:
+        findings.append(Finding("checksum", tuple(faults.changed), f"the content is not what was written; {AGAIN}"))
+    if faults.uncoded:
+        findings.append(Finding("damaged", tuple(faults.uncoded), f"code is no entry of the attribute codes; {AGAIN}"))
+    findings += [Finding("not finite", tuple(numbers), f"{name}; leave them out") for name, numbers in faults.infinite.items()]
+    constant = faults.constant.items()
     findings += [
         Finding("constant", tuple(numbers), f"{name} has one value throughout; leave them out") for name, numbers in constant
     ]
-    if found.equal:
-        findings.append(Finding("duplicate", tuple(found.equal), "the same readings as an earlier sample; leave them out"))
+    if faults.equal:
+        findings.append(Finding("duplicate", tuple(faults.equal), "the same readings as an earlier sample; leave them out"))
     return findings

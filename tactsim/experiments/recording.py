@@ -46,15 +46,15 @@ def _scalars(recorder: Recorder) -> list[Variable]:
 
 
 def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
-    found = result.quantities.get(variable.name)
-    if found is None or found.value is None:
-        if found is None and recorder.settings.quantities is not None:
+    quantity = result.quantities.get(variable.name)
+    if quantity is None or quantity.value is None:
+        if quantity is None and recorder.settings.quantities is not None:
             known = ", ".join(sorted(result.quantities)) or "none"
             raise CaseError(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
         return np.array(np.nan)
-    value = np.asarray(found.value, dtype=float)
-    if value.size != 1 or found.unit != variable.unit:
-        shape = f"{value.size} values in {found.unit}"
+    value = np.asarray(quantity.value, dtype=float)
+    if value.size != 1 or quantity.unit != variable.unit:
+        shape = f"{value.size} values in {quantity.unit}"
         raise CaseError(f"sweep.quantities.{variable.name}: {shape}; needed: one number in {variable.unit}")
     return value.reshape(())
 

@@ -134,8 +134,8 @@ def pressure_mass(body: Body) -> csr_matrix:
     """Mass matrix of the pressures over the shear modulus, in m^3/Pa, shape (n_corner, n_corner)."""
     values, space = body.points.pressure_values, body.space
     blocks = np.einsum("e,eq,qv,qw->evw", 1 / _moduli(body), body.points.weights, values, values)
-    own = space.pressures
-    rows, columns = np.broadcast_arrays(own[:, :, None], own[:, None, :])
+    pressures = space.pressures
+    rows, columns = np.broadcast_arrays(pressures[:, :, None], pressures[:, None, :])
     return csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(len(space.pressure_corners),) * 2)
 
 

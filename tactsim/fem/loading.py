@@ -112,16 +112,16 @@ class PathFollower(Generic[State]):
 
     def _located(self, event: Event[State], before: State, after: State) -> State:
         """The state at the event, which lies between the two."""
-        found = {before.load: event.value(before), after.load: event.value(after)}
+        values = {before.load: event.value(before), after.load: event.value(after)}
         states = {after.load: after}
 
         def value(load: float) -> float:
-            if load not in found:
+            if load not in values:
                 share = (load - before.load) / (after.load - before.load)
                 guess = (1 - share) * before.unknowns + share * after.unknowns
                 states[load] = self._advance(before, load, guess)
-                found[load] = event.value(states[load])
-            return found[load]
+                values[load] = event.value(states[load])
+            return values[load]
 
         root = scipy.optimize.brentq(value, before.load, after.load, xtol=event.tolerance)
         value(root)

@@ -25,7 +25,7 @@ def compiled_form(material: Material) -> Literal["invariants", "small_strain"] |
 
 
 def interpreted_warnings(materials: dict[str, Material]) -> list[str]:
-    """What a run must tell of materials, by their names in a case, that have no compiled form."""
+    """What a run must report of materials, by their names in a case, that have no compiled form."""
     slow = {material.kind: name for name, material in materials.items() if compiled_form(material) is None}
     return [
         f"{name}: material {kind} has no compiled form: assembly is interpreted, several times slower"

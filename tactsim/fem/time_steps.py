@@ -72,12 +72,7 @@ class TimeMarcher(Generic[State]):
     control : step lengths
     """
 
-    def __init__(
-        self,
-        advance: Callable[[State, float, Array], State],
-        error: Callable[[State], float],
-        control: TimeControl,
-    ):
+    def __init__(self, advance: Callable[[State, float, Array], State], error: Callable[[State], float], control: TimeControl):
         self._advance, self._error, self._control = advance, error, control
         self.rejected = 0
 

@@ -45,12 +45,12 @@ class TwoLevel:
         """
         dim, count = self._dim, block.shape[0] // self._dim
         rows = np.repeat(np.arange(count), np.diff(block.indptr))
-        own = block.data[np.flatnonzero(block.indices == rows)]
+        diagonal = block.data[np.flatnonzero(block.indices == rows)]
         try:
-            self._inverses = np.ascontiguousarray(np.linalg.inv(own))
+            self._inverses = np.ascontiguousarray(np.linalg.inv(diagonal))
         except np.linalg.LinAlgError as error:
             raise ConvergenceError("the tangent of a node is singular; is the material stable?") from error
-        stiff = np.trace(own, axis1=1, axis2=2) > STIFF * dim * self._diagonal
+        stiff = np.trace(diagonal, axis1=1, axis2=2) > STIFF * dim * self._diagonal
         graph = csr_matrix((np.ones(len(block.indices)), block.indices, block.indptr), shape=(count, count))
         stiff = graph @ stiff.astype(float) > 0
         self._block = block
@@ -124,8 +124,8 @@ def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:
     dim = free.shape[1]
     columns = np.zeros((nodes.shape[1], dim), bool)
     rows = np.repeat(np.arange(nodes.shape[0]), np.diff(nodes.indptr))
-    own = nodes.data == 1.0
-    columns[nodes.indices[own]] = free[rows[own]]
+    whole = nodes.data == 1.0
+    columns[nodes.indices[whole]] = free[rows[whole]]
     data = np.zeros((nodes.nnz, dim, dim))
     for i in range(dim):
         data[:, i, i] = nodes.data * free[rows, i] * columns[nodes.indices, i]

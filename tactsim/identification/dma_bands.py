@@ -47,13 +47,7 @@ class ComplianceBand:
 
 
 def least_squares_band(
-    fit: DmaFit,
-    frequencies: Array,
-    *,
-    confidence: float = 0.95,
-    simultaneous: bool = True,
-    replicates: int = 400,
-    seed: int = 1,
+    fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
     r"""Band about a least-squares fit, from a parametric bootstrap of the spectrum.
 
@@ -82,18 +76,12 @@ def least_squares_band(
 
 
 def genetic_band(
-    fit: DmaFit,
-    frequencies: Array,
-    *,
-    confidence: float = 0.95,
-    simultaneous: bool = True,
-    replicates: int = 400,
-    seed: int = 1,
+    fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
     r"""Band about a fit of eq. 4.5.2 by search: the noise's part as in ``least_squares_band``, and the search's on top.
 
     What the search approaches, the least of eq. 4.5.2 in its squared form, is the unweighted non-negative spectrum, which is
-    found exactly; its bootstrap gives c s. How far the search stayed from it is known at each frequency, so that the band is
+    computed exactly; its bootstrap gives c s. How far the search stayed from it is known at each frequency, so that the band is
 
     .. math:: \hat D \, e^{\pm (c s + |\ln \hat D - \ln D_{min}|)}
 
@@ -144,10 +132,10 @@ def _deviations(data: DmaData, frequencies: Array, replicates: int, seed: int, *
     drawn = refitted(data.parts.ravel())
     exact, level = basis @ drawn, level_of_noise(data.parts.ravel(), drawn)
     generator = np.random.default_rng(seed)
-    found = np.empty((replicates, len(curves)))
-    for row in found:
+    deviations = np.empty((replicates, len(curves)))
+    for row in deviations:
         compliance = exact * (1 + noise * generator.standard_normal(exact.size))
         spectrum = refitted(np.maximum(compliance, SMALLEST_RATIO * exact))
         row[:] = np.log(np.maximum(curves @ spectrum / (curves @ drawn), SMALLEST_RATIO))
         row /= level_of_noise(compliance, spectrum) / level
-    return found
+    return deviations

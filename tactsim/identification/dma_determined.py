@@ -1,4 +1,4 @@
-"""What data tell of the constants of the generalized Kelvin model, and what they do not."""
+"""What data determine of the constants of the generalized Kelvin model, and what they do not."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tactsim.identification.dma_objective import part_sensitivities
 from tactsim.identification.dma_spectrum import relative_noise
 
 DETERMINED = 0.5
-"""Assumption: the data tell a constant, or a product of powers of them, if the standard error of its logarithm is below this."""
+"""Assumption: data determine a constant, or a product of powers of them, if the standard error of its logarithm is below this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +48,13 @@ class Determination:
         hidden = [name for name, yes in zip(self.names, self.determined, strict=True) if not yes]
         return (
             f"{self.data_count} numbers with a relative noise of {self.noise:.2g} determine {self.determined_combinations} "
-            f"combinations of the {len(self.names)} constants; they tell {', '.join(determined) or 'none'} alone, "
-            f"and do not tell {', '.join(hidden) or 'none'}: trust the curves, not the constants"
+            f"combinations of the {len(self.names)} constants; they determine {', '.join(determined) or 'none'} alone, "
+            f"and do not determine {', '.join(hidden) or 'none'}: trust the curves, not the constants"
         )
 
 
 def determination(fit: DmaFit) -> Determination:
-    r"""What the data of a fit tell of its constants.
+    r"""What the data of a fit determine of its constants.
 
     With the sensitivity :math:`S_{kj} = \frac{1}{\sigma_k D_k} \frac{\partial D_k}{\partial \ln p_j}`, the standard error of a
     combination along a singular vector of S is the inverse of its singular value, and that of each log constant follows from the

@@ -41,7 +41,7 @@ def fit_genetic(data: DmaData, units: int = 8, *, form: str = "squared", setting
 
     Tournament selection, simulated binary crossover, polynomial mutation and survival of the fittest, with the parameters of
     pymoo, on the log constants between ``log_bounds``. It stops after the given generations: a longer search finds a lower
-    objective, nothing tells that the lowest is reached.
+    objective, nothing shows that the lowest is reached.
 
     Raises
     ------
@@ -96,11 +96,11 @@ def _searched(data: DmaData, units: int, form: str, settings: GeneticSettings) -
             history.append(size * float(algorithm.opt[0].F[0]))
 
     lower, upper = log_bounds(data, units)
-    found = minimize(
+    minimum = minimize(
         Identification(n_var=2 * units + 1, n_obj=1, xl=lower, xu=upper),
         GA(pop_size=settings.population, eliminate_duplicates=True),
         ("n_gen", settings.generations),
         seed=settings.seed,
         callback=Record(),
     )
-    return np.asarray(found.X), tuple(history)
+    return np.asarray(minimum.X), tuple(history)

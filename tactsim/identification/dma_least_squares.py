@@ -40,7 +40,7 @@ MOST_EVALUATIONS, MOST_ROUNDS, TOLERANCE = 2000, 8, 1e-13
 
 @dataclass(frozen=True, eq=False)
 class DmaFit:
-    """Constants with how they were found."""
+    """Constants with how they were identified."""
 
     method: str
     constants: KelvinConstants
@@ -166,12 +166,12 @@ def _refined(start: Array, data: DmaData, deviation: Array) -> tuple[Array, int]
         misfit = part_sensitivities(near(p), data.frequencies) / deviation[..., None]
         return np.concatenate([misfit.reshape(-1, p.size), np.eye(p.size) / PRIOR_DEVIATION])
 
-    found = scipy.optimize.least_squares(
+    fit = scipy.optimize.least_squares(
         errors, start, slopes, method="lm", xtol=TOLERANCE, ftol=TOLERANCE, gtol=TOLERANCE, max_nfev=MOST_EVALUATIONS
     )
-    if not np.isfinite(found.x).all():
+    if not np.isfinite(fit.x).all():
         raise ConvergenceError("refinement of the retardation times: the constants are not finite")
-    return found.x, int(found.nfev)
+    return fit.x, int(fit.nfev)
 
 
 def _sorted(logarithms: Array) -> KelvinConstants:

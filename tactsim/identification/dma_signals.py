@@ -219,10 +219,10 @@ def _refined_frequency(signals: DmaSignals) -> float:
 
     reach = 0.5 / np.ptp(signals.time)
     bounds = (max(signals.frequency - reach, signals.frequency / 2), signals.frequency + reach)
-    found = scipy.optimize.least_squares(
+    fit = scipy.optimize.least_squares(
         residuals, [signals.frequency], bounds=bounds, x_scale=reach, xtol=1e-14, ftol=1e-14, gtol=1e-14
     )
-    unexplained = 2 * found.cost / both.size
-    if not found.success or unexplained > MOST_UNEXPLAINED:
+    unexplained = 2 * fit.cost / both.size
+    if not fit.success or unexplained > MOST_UNEXPLAINED:
         raise ConvergenceError(f"no frequency near {signals.frequency:g} Hz fits the signals; give it within {reach:.2g} Hz")
-    return float(found.x[0])
+    return float(fit.x[0])

@@ -61,10 +61,10 @@ def nonnegative_spectrum(basis: Array, compliance: Array, deviation: Array) -> A
     weighted = basis / deviation[:, None]
     size = np.linalg.norm(weighted, axis=0)
     try:
-        found, _ = scipy.optimize.nnls(weighted / size, compliance / deviation, maxiter=MOST_ITERATIONS)
+        scaled, _ = scipy.optimize.nnls(weighted / size, compliance / deviation, maxiter=MOST_ITERATIONS)
     except RuntimeError as error:
         raise ConvergenceError(f"retardation spectrum: {error}") from None
-    return found / size
+    return scaled / size
 
 
 def relative_noise(data: DmaData) -> Array:

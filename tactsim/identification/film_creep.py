@@ -85,17 +85,17 @@ def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> Cree
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", scipy.optimize.OptimizeWarning)  # an infinite covariance, which is judged below
-            found, covariance = scipy.optimize.curve_fit(strain, test.time, test.strain, p0=start, maxfev=5000)
+            fitted, covariance = scipy.optimize.curve_fit(strain, test.time, test.strain, p0=start, maxfev=5000)
     except RuntimeError as error:
         raise ConvergenceError(f"the creep at {test.force:g} N could not be fitted: {error}") from None
     if not np.isfinite(covariance).all():
         raise ConvergenceError(f"the creep at {test.force:g} N does not determine E0, E1 and mu1; record longer")
     # mu1 = E1 / rate: its logarithm is a difference of two fitted ones.
     change = np.array([[1.0, 0, 0], [0, 1, 0], [0, 1, -1]])
-    values = np.exp(change @ found)
+    values = np.exp(change @ fitted)
     deviations = values * np.sqrt(np.diag(change @ covariance @ change.T))
     quantile = scipy.stats.t.ppf((1 + confidence) / 2, len(test.time) - 3)
-    return CreepFit(test.force, values, quantile * deviations, test.strain - strain(test.time, *found))
+    return CreepFit(test.force, values, quantile * deviations, test.strain - strain(test.time, *fitted))
 
 
 def coefficient_lines(fits: Sequence[CreepFit], *, confidence: float = 0.95) -> dict[str, CoefficientLine]:

@@ -35,7 +35,7 @@ LONGEST_CELL = 80
 class Table:
     """Header and data lines of a file with their numbers, without blanks and comments.
 
-    ``quotable`` is as of ``OutsideFile``, ``numeric`` tells whether any row holds numbers.
+    ``quotable`` is as of ``OutsideFile``, ``numeric`` states whether any row holds numbers.
     """
 
     name: str
@@ -91,11 +91,11 @@ class Table:
             raise InvalidQuantity(f"{place}: {SEPARATORS}")
         if len(cells) != len(columns):
             raise InvalidQuantity(f"{place}: {len(cells)} values in a row of {len(columns)} columns")
-        found = [_number(cell) for cell in cells]
-        for value, cell, name in zip(found, cells, columns, strict=True):
+        values = [_number(cell) for cell in cells]
+        for value, cell, name in zip(values, cells, columns, strict=True):
             if not math.isfinite(value):
                 raise InvalidQuantity(f"{place}: {name} is {self.quoted(cell)}; allowed: a finite number")
-        return found
+        return values
 
 
 def read_table(path: str | Path) -> Table:

@@ -87,7 +87,7 @@ def uniaxial_stress_as_printed(c10: float, c01: float, stretch: Array) -> Array:
 
 
 def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool = True) -> UniaxialFit:
-    r"""Least-squares fit of a form of ``FORMS`` to a curve; points at a stretch of exactly 1 tell nothing and are left out.
+    r"""Least-squares fit of a form of ``FORMS`` to a curve; points at a stretch of exactly 1 determine nothing and are left out.
 
     .. math:: \min_c \sum_k w_k^2 (P(\lambda_k; c) - P_k)^2, \quad w_k = 1 / \max(|P_k|, \epsilon \max_j |P_j|)
 

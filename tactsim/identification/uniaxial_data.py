@@ -89,19 +89,19 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
 
 def _column(table: Table, allowed: tuple[str, ...]) -> tuple[int, str, str]:
     """Position, name and unit text of the one column whose name is allowed."""
-    found = []
+    columns = []
     for position, cell in enumerate(table.header):
         for name in sorted(allowed, key=len, reverse=True):
             words = name.replace("_", "[ _]+")
             match = re.fullmatch(rf"(?i:{words})(?:[ _]*[(\[]?(?P<unit>[^()\[\]\s]+)[)\]]?)?", cell)
             if match:
-                found.append((position, name, match["unit"] or ""))
+                columns.append((position, name, match["unit"] or ""))
                 break
-    if len(found) != 1:
+    if len(columns) != 1:
         header = table.quoted_header(", ".join(table.header))
         needed = f"{', '.join(allowed)}, like 'strain [%], nominal stress [kPa]'"
         raise InvalidQuantity(f"{one_line(table.name)}: header {header} must have exactly one column of {needed}")
-    return found[0]
+    return columns[0]
 
 
 def _stress_factor(table: Table, name: str, unit: str) -> float:

@@ -218,7 +218,7 @@ class Estimator(CaseKind):
     package: ClassVar[str] = "tactsim.localization.estimators"
     needs_response: ClassVar[bool] = False
     """Whether it needs the fast forward model of the tissue."""
-    tells_classes: ClassVar[bool] = False
+    gives_classes: ClassVar[bool] = False
     """Whether it gives a probability for each class of what may be there."""
 
     @property

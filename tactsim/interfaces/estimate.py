@@ -39,7 +39,7 @@ class EstimatedInclusion:
 
     Attributes
     ----------
-    kind : "sphere", "tube", or "unknown" if the estimator does not tell
+    kind : "sphere", "tube", or "unknown" if the estimator does not say
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
     contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
@@ -63,22 +63,22 @@ class EstimatedInclusion:
             raise InvalidQuantity(f"an estimated radius {self.radius} m; allowed: finite and positive, or none")
         if self.covariance is None:
             return
-        found = np.asarray(self.covariance, dtype=float)
-        if found.shape != (len(PARAMETERS),) * 2 or not np.isfinite(found).all():
-            raise InvalidQuantity(f"a covariance of shape {found.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
+        covariance = np.asarray(self.covariance, dtype=float)
+        if covariance.shape != (len(PARAMETERS),) * 2 or not np.isfinite(covariance).all():
+            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
 
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """What an estimator found; no inclusions means that nothing is there.
+    """What an estimator located; no inclusions means that nothing is there.
 
     Attributes
     ----------
     present : whether anything is there
     inclusions : the strongest first; empty exactly if nothing is there
     reason : why, in words for a user
-    probability : that anything is there, from 0 to 1; None if the estimator does not tell
-    classes : probability of each class by its name, adding up to 1; None if the estimator does not tell classes apart
+    probability : that anything is there, from 0 to 1; None if the estimator does not say
+    classes : probability of each class by its name, adding up to 1; None if the estimator does not distinguish classes
     """
 
     present: bool

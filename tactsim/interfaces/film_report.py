@@ -15,7 +15,7 @@ class FilmReport:
     Attributes
     ----------
     constants : derived numbers of the film
-    readings : what the signals that were read tell of it, by force
+    readings : what the signals that were read show of it, by force
     coefficients : coefficients of its creep at each force by name; None if its kind has none
     """
 

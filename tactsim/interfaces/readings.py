@@ -159,22 +159,22 @@ def checked_readings(readings: Array, valid: Array | None = None) -> Array:
     InvalidQuantity
         If the shape is wrong, a valid taxel is not finite, or a jaw has no valid taxel; it names the taxel.
     """
-    found = np.asarray(readings, dtype=float)
-    if found.ndim != 3 or found.shape[0] != len(JAWS) or 0 in found.shape:
+    forces = np.asarray(readings, dtype=float)
+    if forces.ndim != 3 or forces.shape[0] != len(JAWS) or 0 in forces.shape:
         raise InvalidQuantity(
-            f"readings of shape {found.shape}; needed: (2, rows, columns), the upper jaw first, with at least one row and column"
+            f"readings of shape {forces.shape}; needed: (2, rows, columns), the upper jaw first, with at least one row and column"
         )
     if valid is None:
-        _check_finite(found)
-        return found
+        _check_finite(forces)
+        return forces
     usable = np.asarray(valid)
-    if usable.shape != found.shape or usable.dtype != bool:
+    if usable.shape != forces.shape or usable.dtype != bool:
         raise InvalidQuantity(
-            f"the mask of valid taxels is {usable.dtype} of shape {usable.shape}; needed: bool of shape {found.shape}, "
+            f"the mask of valid taxels is {usable.dtype} of shape {usable.shape}; needed: bool of shape {forces.shape}, "
             "True where a taxel can be trusted"
         )
-    _check_finite(np.where(usable, found, 0.0))
-    return np.stack([_filled(matrix, good, side) for matrix, good, side in zip(found, usable, JAWS, strict=True)])
+    _check_finite(np.where(usable, forces, 0.0))
+    return np.stack([_filled(matrix, good, side) for matrix, good, side in zip(forces, usable, JAWS, strict=True)])
 
 
 def _check_finite(readings: Array) -> None:
@@ -210,6 +210,6 @@ def _filled(matrix: Array, good: Array, side: str) -> Array:
                 given[here] += matrix[near]
             else:
                 system[here, number[near]] -= 1
-    found = matrix.copy()
-    found[~good] = np.linalg.solve(system, given)
-    return found
+    filled = matrix.copy()
+    filled[~good] = np.linalg.solve(system, given)
+    return filled

@@ -11,7 +11,6 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 from typing import ClassVar, Self, final
 
 from tactsim.deadline import check_time, time_limit
@@ -29,7 +28,7 @@ ACCEPTED_STEPS = "the accepted steps are kept, the run is incomplete"
 
 @dataclass(frozen=True)
 class Findings:
-    """What a run found, complete or not; fields as those of `Result`."""
+    """What a run computed, complete or not; fields as those of `Result`."""
 
     reason: str
     """Why a run that came to its end is what ``status`` says; not used if it ended before."""
@@ -68,11 +67,7 @@ class Course:
     @classmethod
     def computed(cls, findings: Findings) -> Self:
         """The course of a kind that computes everything at once."""
-        return cls(findings.steps, partial(_same, findings))
-
-
-def _same(findings: Findings) -> Findings:
-    return findings
+        return cls(findings.steps, lambda: findings)
 
 
 class Runnable(CaseKind):
@@ -87,7 +82,7 @@ class Runnable(CaseKind):
 
     @abstractmethod
     def begin(self) -> Course:
-        """What computes the steps and knows what they found; what is made before the first step, such as a mesh, is made here.
+        """What computes the steps and collects their results; what is made before the first step, such as a mesh, is made here.
 
         ::
 
@@ -136,7 +131,7 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
     InputError, Unfinished
         As `Runnable.begin`.
     OutOfMemory
-        If the memory does not suffice to begin, or to say what was found.
+        If the memory does not suffice to begin, or to report what was computed.
     """
     started = time.perf_counter()
     try:

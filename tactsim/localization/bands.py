@@ -39,9 +39,7 @@ def band_intensities(signals: Array, normalising: float, grey_levels: int = GREY
     Source: thesis, eq. .1.1 (there K = 256).
     """
     values = np.asarray(signals, dtype=float)
-    if not np.isfinite(values).all():
-        place = tuple(int(k) + 1 for k in np.argwhere(~np.isfinite(values))[0])
-        raise InvalidQuantity(f"the signal at {place}, counted from 1, is not finite; needed: finite signals")
+    _check_finite(values)
     if not (np.isfinite(normalising) and normalising > 0):
         raise InvalidQuantity(f"the normalising signal alpha is {normalising}; allowed: a finite number above 0")
     if isinstance(grey_levels, bool) or int(grey_levels) != grey_levels or grey_levels < 2:
@@ -126,10 +124,14 @@ def band_image(signals: Array, pixels: int, form: Form = "corrected") -> Array:
     values = np.asarray(signals, dtype=float)
     if values.ndim == 0 or values.size == 0:
         raise InvalidQuantity(f"signals of shape {values.shape}; needed: at least one signal along the last axis")
+    _check_finite(values)
+    return values @ band_weights(values.shape[-1], pixels, form).T
+
+
+def _check_finite(values: Array) -> None:
     if not np.isfinite(values).all():
         place = tuple(int(k) + 1 for k in np.argwhere(~np.isfinite(values))[0])
         raise InvalidQuantity(f"the signal at {place}, counted from 1, is not finite; needed: finite signals")
-    return values @ band_weights(values.shape[-1], pixels, form).T
 
 
 def check_count(what: str, count: int, least: int = 1) -> None:

@@ -123,10 +123,10 @@ def tube_candidates(
         z = np.tile(heights[level], int(inside.sum()))
         placed = [np.column_stack([np.repeat(points[inside], len(level), axis=0), z]) for points in (firsts, lasts)]
         parts.append((*placed, np.full(len(z), radius), signals))
-    begins, ends, sizes, found = (np.concatenate(part) for part in zip(*parts, strict=True))
+    begins, ends, sizes, responses = (np.concatenate(part) for part in zip(*parts, strict=True))
     if not len(sizes):
         raise InputError("no tube of the tabulated radii fits into the block; take smaller radii")
-    return Candidates("tube", begins, ends, sizes, found)
+    return Candidates("tube", begins, ends, sizes, responses)
 
 
 def _tabulated(response: TissueResponse, radii: Array) -> Array:

@@ -31,7 +31,7 @@ ROUNDS = 2
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Explanation:
     """How well a class of bodies explains a change.
 
     Attributes
@@ -62,7 +62,7 @@ class Change:
         """v over the prior's variance, in N^2."""
         return self.variance / self.contrast_spread**2
 
-    def single(self, candidates: Candidates) -> Found:
+    def single(self, candidates: Candidates) -> Explanation:
         """The evidence of single bodies: one of the candidates alone."""
         along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
         evidence = along**2 / stiff / (2 * self.variance) - np.log(stiff / self.ridge) / 2
@@ -70,9 +70,9 @@ class Change:
         weights = np.exp(evidence - total)
         numbers = np.arange(len(candidates))
         spreads = self.variance / stiff
-        return Found(self._whole(total - np.log(len(candidates))), (numbers,), weights, (along / stiff,), (spreads,))
+        return Explanation(self._whole(total - np.log(len(candidates))), (numbers,), weights, (along / stiff,), (spreads,))
 
-    def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Found:
+    def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Explanation:
         r"""Two of the fine candidates that do not overlap, by importance sampling.
 
         All pairs of the coarse grid are tried; the best are moved on the fine one. Then bodies i are drawn with the probability
@@ -95,18 +95,18 @@ class Change:
         shares = np.exp(logs - scipy.special.logsumexp(logs))
         first, second = self._paired(fine, drawn, rows, generator)
         mean, spread = table.contrasts(first, second)
-        return Found(self._whole(evidence), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
+        return Explanation(self._whole(evidence), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
 
     def _partners(self, table: _Table, coarse: Candidates) -> list[int]:
         """Bodies of the best pairs, as numbers of the fine candidates."""
-        found: list[int] = []
+        partners: list[int] = []
         for _, partner in _best_pairs(coarse, self):
             fine = table.nearest(coarse, partner)
             for _ in range(ROUNDS):
                 other = int(table.beside(fine).argmax())
                 fine = int(table.beside(other).argmax())
-            found += [number for number in (other, fine) if number not in found]
-        return found
+            partners += [number for number in (other, fine) if number not in partners]
+        return partners
 
     def _paired(self, fine: Candidates, drawn: Array, rows: list[Array], generator: np.random.Generator) -> tuple[Array, Array]:
         """Both bodies (DRAWS^2,) of draws from the posterior; the first is always the one nearer to that of the best draw."""
@@ -145,9 +145,9 @@ class _Table:
     def beside(self, one: int) -> Array:
         """Log evidence (n,) of every candidate as the second one beside a given first, minus infinity where they overlap."""
         cross = self.candidates.signals @ self.candidates.signals[one]
-        found = _pair_evidence(self.along, self.along[one], a=self.stiff, b=self.stiff[one], cross=cross, change=self.change)
-        found[self.candidates.overlaps(one)] = -np.inf
-        return found
+        evidence = _pair_evidence(self.along, self.along[one], a=self.stiff, b=self.stiff[one], cross=cross, change=self.change)
+        evidence[self.candidates.overlaps(one)] = -np.inf
+        return evidence
 
     def contrasts(self, first: Array, second: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Means and variances of both contrasts in pairs (m,)."""
@@ -185,15 +185,15 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
     )
     for one in range(len(coarse)):
         evidence[one, coarse.overlaps(one)] = -np.inf
-    found: list[tuple[int, int]] = []
+    pairs: list[tuple[int, int]] = []
     for _ in range(BEGINNINGS):
         first, second = (int(k) for k in np.unravel_index(int(evidence.argmax()), evidence.shape))
         if not np.isfinite(evidence[first, second]):
             break
-        found.append((first, second))
+        pairs.append((first, second))
         evidence[[first, second]] = -np.inf
         evidence[:, [first, second]] = -np.inf
-    return found
+    return pairs
 
 
 def _shares(totals: Array) -> Array:

@@ -17,7 +17,7 @@ from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
 FINER = 4
-"""Parts per side of a voxel by which the share of a voxel in a ball is found."""
+"""Parts per side of a voxel by which the share of a voxel in a ball is computed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +40,8 @@ class LumpResponse:
         shape = (len(self.radii), *map(len, self.axes))
         if self.values.shape[:4] != shape or self.values.ndim != 7 or not np.isfinite(self.values).all():
             raise InvalidQuantity(f"values of shape {self.values.shape}; needed: finite, {shape} and (jaw, row, column)")
-        found = scipy.interpolate.RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
-        object.__setattr__(self, "_interpolator", found)
+        interpolator = scipy.interpolate.RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
+        object.__setattr__(self, "_interpolator", interpolator)
 
     @classmethod
     def of_density(

@@ -20,7 +20,7 @@ from tactsim.outside.text import one_line
 
 SCHEMA = "tactsim/learned/1"
 OUTPUTS = ("x", "y", "z", "radius")
-"""Order of what the networks tell of a lump."""
+"""Order of what the networks give of a lump."""
 TINY = 1e-9
 """Change over the whole force of the reference below which there is none."""
 
@@ -43,7 +43,7 @@ class Network:
 
 @dataclass(frozen=True, eq=False)
 class LearnedWeights:
-    r"""An ensemble that tells place and radius, and a network that tells whether there is a lump.
+    r"""An ensemble that gives place and radius, and a network that decides whether there is a lump.
 
     The inputs are what `inputs` makes of readings, over ``scale`` about ``middle``. Errors have the covariance of those of held
     out grasps, ``covariance`` (4, 4) over the block's height squared, times :math:`e^{2 (a + b \\ln |d| / F)}` with the change d,
@@ -59,7 +59,7 @@ class LearnedWeights:
     covariance: Array
     growth: Array
     held_out: int = 0
-    """Grasps with a lump from which the covariance was found."""
+    """Grasps with a lump from which the covariance was estimated."""
 
     def probability(self, features: Array) -> float:
         """That there is a lump, for features (inputs,)."""
@@ -137,12 +137,12 @@ def read_weights(path: str | Path) -> LearnedWeights:
         layout = TaxelLayout.model_validate_json(str(file["layout"]))
         numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
         held_out = int(file["held_out"])
-        found = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
+        weights = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
         raise StorageError(f"{path} does not hold the weights of a learned estimator: {one_line(error, 120)}") from None
-    if not found.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
+    if not weights.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
-    return found
+    return weights
 
 
 def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
@@ -168,7 +168,7 @@ def inputs(change: Array, reference: Array, noise: Array | float) -> Array:
 
 
 def _count(value: Array) -> int:
-    """A number of parts that a file tells, of which it must hold that many."""
+    """A number of parts that a file states, of which it must hold that many."""
     count = int(value)
     if not 1 <= count <= MOST_PARTS:
         raise ValueError(f"{count} networks or layers; allowed: 1 to {MOST_PARTS}")
@@ -177,7 +177,7 @@ def _count(value: Array) -> int:
 
 def _network(file: dict[str, Array], number: int) -> Network:
     layers = range(_count(file[f"depth_{number}"]))
-    found = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
-    if not all(np.isfinite(array).all() for part in found for array in part):
+    layered = [tuple(np.asarray(file[f"{name}_{number}_{k}"], dtype=float) for k in layers) for name in ("matrix", "offset")]
+    if not all(np.isfinite(array).all() for part in layered for array in part):
         raise ValueError("weights that are not finite")
-    return Network(*found)
+    return Network(*layered)

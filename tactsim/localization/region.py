@@ -37,14 +37,14 @@ class CellRegion(Region):
     weights: Array
 
     def __post_init__(self) -> None:
-        found = np.asarray(self.weights, dtype=float)
-        if found.shape != tuple(map(len, self.axes)) or min(found.shape) < 2:
+        weights = np.asarray(self.weights, dtype=float)
+        if weights.shape != tuple(map(len, self.axes)) or min(weights.shape) < 2:
             raise InvalidQuantity(
-                f"weights of shape {found.shape} on axes of {[len(axis) for axis in self.axes]} cells, at least 2"
+                f"weights of shape {weights.shape} on axes of {[len(axis) for axis in self.axes]} cells, at least 2"
             )
-        if not np.isfinite(found).all() or found.min() < 0 or found.sum() <= 0:
+        if not np.isfinite(weights).all() or weights.min() < 0 or weights.sum() <= 0:
             raise InvalidQuantity("the weights of a region must be finite and not negative, and not all zero")
-        object.__setattr__(self, "weights", found / found.sum())
+        object.__setattr__(self, "weights", weights / weights.sum())
 
     @cached_property
     def cell(self) -> Array:
@@ -103,9 +103,9 @@ class GaussianRegion(Region):
     covariance: Array
 
     def __post_init__(self) -> None:
-        found = np.asarray(self.covariance, dtype=float)
-        if found.shape != (3, 3) or not np.isfinite(found).all() or np.linalg.eigvalsh(found).min() <= 0:
-            raise InvalidQuantity(f"a covariance of shape {found.shape}; needed: (3, 3), finite, positive definite")
+        covariance = np.asarray(self.covariance, dtype=float)
+        if covariance.shape != (3, 3) or not np.isfinite(covariance).all() or np.linalg.eigvalsh(covariance).min() <= 0:
+            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (3, 3), finite, positive definite")
 
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
         """Whether the point lies in the ellipsoid."""

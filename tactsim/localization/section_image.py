@@ -96,5 +96,5 @@ def _printed(upper: Array, lower: Array, place: Array, rows: int) -> Array:
     above, below = row - 1, rows - row
     rising = upper + (place - 1) * np.divide(total - upper, above, out=np.zeros_like(total), where=above > 0)
     falling = total + (place - row) * np.divide(lower - total, below, out=np.zeros_like(total), where=below > 0)
-    found = np.where((place <= row) & (above > 0), rising, falling)
-    return np.where((upper > 0) | (lower > 0), found, 0.0)
+    printed = np.where((place <= row) & (above > 0), rising, falling)
+    return np.where((upper > 0) | (lower > 0), printed, 0.0)

@@ -129,14 +129,14 @@ def joined(images: Array, join: Join = "shared_once") -> Array:
     InvalidQuantity
         If the images have another shape or no pixels.
     """
-    found = np.asarray(images, dtype=float)
-    if found.ndim != 3 or 0 in found.shape:
-        raise InvalidQuantity(f"pictures of shape {found.shape}; needed: (pairs, rows, columns), none of them 0")
+    pictures = np.asarray(images, dtype=float)
+    if pictures.ndim != 3 or 0 in pictures.shape:
+        raise InvalidQuantity(f"pictures of shape {pictures.shape}; needed: (pairs, rows, columns), none of them 0")
     if join == "added":
-        return found.sum(axis=0)
+        return pictures.sum(axis=0)
     if join == "stacked":
-        return found.reshape(-1, found.shape[2])
-    return np.concatenate([found[0], *found[1:, 1:]])
+        return pictures.reshape(-1, pictures.shape[2])
+    return np.concatenate([pictures[0], *pictures[1:, 1:]])
 
 
 def volume(readings: Array, shape: tuple[int, int, int], *, valid: Array | None = None) -> Array:

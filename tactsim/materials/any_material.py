@@ -70,13 +70,8 @@ class _AnyMaterialSchema:
 
     def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         name = {"type": "string", "enum": sorted(LIBRARY), "description": "Name of a shipped material set."}
-        described: list[Any] = [handler(cls.__pydantic_core_schema__) for cls in (SetReference, *_registered())]
+        described: list[Any] = [handler(cls.__pydantic_core_schema__) for cls in (SetReference, *kinds(Material).values())]
         return {"oneOf": [name, described[0], *({"allOf": [one], "required": ["kind"]} for one in described[1:])]}
-
-
-def _registered() -> list[Any]:
-    """Every registered material class, by the order of its kind."""
-    return [cls for _, cls in sorted(kinds(Material).items())]
 
 
 AnyMaterial = Annotated[Material, _AnyMaterialSchema()]

@@ -39,8 +39,8 @@ def named_material(name: str) -> MaterialSet:
     UnknownName
         With the nearest name.
     """
-    found: MaterialSet = shipped("material set", name, LIBRARY)
-    return found
+    material: MaterialSet = shipped("material set", name, LIBRARY)
+    return material
 
 
 B1A_PRINTED = MaterialSet(
@@ -80,7 +80,7 @@ ICF_STABLE = MaterialSet(
     rms_relative_error=0.0171,
 )
 
-_ATRIAL_NOTE = "the data tell the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
+_ATRIAL_NOTE = "the data determine the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
 
 
 def _atrial() -> MaterialSet:

@@ -205,8 +205,8 @@ def _check_places(block: BlockMesh, surfaces: Surfaces, path: str) -> None:
     volumes = np.abs(np.linalg.det(points[:, 1:] - points[:, :1])) / 6
     meant = surfaces.labels(points.mean(axis=1))
     for number, name in enumerate(block.region_names[1:], 1):
-        own, there = block.mesh.regions == number, meant == number
-        share = volumes[own & there].sum() / volumes[own | there].sum()
+        labelled, there = block.mesh.regions == number, meant == number
+        share = volumes[labelled & there].sum() / volumes[labelled | there].sum()
         if share < LEAST_SHARED:
             held, exact = (f"{1e9 * float(volume):.4g} mm^3" for volume in block.volumes[number])
             raise InputError(

@@ -40,5 +40,5 @@ class ContactQuality:
         }
 
     def warnings(self) -> list[str]:
-        """What a user is told."""
+        """Warnings for the user."""
         return self._volumes.warnings()

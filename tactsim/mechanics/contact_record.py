@@ -49,7 +49,7 @@ Model = TypeVar("Model", bound=ContactModel)
 
 
 class ContactRecord(ABC, Generic[Model]):
-    """Collects the accepted states of a run, and says what was found.
+    """Collects the accepted states of a run, and reports the findings.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class ContactRecord(ABC, Generic[Model]):
         }
 
     def warnings(self) -> list[str]:
-        """What a user is told of at least one step."""
+        """Warnings about at least one step."""
         return [*self.quality.warnings(), *self.unstable("a displacement of {}")]
 
     def unstable(self, where: str) -> list[str]:

@@ -190,9 +190,9 @@ class TimedPath:
             loads = tuple(a + share * (b - a) for a, b in zip(start.loads, target, strict=True))
             return _JumpState(share, self._reached(now.state, now.state.time, loads, guess))
 
-        on_the_way = None if event is None else Event[_JumpState](lambda now: event.value(now.state), event.tolerance)
+        within = None if event is None else Event[_JumpState](lambda now: event.value(now.state), event.tolerance)
         follower = PathFollower(advance, JUMP)
-        *_, (last, happened) = follower.follow(_JumpState(0.0, start), 1.0, on_the_way)
+        *_, (last, happened) = follower.follow(_JumpState(0.0, start), 1.0, within)
         self.rejected += follower.rejected
         if happened:
             return last.state, True

@@ -79,8 +79,8 @@ def _unusual_material(name: str, material: Material) -> Iterator[str]:
         end = "take bulk_modulus: null" if bulk > shear else f"its Poisson's ratio is {poisson:.3g}, that of no tissue"
         yield f"{name} has a bulk modulus of {both[0]}, {bulk / shear:.3g} times its shear modulus of {both[1]}: {end}"
     second = getattr(material, "c01", 0.0)
-    if second < 0 and isinstance(material, Hyperelastic) and not (found := stability_range(material)).strongly_elliptic:
-        within, first = found.elliptic_everywhere_within, getattr(material, "c10", 0.0)
+    if second < 0 and isinstance(material, Hyperelastic) and not (stability := stability_range(material)).strongly_elliptic:
+        within, first = stability.elliptic_everywhere_within, getattr(material, "c10", 0.0)
         yield (
             f"{name} has c01 = {format_quantity(second, 'Pa')} beside c10 = {format_quantity(first, 'Pa')}: it is stable only "
             f"while all principal stretches stay within {1 / within:.3g} to {within:.3g}"

@@ -72,7 +72,7 @@ class PosedContact:
         return replace(self.warm_started(now), pair=self.pair.with_held_limit(now.pressure))
 
     def augmented(self, now: ContactTraction, share: float = 1.0) -> PosedContact:
-        """The pair before the step, with a ``share`` of the forces that were found for it in its multipliers."""
+        """The pair before the step, with a ``share`` of the forces ``now`` in its multipliers."""
         return replace(self, state=self.state.augmented(now, share))
 
     def on(self, surface: SurfaceAssembly, reference: Array, displacement: Array) -> PosedContact:

@@ -27,10 +27,10 @@ def solid_frame(
     """
     u, p = body.space.split(state.unknowns)
     pressure, corners = np.zeros(len(u)), body.space.pressure_corners
-    own = -p
+    at_corners = -p
     if isochoric is not None:
-        own = own - corner_means(body, mean_stress(body, state.kinematics, isochoric))
-    pressure[: body.space.corner_count] = np.bincount(corners, own) / np.bincount(corners)
+        at_corners = at_corners - corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    pressure[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
     pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES]].mean(axis=2)
     return FieldFrame(
         time=time,
@@ -38,7 +38,7 @@ def solid_frame(
         cells={"tetra10": mesh.elements},
         point_data={"displacement [m]": u.copy(), "pressure [Pa]": pressure},
         cell_data={
-            "corner_pressure [Pa]": own[body.space.pressures],
+            "corner_pressure [Pa]": at_corners[body.space.pressures],
             "region [1]": mesh.regions.astype(float),
             "largest_stretch [1]": principal_stretches(state.kinematics.F)[0].max(axis=1),
             "volume_ratio [1]": state.kinematics.J.mean(axis=1),

@@ -53,14 +53,14 @@ class SolidModel(PressedModel):
         """Force (sectors,) in N of the whole tissue along a body's axis, by the angle about it, from its own x axis on."""
         traction = -contact.at(self.displacement(unknowns)).traction
         points = self.reference + self.displacement(unknowns) - contact.place[:, None]
-        found = np.zeros(sectors)
+        force = np.zeros(sectors)
         for mirror in self.symmetry.mirrors:
-            own = contact.pair.body.own_coordinates(mirror[:, None] * points)  # type: ignore[attr-defined]
+            place = contact.pair.body.own_coordinates(mirror[:, None] * points)  # type: ignore[attr-defined]
             along = contact.pair.body.own_coordinates(mirror[:, None] * traction)[2]  # type: ignore[attr-defined]
-            angle = np.arctan2(own[1], own[0]) % (2 * np.pi)
+            angle = np.arctan2(place[1], place[0]) % (2 * np.pi)
             sector = np.minimum((angle / (2 * np.pi) * sectors).astype(int), sectors - 1)
-            found += np.bincount(sector, along * self.points.weights, sectors)
-        return found
+            force += np.bincount(sector, along * self.points.weights, sectors)
+        return force
 
     def rise(self, state: ContactEquilibrium, radius: float) -> tuple[float, float]:
         """Largest height in m of the tissue within ``radius`` of the first body's axis above its face, and that nearest to the
@@ -70,7 +70,7 @@ class SolidModel(PressedModel):
         """
         contact = state.contacts[0]
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0] - contact.place
-        own = contact.pair.body.own_coordinates(deformed.T).T  # type: ignore[attr-defined]
-        candidates = surface_peaks(own[self.top])
+        surface = contact.pair.body.own_coordinates(deformed.T).T  # type: ignore[attr-defined]
+        candidates = surface_peaks(surface[self.top])
         away = np.hypot(candidates[:, 0], candidates[:, 1])
         return float(candidates[away <= radius, 2].max()), float(candidates[np.argmin(away), 2])

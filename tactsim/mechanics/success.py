@@ -17,7 +17,7 @@ LARGEST_RESIDUAL = NewtonOptions().tolerance
 ROUND_OFF = 1e-9
 """Relative excess of a penetration over its tolerance that is round-off."""
 SATURATED = 0.99
-"""Estimate beyond which nearly all of the force is missing and nothing more can be told from it."""
+"""Estimate beyond which nearly all of the force is missing and nothing more follows from it."""
 
 
 def judged(status: Status, reason: str, reported: Iterable[StepRecord], tolerance: float) -> tuple[Status, str]:
@@ -44,8 +44,8 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
     if values["min_volume_ratio"] <= 0:
         return f"an element is inside out, its volume ratio {values['min_volume_ratio']:.3g}; allowed: above 0"
     if values["max_penetration"] > tolerance * (1 + ROUND_OFF):
-        found, allowed = (format_quantity(length, "m") for length in (values["max_penetration"], tolerance))
-        return f"the penetration is {found}; allowed: {allowed}"
+        penetration, allowed = (format_quantity(length, "m") for length in (values["max_penetration"], tolerance))
+        return f"the penetration is {penetration}; allowed: {allowed}"
     error = values["penetration_force_error"]
     if error > LARGEST_FORCE_ERROR:
         return (

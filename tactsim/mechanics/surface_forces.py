@@ -168,6 +168,6 @@ def _integrals(reference: Array, facets: Array, densities: Array) -> Array:
 
 def _cell(values: Array, borders: Array) -> tuple[Array, Array]:
     """Number of the interval that holds each value, -1 if none does, and whether it lies between the first and the last."""
-    found = np.searchsorted(borders[:, 0], values, side="right") - 1
-    inside = (found >= 0) & (values < borders[np.maximum(found, 0), 1])
-    return np.where(inside, found, -1), (values >= borders[0, 0]) & (values < borders[-1, 1])
+    cell = np.searchsorted(borders[:, 0], values, side="right") - 1
+    inside = (cell >= 0) & (values < borders[np.maximum(cell, 0), 1])
+    return np.where(inside, cell, -1), (values >= borders[0, 0]) & (values < borders[-1, 1])

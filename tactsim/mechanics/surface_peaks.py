@@ -15,14 +15,14 @@ def surface_peaks(facets: Array) -> Array:
 
     The largest height of each facet is that of one of its points.
     """
-    found = [facets.reshape(-1, 3)]
+    peaks = [facets.reshape(-1, 3)]
     for edge in _EDGES:
         first, second, middle = (facets[:, k] for k in edge)
         slope, bend = 4 * middle - 3 * first - second, 2 * first + 2 * second - 4 * middle
         at = np.clip(_ratio(-slope[:, 2], 2 * bend[:, 2]), 0.0, 1.0)[:, None]
-        found.append(first + at * (slope + at * bend))
-    found.append(_inner(facets))
-    return np.vstack(found)
+        peaks.append(first + at * (slope + at * bend))
+    peaks.append(_inner(facets))
+    return np.vstack(peaks)
 
 
 def _inner(facets: Array) -> Array:

@@ -13,7 +13,7 @@ POOR_RATIO = 0.1
 """Difference of a volume ratio from what the pressure asks for that counts as poor: a tenth, far beyond the few per cent that
 P2/P1 elements leave at the corners of bodies in meshes that resolve them."""
 POOR_SHARE = 1e-3
-"""Part of the volume with poor ratios of which a user is told: a few points at sharp corners are less and do no harm."""
+"""Part of the volume with poor ratios of which a user is warned: a few points at sharp corners are less and do no harm."""
 
 
 def volume_error(body: Body, state: ContactEquilibrium) -> Array:
@@ -45,7 +45,7 @@ class VolumeRatios:
         return share
 
     def warnings(self) -> list[str]:
-        """What a user is told of the worst state."""
+        """Warnings about the worst state."""
         if self.worst <= POOR_SHARE:
             return []
         return [

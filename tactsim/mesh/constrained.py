@@ -96,9 +96,9 @@ class Constraints:
 
     def _at(self, x: Array, patches: Array) -> tuple[Array, Array]:
         """Normals (n, p, 3) of patches and signed distances (n, p) of points (n, 3) from them."""
-        found = [self.patches[patch](x) for patch in patches]
-        normals = np.stack([normal for _, normal in found], axis=1)
-        return normals, np.stack([((x - near) * normal).sum(axis=1) for near, normal in found], axis=1)
+        nearest = [self.patches[patch](x) for patch in patches]
+        normals = np.stack([normal for _, normal in nearest], axis=1)
+        return normals, np.stack([((x - near) * normal).sum(axis=1) for near, normal in nearest], axis=1)
 
 
 def block_patches(size: Array) -> list[Patch]:

@@ -45,11 +45,11 @@ def read_foreign(path: str | Path | OutsideFile, time_limit: float | None = None
         If a coordinate is not a finite number or a cell names a point that does not exist.
     """
     file = path if isinstance(path, OutsideFile) else opened(path, "mesh")
-    found = read_mesh_file(file, time_limit)
-    _check(found, file.named)
-    tags = {name: parts for name, parts in found.cell_data.items() if all(map(_whole, parts))}
+    mesh = read_mesh_file(file, time_limit)
+    _check(mesh, file.named)
+    tags = {name: parts for name, parts in mesh.cell_data.items() if all(map(_whole, parts))}
     numbers = {name: tuple(part.astype(np.int64) for part in parts) for name, parts in tags.items()}
-    return ForeignMesh(found.points, found.cells, numbers, found.groups)
+    return ForeignMesh(mesh.points, mesh.cells, numbers, mesh.groups)
 
 
 def _whole(values: Array) -> bool:

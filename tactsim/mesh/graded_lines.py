@@ -97,7 +97,7 @@ def _shares(across: int, gather: float) -> Array:
 
 def _through(left: Array, center: float, length: float, shares: Array, settings: BlockMeshSettings) -> Array:
     """Ascending places in m from face to face: ``left`` (2,) in m before and after a box of cells around a centre."""
-    before, after = (_spaced(float(way), settings) for way in left)
+    before, after = (_spaced(float(span), settings) for span in left)
     within = np.interp(shares, [-1, 0, 1], [left[0], center, length - left[1]])
     return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
 

@@ -89,7 +89,7 @@ def interfaces(corners: Array, simplices: Array, labels: Array, surfaces: Surfac
 
 def tidied(simplices: Array, labels: Array) -> Array:
     """Labels (E,) after giving every tetrahedron that three or four neighbours of one other label enclose that label."""
-    neighbours = _neighbours(simplices)
+    neighbours = neighbours_of(simplices)
     tidy = labels.copy()
     for _ in range(SWEEPS):
         around = np.where(neighbours >= 0, tidy[neighbours], OUTSIDE)
@@ -130,13 +130,13 @@ def _pairs(simplices: Array, labels: Array) -> tuple[Array, Array]:
     return triangles, np.sort(pairs, axis=1)
 
 
-def _neighbours(simplices: Array) -> Array:
+def neighbours_of(simplices: Array) -> Array:
     """Numbers (E, 4) of the tetrahedra across the sides, -1 where there is none."""
     faces = np.sort(np.stack([simplices[:, list(side)] for side in _SIDES], axis=1), axis=2).reshape(-1, 3)
     _, number = np.unique(faces, axis=0, return_inverse=True)
     order = np.argsort(number.reshape(-1), kind="stable")
     same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
-    found = np.full(len(faces), -1)
+    neighbours = np.full(len(faces), -1)
     a, b = order[same], order[same + 1]
-    found[a], found[b] = b // 4, a // 4
-    return found.reshape(-1, 4)
+    neighbours[a], neighbours[b] = b // 4, a // 4
+    return neighbours.reshape(-1, 4)

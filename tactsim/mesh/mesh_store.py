@@ -77,20 +77,20 @@ def stored_block_mesh(
     for folder in shipped_folders() if shipped is None else (shipped,):
         entry = shipped_entry(folder, key)
         if entry is not None:
-            found = _read(folder / entry.file, extent, inclusions, key)
-            if found is None or found[1] != entry.content:
+            stored = _read(folder / entry.file, extent, inclusions, key)
+            if stored is None or stored[1] != entry.content:
                 raise StorageError(f"{folder / entry.file} is not the mesh that the manifest describes; restore the file")
-            return StoredMesh(*found, "shipped")
+            return StoredMesh(*stored, "shipped")
     place = (cache or cache_folder()) / f"{key}-{mesher_version()}.npz"
-    found = _read(place, extent, inclusions, key)
-    if found is not None:
-        return StoredMesh(*found, "cache")
+    stored = _read(place, extent, inclusions, key)
+    if stored is not None:
+        return StoredMesh(*stored, "cache")
     block = block_mesh(size, inclusions, settings)
     content = content_hash(block.mesh)
     if _kept(block, place):
         return StoredMesh(block, content, "made")
-    found = _read(place, extent, inclusions, key)  # another process was first: all use its mesh
-    return StoredMesh(block, content, "made") if found is None else StoredMesh(*found, "cache")
+    stored = _read(place, extent, inclusions, key)  # another process was first: all use its mesh
+    return StoredMesh(block, content, "made") if stored is None else StoredMesh(*stored, "cache")
 
 
 def cache_folder() -> Path:

@@ -58,12 +58,12 @@ class QuadraticMesh:
 
     def _middle(self, pairs: Array, owner: Array) -> Array:
         """Mid-edge node between two corners of an element, for pairs (F, 2) in elements ``owner``."""
-        found = np.full(len(pairs), -1)
+        middle = np.full(len(pairs), -1)
         for slot, (a, b) in enumerate(_EDGES[self.dim]):
             edge = self.elements[owner][:, [a, b]]
             same = (np.sort(edge, axis=1) == np.sort(pairs, axis=1)).all(axis=1)
-            found[same] = self.elements[owner[same], self.dim + 1 + slot]
-        return found
+            middle[same] = self.elements[owner[same], self.dim + 1 + slot]
+        return middle
 
     def moved(self, nodes: Array) -> QuadraticMesh:
         """The same mesh with other node coordinates."""

@@ -51,10 +51,10 @@ def read_mesh(
     """
     if unit not in UNITS:
         raise UnknownName("unit", str(unit), UNITS)
-    name, found = str(path), read_foreign(path)
-    kind, cells = _tetrahedra(found, name)
-    regions = _regions(found, region_map, tag, name, kind)
-    points = found.points * UNITS[unit]
+    name, foreign = str(path), read_foreign(path)
+    kind, cells = _tetrahedra(foreign, name)
+    regions = _regions(foreign, region_map, tag, name, kind)
+    points = foreign.points * UNITS[unit]
     if points.shape[1] != 3:
         raise InputError(f"{name}: the mesh has {points.shape[1]} coordinates; allowed: 3")
     used = np.unique(cells)
@@ -68,32 +68,32 @@ def read_mesh(
     return mesh
 
 
-def _tetrahedra(found: ForeignMesh, name: str) -> tuple[str, Array]:
+def _tetrahedra(foreign: ForeignMesh, name: str) -> tuple[str, Array]:
     """The one kind of tetrahedra in a file, and their nodes."""
-    kinds = {kind for kind, cells in found.cells if len(cells)} - LOWER
+    kinds = {kind for kind, cells in foreign.cells if len(cells)} - LOWER
     if not kinds:
         raise InputError(f"{name}: holds no tetrahedra")
     if len(kinds) > 1 or not kinds <= {"tetra", "tetra10"}:
         raise InputError(f"{name}: holds {', '.join(sorted(kinds))}; allowed: either tetra or tetra10, nothing else")
     kind = kinds.pop()
-    return kind, np.vstack([cells for other, cells in found.cells if other == kind])
+    return kind, np.vstack([cells for other, cells in foreign.cells if other == kind])
 
 
-def _regions(found: ForeignMesh, region_map: Mapping[int | str, int] | None, tag: str | None, name: str, kind: str) -> Array:
+def _regions(foreign: ForeignMesh, region_map: Mapping[int | str, int] | None, tag: str | None, name: str, kind: str) -> Array:
     """Region number of every tetrahedron."""
-    own = [k for k, (other, _) in enumerate(found.cells) if other == kind]
+    parts = [k for k, (other, _) in enumerate(foreign.cells) if other == kind]
     if region_map is None:
-        return np.zeros(sum(len(found.cells[k][1]) for k in own), np.int64)
-    chosen = tag or next((known for known in TAGS if known in found.tags), None)
-    if chosen is None or chosen not in found.tags:
-        has = ", ".join(sorted(found.tags)) or "none"
+        return np.zeros(sum(len(foreign.cells[k][1]) for k in parts), np.int64)
+    chosen = tag or next((known for known in TAGS if known in foreign.tags), None)
+    if chosen is None or chosen not in foreign.tags:
+        has = ", ".join(sorted(foreign.tags)) or "none"
         raise InputError(f"{name}: the cells carry no {chosen or 'region tag'}; whole-number cell data in the file: {has}")
-    tags = np.concatenate([found.tags[chosen][k] for k in own])
+    tags = np.concatenate([foreign.tags[chosen][k] for k in parts])
     numbers = {}
     for key, region in region_map.items():
-        if isinstance(key, str) and key not in found.tag_names:
-            raise UnknownName(f"group in {name}", key, found.tag_names)
-        numbers[found.tag_names[key] if isinstance(key, str) else int(key)] = int(region)
+        if isinstance(key, str) and key not in foreign.tag_names:
+            raise UnknownName(f"group in {name}", key, foreign.tag_names)
+        numbers[foreign.tag_names[key] if isinstance(key, str) else int(key)] = int(region)
     present = set(map(int, np.unique(tags)))
     if present != set(numbers):
         missing, idle = sorted(present - set(numbers)), sorted(set(numbers) - present)

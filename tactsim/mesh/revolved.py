@@ -94,15 +94,15 @@ def swept(section: QuadraticMesh, sectors: int, turn: float = 2 * np.pi) -> Swep
 
 def _prisms(triangles: Array, on_axis: Array, sectors: int) -> tuple[Array, Array]:
     """Tetrahedra (E, 4, 2) by section node and plane, and the triangle (E,) that each comes from."""
-    found, owners = [], []
+    prisms, owners = [], []
     for sector in range(sectors):
         for place, third in zip((2, 1, 0), _THIRDS, strict=True):
             keep = np.flatnonzero(~on_axis[triangles[:, place]])
             after = third[:, 1] if sector % 2 == 0 else 1 - third[:, 1]
             planes = np.broadcast_to(sector + after, (len(keep), 4))
-            found.append(np.stack([triangles[keep][:, third[:, 0]], planes], axis=-1))
+            prisms.append(np.stack([triangles[keep][:, third[:, 0]], planes], axis=-1))
             owners.append(keep)
-    return np.concatenate(found), np.concatenate(owners)
+    return np.concatenate(prisms), np.concatenate(owners)
 
 
 def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, sectors: int, turn: float) -> Swept:
@@ -145,9 +145,9 @@ def shifted_outside(nodes: Array, offset: float, *, radius: float, rest: float) 
 
     The map is smooth and one to one while ``offset`` stays below ``largest_offset``; ``radius`` is that of the side.
     """
-    way = np.clip((np.hypot(nodes[:, 0], nodes[:, 1]) - rest) / (radius - rest), 0.0, 1.0)
+    share = np.clip((np.hypot(nodes[:, 0], nodes[:, 1]) - rest) / (radius - rest), 0.0, 1.0)
     moved = nodes.copy()
-    moved[:, 0] += offset * way**2 * (3 - 2 * way)
+    moved[:, 0] += offset * share**2 * (3 - 2 * share)
     return moved
 
 

@@ -40,8 +40,10 @@ def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Arr
             value, gradient = _energy(moved, simplices, BARRIER * size)
             return value, np.einsum("nij,ni->nj", free, gradient).ravel()
 
-        found = scipy.optimize.minimize(objective, np.zeros(start.size), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
-        step = length * np.einsum("nij,nj->ni", free, found.x.reshape(-1, 3))
+        minimum = scipy.optimize.minimize(
+            objective, np.zeros(start.size), jac=True, method="L-BFGS-B", options={"maxiter": STEPS}
+        )
+        step = length * np.einsum("nij,nj->ni", free, minimum.x.reshape(-1, 3))
         worst = mean_ratio(best, simplices).min()
         tried = (restore(best + share * step) for share in SHARES)
         better = next((moved for moved in tried if mean_ratio(moved, simplices).min() > worst), None)

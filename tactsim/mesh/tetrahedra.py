@@ -152,8 +152,8 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
             check_time()
         if done.code or not answer.exists():
             raise _failure(done, time_limit)
-        found = read_arrays(answer.read_bytes(), "the mesher's answer")
-        corners, simplices = found["corners"], found["simplices"]
+        arrays = read_arrays(answer.read_bytes(), "the mesher's answer")
+        corners, simplices = arrays["corners"], arrays["simplices"]
     if not len(simplices) or not np.isfinite(corners).all():
         raise ConvergenceError("the mesher gave no tetrahedra")
     return corners, simplices.astype(np.int64)

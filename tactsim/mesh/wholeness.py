@@ -9,7 +9,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import FLATNESS
-from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.labelling import Surfaces, neighbours_of
 from tactsim.mesh.quadratic import QuadraticMesh
 
 NEAR = 1.0
@@ -26,7 +26,11 @@ def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
         With the number of pieces and the place of the smallest, or with the facets of a hole and where it is.
     """
     corners = mesh.elements[:, :4]
-    count, pieces = scipy.sparse.csgraph.connected_components(_shared_sides(corners), directed=False)
+    across = neighbours_of(corners)
+    pairs = np.nonzero(across >= 0)[0], across[across >= 0]
+    count, pieces = scipy.sparse.csgraph.connected_components(
+        scipy.sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(len(corners),) * 2), directed=False
+    )
     if count > 1:
         sizes = np.bincount(pieces)
         place = _place(mesh.nodes[corners[pieces == sizes.argmin()]].reshape(-1, 3).mean(axis=0))
@@ -43,16 +47,6 @@ def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
             f"{name}: {len(stray)} boundary facets, around {_place(stray.reshape(-1, 3).mean(axis=0))}, lie inside the block: "
             f"the mesh has a hole or a notch there; allowed are {known}; fill it, or describe it as a tube in inclusions"
         )
-
-
-def _shared_sides(corners: Array) -> scipy.sparse.coo_array:
-    """Which of the tetrahedra (E, 4) share a side, (E, E)."""
-    sides = np.sort(np.concatenate([np.delete(corners, k, axis=1) for k in range(4)]), axis=1)
-    _, number = np.unique(sides, axis=0, return_inverse=True)
-    order = np.argsort(number.reshape(-1), kind="stable")
-    same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
-    first, second = order[same] % len(corners), order[same + 1] % len(corners)
-    return scipy.sparse.coo_array((np.ones(len(same)), (first, second)), shape=(len(corners),) * 2)
 
 
 def _known(facets: Array, surfaces: Surfaces) -> Array:

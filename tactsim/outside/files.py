@@ -148,10 +148,10 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
         If there is none, it is no regular file, or it is too large.
     """
     limit = LIMITS[kind] if limit is None else limit
-    found, place, state = _found(path, kind)
+    real, place, state = _looked_up(path, kind)
     _check(state, kind, str(path), limit)
     quotable = place != "elsewhere" or not isinstance(path, CasePath)
-    return OutsideFile(kind, str(path), found, place, state.st_size, limit, quotable)
+    return OutsideFile(kind, str(path), real, place, state.st_size, limit, quotable)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
@@ -164,12 +164,12 @@ def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
     """
     named = f"{one_line(path)} is not a folder with a {kind}"
     try:
-        found, place, state = _found(path, kind)
+        folder, place, state = _looked_up(path, kind)
     except Unreadable as error:
         raise Unreadable(f"{named}: {error.reason}", error.reason) from None
     if not stat.S_ISDIR(state.st_mode):
         raise Unreadable(named, "it is not a folder")
-    return found, place
+    return folder, place
 
 
 def located(path: str | Path) -> Place:
@@ -180,13 +180,13 @@ def located(path: str | Path) -> Place:
     Unreadable
         If there is none, or it is neither a regular file nor a folder.
     """
-    _, place, state = _found(path, "file")
+    _, place, state = _looked_up(path, "file")
     if not stat.S_ISDIR(state.st_mode):
         _check(state, "file", str(path), state.st_size)
     return place
 
 
-def _found(path: str | Path, kind: str) -> tuple[Path, Place, os.stat_result]:
+def _looked_up(path: str | Path, kind: str) -> tuple[Path, Place, os.stat_result]:
     """The first of the places looked at that holds something, and its state."""
     beside = path.beside if isinstance(path, CasePath) else None
     tried: list[str] = []
@@ -211,9 +211,9 @@ def _folders(path: Path, beside: Path | None) -> list[Path]:
     return [*first, Path(), *([PROGRAM] if path.parts[:1] == (SHIPPED,) and ".." not in path.parts else [])]
 
 
-def _place(found: Path, beside: Path | None) -> Place:
+def _place(path: Path, beside: Path | None) -> Place:
     """Where a path leads once its links are followed."""
-    real = Path(os.path.realpath(found))
+    real = Path(os.path.realpath(path))
     roots: list[tuple[Place, Path]] = [("beside the case", beside)] if beside is not None else []
     roots += [("in the working folder", Path(".")), ("with the program", PROGRAM / SHIPPED)]
     for place, root in roots:

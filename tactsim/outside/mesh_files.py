@@ -93,10 +93,10 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
     for line in arrays.pop("warnings").tolist():
         words = line if file.quotable else "a part of the file was passed over or completed"
         warnings.warn_explicit(f"{one_line(file.named)}: {words}", MeshFileWarning, READER, 0)
-    found = _unpacked(arrays)
-    if not _consistent(found):
+    mesh = _unpacked(arrays)
+    if not _consistent(mesh):
         raise StorageError(f"{named}: the numbers of points, nodes of cells and data do not fit each other; is it damaged?")
-    return found
+    return mesh
 
 
 def _consistent(mesh: MeshArrays) -> bool:
@@ -145,7 +145,7 @@ def main(path: str, answer: str, largest: str) -> int:
     MemoryError
         If the arrays take more bytes than ``largest``; meshio's own errors end the process, too.
     """
-    mesh, said = _read(path)
+    mesh, lines = _read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
     point_data = {name: np.asarray(values) for name, values in mesh.point_data.items()}
     cell_data = {name: [np.atleast_1d(values[k]) for k in kept] for name, values in mesh.cell_data.items()}
@@ -168,7 +168,7 @@ def main(path: str, answer: str, largest: str) -> int:
         cell_names=np.array(list(cell_data), dtype=str),
         group_names=np.array(list(groups), dtype=str),
         group_numbers=np.array(list(groups.values()), dtype=np.int64),
-        warnings=np.array(said, dtype=str),
+        warnings=np.array(lines, dtype=str),
         **arrays,
     )
     Path(answer).write_bytes(content.getvalue())

@@ -38,13 +38,13 @@ class Ended:
     """How a child ended: its exit code, what it last wrote to standard error, and whether its time was up."""
 
     code: int
-    said: str
+    error_output: str
     out_of_time: bool = False
 
     @property
     def last_line(self) -> str:
-        """Its last words on one line, empty if it said nothing."""
-        return one_line((self.said.strip().splitlines() or [""])[-1], 300)
+        """Its last words on one line, empty if there are none."""
+        return one_line((self.error_output.strip().splitlines() or [""])[-1], 300)
 
     @property
     def ending(self) -> str:
@@ -54,7 +54,7 @@ class Ended:
     @property
     def out_of_memory(self) -> bool:
         """Whether the limit of its memory ended it."""
-        return "MemoryError" in self.said or "bad_alloc" in self.said or "allocate memory" in self.said
+        return "MemoryError" in self.error_output or "bad_alloc" in self.error_output or "allocate memory" in self.error_output
 
 
 def run_child(

@@ -76,7 +76,7 @@ def pictures(surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> list[byt
         if done.out_of_time:
             raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
         if done.code or not all(path.is_file() for path in drawn):
-            raise TactsimError(f"pyvista cannot render here: {_cause(done.said, done.code)} ({REMEDY})")
+            raise TactsimError(f"pyvista cannot render here: {_cause(done.error_output, done.code)} ({REMEDY})")
         return [path.read_bytes() for path in drawn]
 
 
@@ -89,15 +89,15 @@ def _save(path: Path, surfaces: Sequence[Surface], cameras: Sequence[Camera]) ->
             arrays[f"colour{number}"] = surface.colour
         colour = surface.colour if isinstance(surface.colour, str) else None
         parts.append({"colour": colour, "opacity": surface.opacity, "smooth": surface.smooth, "creases": surface.creases})
-    told = json.dumps({"surfaces": parts, "cameras": [asdict(camera) for camera in cameras]})
-    np.savez(path, told=np.array(told), **arrays)  # type: ignore[arg-type]
+    scene = json.dumps({"surfaces": parts, "cameras": [asdict(camera) for camera in cameras]})
+    np.savez(path, drawing=np.array(scene), **arrays)  # type: ignore[arg-type]
 
 
 def _cause(words: str, code: int) -> str:
     """What VTK or Python said last, without its decoration; the exit code if it said nothing."""
     lines = [re.sub(r"\x1b\[[\d;]*m", "", line).split("WARN|")[-1].split("ERR|")[-1].strip() for line in words.splitlines()]
-    told = [line for line in lines if line]
-    return told[-1][:300] if told else f"the renderer ended with the code {code}"
+    filled = [line for line in lines if line]
+    return filled[-1][:300] if filled else f"the renderer ended with the code {code}"
 
 
 def _main(scene: str, *drawn: str) -> None:
@@ -106,19 +106,19 @@ def _main(scene: str, *drawn: str) -> None:
     from matplotlib.image import imsave
 
     arrays = read_arrays(Path(scene).read_bytes(), "the scene")
-    told = json.loads(str(arrays["told"]))
+    drawing = json.loads(str(arrays["drawing"]))
     parts = [
         (part, arrays[f"points{k}"], arrays[f"triangles{k}"], part["colour"] or arrays[f"colour{k}"])
-        for k, part in enumerate(told["surfaces"])
+        for k, part in enumerate(drawing["surfaces"])
     ]
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=told["cameras"][0]["pixels"])
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=drawing["cameras"][0]["pixels"])
     plotter.set_background("white")
     for part in parts:
         _add(plotter, *part)
     plotter.enable_parallel_projection()
     plotter.disable_anti_aliasing()  # several samples per pixel leave out what is translucent
     plotter.enable_depth_peeling(8)
-    for camera, path in zip(told["cameras"], drawn, strict=True):
+    for camera, path in zip(drawing["cameras"], drawn, strict=True):
         focus, direction = np.array(camera["focus"]), np.array(camera["direction"])
         eye = focus + direction * 20 * camera["half_height"] / np.linalg.norm(direction)
         plotter.camera_position = [eye, focus, (0, 0, 1)]

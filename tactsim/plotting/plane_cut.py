@@ -74,8 +74,8 @@ def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> Plan
     nodal_values = np.column_stack([nodes[:, axis] - level, nodes[:, others]])
     elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
     crossed = _crossed(nodal_values, elements)
-    own = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
-    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], own[:, :, None]], axis=2)))
+    cut_values = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
+    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], cut_values[:, :, None]], axis=2)))
     pieces, number = _cut_triangles(_divided(nodal_values[faces]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
@@ -133,32 +133,32 @@ def interfaces(frame: FieldFrame) -> tuple[Array, Array]:
     mine = owners[order]
     kept = ~second & (mine != others)
     both = np.sort(np.column_stack([mine, others])[kept], axis=1)
-    found, inward = faces[order[kept]], mine[kept] < others[kept]
-    found[inward] = found[inward][:, _TURNED]
-    return found, both
+    between, inward = faces[order[kept]], mine[kept] < others[kept]
+    between[inward] = between[inward][:, _TURNED]
+    return between, both
 
 
 def _cut_tetrahedra(simplices: Array) -> Array:
     """Triangles (T, 3, c) in which tetrahedra (n, 4, c) are cut where their first coordinate is 0: one or two of each."""
     above, ordered = _by_side(simplices)
-    found = []
+    crossings = []
     for count, first, rest in ((3, 0, (1, 2, 3)), (1, 3, (0, 1, 2))):
         chosen = ordered[above == count]
-        found.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
+        crossings.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
     a, b, c, d = np.moveaxis(ordered[above == 2], 1, 0)
     corners = [_crossing(*ends) for ends in ((a, c), (a, d), (b, d), (b, c))]
-    found += [np.stack([corners[k] for k in chosen], axis=1) for chosen in ((0, 1, 2), (0, 2, 3))]
-    return np.concatenate(found)
+    crossings += [np.stack([corners[k] for k in chosen], axis=1) for chosen in ((0, 1, 2), (0, 2, 3))]
+    return np.concatenate(crossings)
 
 
 def _cut_triangles(simplices: Array) -> tuple[Array, Array]:
     """Segments (S, 2, c) in which triangles (n, 3, c) are cut where their first coordinate is 0, and the triangle of each."""
     above, ordered = _by_side(simplices)
-    found = []
+    crossings = []
     for count, first, rest in ((2, 0, (1, 2)), (1, 2, (0, 1))):
         chosen = ordered[above == count]
-        found.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
-    return np.concatenate(found), np.concatenate([np.flatnonzero(above == count) for count in (2, 1)])
+        crossings.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
+    return np.concatenate(crossings), np.concatenate([np.flatnonzero(above == count) for count in (2, 1)])
 
 
 def _by_side(simplices: Array) -> tuple[Array, Array]:

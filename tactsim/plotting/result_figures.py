@@ -9,5 +9,5 @@ from tactsim.results import Result
 
 def figures_for(result: Result) -> dict[str, Drawing]:
     """File name -> drawing of every figure of a result, the main one first; empty for a kind without figures."""
-    found = kinds(ResultFigures).get(result.kind)
-    return found().drawings(result) if found else {}
+    figures = kinds(ResultFigures).get(result.kind)
+    return figures().drawings(result) if figures else {}

@@ -39,13 +39,13 @@ def provenance(
 
 
 def _package_versions() -> dict[str, str]:
-    found = {}
+    versions = {}
     for package in PACKAGES:
         try:
-            found[package] = version(package)
+            versions[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return versions
 
 
 def _without_folders(value: Any) -> Any:

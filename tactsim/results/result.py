@@ -76,7 +76,7 @@ class FieldFrame:
 
 @dataclass(frozen=True)
 class Result:
-    """What a run found.
+    """What a run computed.
 
     Attributes
     ----------

@@ -55,7 +55,8 @@ def fill(
         target = folder.start()
         write_fields(result.frames, target)
         write_bytes(target / "history.csv", history_table(result).encode())
-        write_bytes(target / "provenance.json", _json_bytes(provenance))
+        origin = json.dumps(plain_json(dict(provenance), (), []), indent=1, allow_nan=False)
+        write_bytes(target / "provenance.json", f"{origin}\n".encode())
         if figures:
             (target / "figures").mkdir()
         for name, content in figures.items():
@@ -101,10 +102,6 @@ def _headed(name: str, unit: str) -> str:
 
 def _cell(value: float) -> str:
     return repr(float(value)) if math.isfinite(value) else ""
-
-
-def _json_bytes(content: Mapping[str, Any]) -> bytes:
-    return (json.dumps(plain_json(dict(content), (), []), indent=1, allow_nan=False) + "\n").encode()
 
 
 def _inside(folder: Path, name: str) -> Path:

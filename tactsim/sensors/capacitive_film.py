@@ -121,7 +121,7 @@ class CapacitiveFilm(SensorFilm):
         return self._rest_capacitance / (self.shear_modulus * self.area * (2 / stretch + stretch**2))
 
     def report(self, force: Array, signal: Array) -> FilmReport:
-        """Capacitance without force and its first rise; the signals tell nothing else of the film."""
+        """Capacitance without force and its first rise; the signals show nothing else of the film."""
         slope = float(self.sensitivity([0.0], [0.0])[0])
         return FilmReport(
             {

@@ -52,5 +52,5 @@ def named_composite(name: str) -> Composite:
     UnknownName
         With the nearest name.
     """
-    found: Composite = shipped("composite", name, LIBRARY)
-    return found
+    composite: Composite = shipped("composite", name, LIBRARY)
+    return composite

@@ -30,7 +30,7 @@ from tactsim.units import Area, format_quantity
 HOLM = 100.0
 """Largest force in N of Holm's contact resistance (thesis, before eq. 2.1.12)."""
 INVERSION = 1e-12
-"""Relative accuracy of a force found from its conductance."""
+"""Relative accuracy of a force computed from its conductance."""
 ITERATIONS = 60
 CREEP = ("instantaneous", "delayed", "viscosity")
 """Coefficients of the creep as a composite names them."""
@@ -128,11 +128,11 @@ class Film(SensorFilm):
         """
         times = checked_times(time, after=None if state is None else state.time)
         values = checked_signal(signal, len(times), "conductance", "S")
-        found = np.empty_like(values)
+        forces = np.empty_like(values)
         for n, (moment, value) in enumerate(zip(times, values, strict=True)):
-            found[n], state = self._force(state, float(moment), value)
+            forces[n], state = self._force(state, float(moment), value)
         assert state is not None  # there is at least one sample
-        return found, state
+        return forces, state
 
     def report(self, force: Array, signal: Array) -> FilmReport:
         """Constants of the tunnelling and the resistances, the resistance without the contacts, and the coefficients of creep."""
@@ -230,9 +230,9 @@ class Film(SensorFilm):
         for _ in range(ITERATIONS):
             # One complex evaluation gives value and slope: every function here is analytic.
             nearby = force * np.exp(1j * COMPLEX_STEP)
-            found = np.log(self._conductance(nearby, delayed_strain(nearby)), where=loaded, out=np.ones_like(nearby))
-            slope = np.where(loaded, found.imag / COMPLEX_STEP, 1.0)
-            change = np.where(loaded, np.clip((wanted - found.real) / slope, -2.0, 2.0), 0.0)
+            logarithm = np.log(self._conductance(nearby, delayed_strain(nearby)), where=loaded, out=np.ones_like(nearby))
+            slope = np.where(loaded, logarithm.imag / COMPLEX_STEP, 1.0)
+            change = np.where(loaded, np.clip((wanted - logarithm.real) / slope, -2.0, 2.0), 0.0)
             force = force * np.exp(change)
             if np.any(force > 10 * HOLM) or np.all(np.abs(change) <= INVERSION):
                 break

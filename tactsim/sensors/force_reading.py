@@ -22,9 +22,9 @@ class ForceReading(ForceElectronics, ForceReader):
         """
         read: dict[str, Array] = {}
         for electronics, ending in ((self, ""), (self.quiet, CLEAN)):
-            found = electronics.sensed(time, force, generator)
-            sample = latest(found.time, at)
-            read |= {f"voltage{ending}": found.recording.filtered[sample], f"read_force{ending}": found.force[sample]}
+            sensed = electronics.sensed(time, force, generator)
+            sample = latest(sensed.time, at)
+            read |= {f"voltage{ending}": sensed.recording.filtered[sample], f"read_force{ending}": sensed.force[sample]}
         return read
 
 

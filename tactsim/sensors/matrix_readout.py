@@ -77,14 +77,14 @@ class MatrixReadout(ForceElectronics):
         if numbers > MOST_NUMBERS:
             raise InvalidQuantity(f"a reading of {numbers:.3g} numbers; allowed: {MOST_NUMBERS}; lower sampling_rate")
         gains = 1.0 if self.scatter is None else self.scatter.gains(force.shape[1:], self.line(area))
-        found = self.sensed(time, force, np.random.default_rng(self.seed), film=self.film_of(area), gains=gains)
-        recording = found.recording
+        sensed = self.sensed(time, force, np.random.default_rng(self.seed), film=self.film_of(area), gains=gains)
+        recording = sensed.recording
         return MatrixReading(
-            time=found.time,
-            applied=found.applied,
+            time=sensed.time,
+            applied=sensed.applied,
             voltage=recording.voltage,
             filtered=recording.filtered,
-            force=found.force,
+            force=sensed.force,
             saturated=recording.saturated | (recording.filtered > self.chain.largest_voltage),
             strongest_pull=float(max(0.0, -force.min(initial=0.0))),
         )

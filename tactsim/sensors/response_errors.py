@@ -29,13 +29,13 @@ def root_mean_square(values: Array) -> float:
 
 def range_errors(force: Array, reading: Array, borders: Sequence[float]) -> tuple[ForceRange, ...]:
     """Errors of readings (n,) of forces (n,) in N, for each interval between borders in N; the last one includes its end."""
-    found = []
+    ranges = []
     for low, high in itertools.pairwise(borders):
         chosen = (force >= low) & ((force <= high) if high == borders[-1] else (force < high))
         error = (reading - force)[chosen]
         rms, largest = (root_mean_square(error), float(np.abs(error).max())) if error.size else (0.0, 0.0)
-        found.append(ForceRange(low, high, int(error.size), rms, largest))
-    return tuple(found)
+        ranges.append(ForceRange(low, high, int(error.size), rms, largest))
+    return tuple(ranges)
 
 
 def hysteresis(force: Array, reading: Array, *, points: int = 200) -> float:

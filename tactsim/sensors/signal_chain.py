@@ -114,13 +114,13 @@ class SignalChain(FrozenModel):
             If the times do not increase, a number is not finite, or the shapes do not belong together.
         """
         time, values = _history(time, values)
-        own = time[0] + self.times(float(time[-1] - time[0]))
-        after = np.clip(np.searchsorted(time, own, side="right"), 1, max(time.size - 1, 1))
+        sampled = time[0] + self.times(float(time[-1] - time[0]))
+        after = np.clip(np.searchsorted(time, sampled, side="right"), 1, max(time.size - 1, 1))
         if time.size == 1:
-            return own, values
-        share = np.clip((own - time[after - 1]) / (time[after] - time[after - 1]), 0.0, 1.0)
+            return sampled, values
+        share = np.clip((sampled - time[after - 1]) / (time[after] - time[after - 1]), 0.0, 1.0)
         share = share.reshape(-1, *[1] * (values.ndim - 1))
-        return own, (1 - share) * values[after - 1] + share * values[after]
+        return sampled, (1 - share) * values[after - 1] + share * values[after]
 
     def voltage(self, conductance: Array) -> Array:
         """Voltage in V of the divider for conductances in S of any shape, without buffer errors and noise (2.2.1)."""

@@ -78,8 +78,8 @@ def read_switches(
 
     A touch begins above the touch threshold and ends at the release. Within it a switch is recorded by the shift-register rule,
     once, and only while the touch loads: the force has not fallen by more than ``fall`` below its largest of the touch. The rule
-    alone cannot tell unloading in noise, where half of the samples rise above the one before; the fall can, except while it is
-    not reached yet.
+    alone cannot detect unloading in noise, where half of the samples rise above the one before; the fall can, once it is
+    reached.
 
     Raises
     ------

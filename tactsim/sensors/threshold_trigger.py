@@ -28,7 +28,7 @@ class TriggerLevel(FrozenModel):
     def above_rest(self, rest: Array, step: float) -> tuple[Array, Array]:
         """Rest value and level in N, from filtered readings ``rest`` in N, shape (time, ...); both of shape (...).
 
-        The level of a multiple is never below ``step`` in N, the least force that the converter tells apart.
+        The level of a multiple is never below ``step`` in N, the least force that the converter resolves.
 
         Raises
         ------

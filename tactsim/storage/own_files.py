@@ -109,14 +109,14 @@ def read_manifest(folder: Path) -> Manifest | None:
 
 def names_in(folder: Path) -> set[str]:
     """Paths of the files, links and empty folders below a folder, but for what file managers leave; links are not followed."""
-    found: set[str] = set()
+    names: set[str] = set()
     for place, folders, files in os.walk(folder):
         kept = [name for name in files if name not in IGNORED]
         links = [name for name in folders if os.path.islink(os.path.join(place, name))]
-        found |= {(Path(place) / name).relative_to(folder).as_posix() for name in [*kept, *links]}
+        names |= {(Path(place) / name).relative_to(folder).as_posix() for name in [*kept, *links]}
         if not (folders or kept) and Path(place) != folder:
-            found.add(Path(place).relative_to(folder).as_posix())
-    return found
+            names.add(Path(place).relative_to(folder).as_posix())
+    return names
 
 
 def is_plain(folder: Path, name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Holds each row against what is found: it keeps its recorded state, or has left it."""
+"""Holds each row against what is computed: it keeps its recorded state, or has left it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class RowOutcome:
     """How a row ended."""
 
     row: Row
-    found: float | None
+    computed: float | None
     """In SI; None if nothing was evaluated."""
     held: bool
     """Whether the row kept its recorded state."""
@@ -29,9 +29,9 @@ class RowOutcome:
 
     @property
     def ratio(self) -> float | None:
-        """Found over printed."""
+        """Computed over printed."""
         expected = self.row.expected if self.row.evaluate else None
-        return None if self.found is None or not expected else self.found / expected
+        return None if self.computed is None or not expected else self.computed / expected
 
 
 @dataclass(frozen=True)
@@ -57,41 +57,41 @@ def compare(name: str, table: Table, folder: Path, studies: Mapping[str, tuple[R
 
 def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
     """One row, evaluated and compared."""
-    found: float | None = None
+    computed: float | None = None
     if row.evaluate is not None:
         try:
-            found = float(row.evaluate(replace(inputs, expected=row.expected)))
+            computed = float(row.evaluate(replace(inputs, expected=row.expected)))
         except TactsimError as error:
             return RowOutcome(row, None, False, "LEFT: cannot be evaluated", str(error))
-        if not math.isfinite(found):
-            return RowOutcome(row, None, False, "LEFT: not a finite number", f"{found}")
+        if not math.isfinite(computed):
+            return RowOutcome(row, None, False, "LEFT: not a finite number", f"{computed}")
     if isinstance(row.state, Assumption):
-        return RowOutcome(row, found, True, "assumption", row.state.assumption)
-    if found is None:  # the validation of a row lets only an assumption lack it
+        return RowOutcome(row, computed, True, "assumption", row.state.assumption)
+    if computed is None:  # the validation of a row lets only an assumption lack it
         return RowOutcome(row, None, False, "LEFT: nothing to evaluate", "")
     if isinstance(row.state, Bound):
-        return _finding(row, row.state, found)
-    return _deviation(row, row.state, found) if isinstance(row.state, OutsideBy) else _reproduction(row, found)
+        return _finding(row, row.state, computed)
+    return _deviation(row, row.state, computed) if isinstance(row.state, OutsideBy) else _reproduction(row, computed)
 
 
-def _reproduction(row: Row, found: float) -> RowOutcome:
+def _reproduction(row: Row, computed: float) -> RowOutcome:
     expected, allowed = row.expected or 0.0, row.allowed or 0.0
-    # Found and expected may be the same number by two roundings.
-    held = abs(found - expected) <= allowed + 1e-12 * abs(expected)
+    # Computed and expected may be the same number by two roundings.
+    held = abs(computed - expected) <= allowed + 1e-12 * abs(expected)
     after = f" after {row.state.reproduced_after}" if isinstance(row.state, ReproducedAfter) else ""
     text = f"reproduced{after}"
-    return RowOutcome(row, found, held, text if held else f"LEFT: was {text}", row.tolerance.reason if row.tolerance else "")
+    return RowOutcome(row, computed, held, text if held else f"LEFT: was {text}", row.tolerance.reason if row.tolerance else "")
 
 
-def _deviation(row: Row, state: OutsideBy, found: float) -> RowOutcome:
-    factor = found / row.expected if row.expected else math.inf
+def _deviation(row: Row, state: OutsideBy, computed: float) -> RowOutcome:
+    factor = computed / row.expected if row.expected else math.inf
     held = abs(factor - state.outside_by) <= state.tolerance * state.outside_by
     text = f"outside by {factor:.4g}"
-    return RowOutcome(row, found, held, text if held else f"LEFT: {text}, was {state.outside_by:.4g}", state.reason)
+    return RowOutcome(row, computed, held, text if held else f"LEFT: {text}, was {state.outside_by:.4g}", state.reason)
 
 
-def _finding(row: Row, state: Bound, found: float) -> RowOutcome:
+def _finding(row: Row, state: Bound, computed: float) -> RowOutcome:
     side, limit = ("above", state.above) if state.above is not None else ("below", state.below)
-    held = state.margin(found, row.unit) > 0
+    held = state.margin(computed, row.unit) > 0
     text = f"{side} {limit}"
-    return RowOutcome(row, found, held, text if held else f"LEFT: was {text}", state.finding)
+    return RowOutcome(row, computed, held, text if held else f"LEFT: was {text}", state.finding)

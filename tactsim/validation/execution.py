@@ -25,7 +25,7 @@ from tactsim.validation.study import RunOutcome, Study
 
 MODULE = "tactsim.validation.execution"
 BROKEN = b"!"
-"""How an answer begins that tells of a defect."""
+"""How an answer begins that reports a defect."""
 Task = tuple[str, str, tuple[str, ...]]
 """Name of the run, path of the case file and the overrides."""
 Studies = dict[str, tuple[RunOutcome, ...]]
@@ -44,7 +44,17 @@ class StudyRunner:
     """Where results are kept; by default the user's cache folder."""
 
     def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> dict[str, Studies]:
-        """The outcome of every run of every study, by table and study; equal cases are run once."""
+        """The outcome of every run of every study, by table and study; equal cases are run once.
+
+        Raises
+        ------
+        CaseError
+            If a case of a study is refused.
+        ConvergenceError
+            If a process died.
+        TactsimError
+            If a process met a defect of this program.
+        """
         tasks = {
             (table, study.name, run.id): (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
             for table, studies in tables.items()
@@ -52,15 +62,15 @@ class StudyRunner:
             for run in study.runs
         }
         identities = {key: load_case(path, overrides).case_id for key, (_, path, overrides) in tasks.items()}
-        found: dict[str, RunOutcome] = {}
+        outcomes: dict[str, RunOutcome] = {}
         if not self.fresh:
             stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
-            found = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
-        waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in found}
+            outcomes = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
+        waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in outcomes}
         for case_id, outcome in self._computed(dict(reversed(waiting.items())), progress):
-            found[case_id] = outcome
+            outcomes[case_id] = outcome
             self._store(outcome)
-        named = {key: found[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
+        named = {key: outcomes[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
         return {
             table: {study.name: tuple(named[table, study.name, run.id] for run in study.runs) for study in studies}
             for table, studies in tables.items()
@@ -100,7 +110,7 @@ class StudyRunner:
 
 
 def _outcome_of(answer: Answer[str]) -> RunOutcome:
-    """What a process found.
+    """What a process computed.
 
     Raises
     ------
@@ -110,15 +120,21 @@ def _outcome_of(answer: Answer[str]) -> RunOutcome:
         If it met a defect of this program.
     """
     if answer.content is None:
-        told = f"a process of the simulations ended ({answer.ending}); is there enough memory? take fewer workers"
-        raise ConvergenceError(told)
+        message = f"a process of the simulations ended ({answer.ending}); is there enough memory? take fewer workers"
+        raise ConvergenceError(message)
     if answer.content.startswith(BROKEN):
         raise TactsimError(f"a simulation failed: {answer.content[len(BROKEN) :].decode(errors='replace')}")
     return RunOutcome.model_validate_json(answer.content)
 
 
 def simulated(task: Task) -> RunOutcome:
-    """Runs one case to its end; a refusal on the way is an outcome that failed."""
+    """Runs one case to its end; a refusal on the way is an outcome that failed.
+
+    Raises
+    ------
+    CaseError
+        If the case is refused.
+    """
     name, path, overrides = task
     case = load_case(path, overrides)
     try:

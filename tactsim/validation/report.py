@@ -36,15 +36,15 @@ def terminal_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> s
 
 
 def count_rows(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> list[tuple[Any, ...]]:
-    """Per table: chapter, name, rows found of rows that must be there, and rows by how they ended; last the totals."""
-    found = {outcome.name: outcome for outcome in outcomes}
+    """Per table: chapter, name, rows there of rows that must be, and rows by how they ended; last the totals."""
+    ended = {outcome.name: outcome for outcome in outcomes}
     promised = loaded.manifest.tables
-    names = [name for name in promised if name in found or any(fault.startswith(f"{name}:") for fault in loaded.faults)]
+    names = [name for name in promised if name in ended or any(fault.startswith(f"{name}:") for fault in loaded.faults)]
     lines: list[tuple[Any, ...]] = []
     totals: dict[str, list[int]] = {}
-    for name in [*names, *(name for name in found if name not in promised)]:
-        rows = found[name].rows if name in found else ()
-        chapter, expected = promised.get(name, (found[name].table.chapter if name in found else 0, 0))
+    for name in [*names, *(name for name in ended if name not in promised)]:
+        rows = ended[name].rows if name in ended else ()
+        chapter, expected = promised.get(name, (ended[name].table.chapter if name in ended else 0, 0))
         counts = [sum(_class_of(row) == state for row in rows) for state in STATES]
         lines.append((chapter, name, f"{len(rows)} of {expected}", *counts))
         total = totals.setdefault(f"{chapter}", [0] * (2 + len(STATES)))
@@ -110,9 +110,9 @@ def run_cells(runs: Sequence[Any]) -> list[tuple[str, ...]]:
 def _cells(outcome: RowOutcome) -> tuple[str, ...]:
     row = outcome.row
     printed = "-" if row.printed is None else f"{row.printed}"
-    found = "-" if outcome.found is None else quantity_text(outcome.found, row.unit)
+    computed = "-" if outcome.computed is None else quantity_text(outcome.computed, row.unit)
     ratio = "-" if outcome.ratio is None else f"{outcome.ratio:.4g}"
-    return row.id, printed, found, ratio, _tolerance(row), outcome.state
+    return row.id, printed, computed, ratio, _tolerance(row), outcome.state
 
 
 def _tolerance(row: Any) -> str:
@@ -144,7 +144,7 @@ def _row_values(outcome: RowOutcome) -> dict[str, Any]:
         **row.model_dump(mode="json", exclude_none=True),
         "unit": row.unit,
         "expected": row.expected if row.evaluate else None,
-        "found": outcome.found,
+        "found": outcome.computed,
         "ratio": outcome.ratio,
         "held": outcome.held,
         "ended": outcome.state,

@@ -1,4 +1,4 @@
-"""A list of simulations around one case, and what each of them found."""
+"""A list of simulations around one case, and what each of them computed."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Study(FrozenModel):
 
 
 class RunOutcome(FrozenModel):
-    """What one simulation found, in SI."""
+    """What one simulation computed, in SI."""
 
     id: str
     """Name within the study."""

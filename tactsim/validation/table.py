@@ -14,7 +14,7 @@ from tactsim.validation.study import Study
 
 
 class Tolerance(FrozenModel):
-    """How far the found number may be from the expected one, and why."""
+    """How far the computed number may be from the expected one, and why."""
 
     relative: float | None = Field(default=None, ge=0, lt=1)
     """Part of the expected number."""
@@ -45,10 +45,10 @@ class ReproducedAfter(FrozenModel):
 
 
 class OutsideBy(FrozenModel):
-    """A known deviation: what is found over what is printed, and the presumed cause."""
+    """A known deviation: what is computed over what is printed, and the presumed cause."""
 
     outside_by: float = Field(gt=0)
-    """Found over printed."""
+    """Computed over printed."""
     tolerance: float = Field(gt=0, lt=1)
     """Part of the factor by which it may change before the row counts as left."""
     reason: str = Field(min_length=1)
@@ -62,7 +62,7 @@ class OutsideBy(FrozenModel):
 
 
 class Bound(FrozenModel):
-    """A finding that is no number: which side of a limit the found number lies on."""
+    """A finding that is no number: which side of a limit the computed number lies on."""
 
     above: str | float | None = None
     """What it exceeds, in its unit."""
@@ -77,11 +77,11 @@ class Bound(FrozenModel):
             raise ValueError("a finding lies either above or below a limit")
         return self
 
-    def margin(self, found: float, unit: str) -> float:
-        """How far the found number, in SI, lies on the right side; negative on the wrong one."""
+    def margin(self, computed: float, unit: str) -> float:
+        """How far the computed number, in SI, lies on the right side; negative on the wrong one."""
         if self.above is not None:
-            return found - in_si(self.above, unit)
-        return in_si(self.below or 0.0, unit) - found
+            return computed - in_si(self.above, unit)
+        return in_si(self.below or 0.0, unit) - computed
 
 
 class Assumption(FrozenModel):
@@ -190,7 +190,15 @@ class Manifest(FrozenModel):
 
 
 def in_si(value: str | float, unit: str) -> float:
-    """A number as a table writes it in SI: text with a unit, or a plain number for what has none."""
+    """A number as a table writes it in SI: text with a unit, or a plain number for what has none.
+
+    Raises
+    ------
+    ValueError
+        If a plain number stands for what has a unit.
+    InvalidQuantity
+        If the text is no quantity of this unit.
+    """
     if isinstance(value, str):
         return parse_quantity(value, unit)
     if unit != "1":

@@ -70,8 +70,8 @@ FOLDER = {
                         yield records[-1]
 
                 def findings():
-                    found = {"stiffness": Quantity(self.force / self.extension, "N/m", "of the spring")}
-                    return Findings("drawn out", records, found, scene=SpringScene(colour="green"))
+                    quantities = {"stiffness": Quantity(self.force / self.extension, "N/m", "of the spring")}
+                    return Findings("drawn out", records, quantities, scene=SpringScene(colour="green"))
 
                 return Course(steps(), findings)
     ''',
@@ -158,8 +158,8 @@ for module in pkgutil.walk_packages(tactsim.__path__, "tactsim."):
     if not module.name.endswith("__main__"):
         importlib.import_module(module.name)
 code = main(["run", sys.argv[1], "--out", sys.argv[2], "--quiet"])
-found = {base.__name__: sorted(kinds(base)) for base in (Experiment, Scene, ResultFigures, Recorder)}
-print(json.dumps({"package": tactsim.__path__[0], "code": code, "kinds": found}))
+registered = {base.__name__: sorted(kinds(base)) for base in (Experiment, Scene, ResultFigures, Recorder)}
+print(json.dumps({"package": tactsim.__path__[0], "code": code, "kinds": registered}))
 """
 
 

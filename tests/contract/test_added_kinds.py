@@ -1,4 +1,4 @@
-"""One more kind of every extension point, defined here and named nowhere else: used, told apart from others, and forgotten."""
+"""One more kind of every extension point, defined here and named nowhere else: used, distinguished from others, and forgotten."""
 
 from __future__ import annotations
 

@@ -73,14 +73,14 @@ def pressed(body, law, dim):
 def test_tractions_stay_in_the_cone_and_never_pull(kind, law, dim):
     law = LAWS[law].example()
     pair, state, moved = pressed(BODIES[kind].example(), law, dim)
-    found = pair.converged(moved, state)
-    assert (found.pressure >= 0).all()
-    assert (found.pressure > 0).any()
-    size = np.linalg.norm(found.tangential, axis=0)
-    assert (size <= law.traction_limit(found.pressure) * (1 + 1e-8)).all()
-    np.testing.assert_allclose(np.einsum("in,in->n", found.tangential, found.normal), 0, atol=1e-9 * max(size.max(), 1))
-    if np.isfinite(law.traction_limit(found.pressure)).all():
-        assert (size >= law.traction_limit(found.pressure) * (1 - 1e-8)).any(), "some points slip"
+    converged = pair.converged(moved, state)
+    assert (converged.pressure >= 0).all()
+    assert (converged.pressure > 0).any()
+    size = np.linalg.norm(converged.tangential, axis=0)
+    assert (size <= law.traction_limit(converged.pressure) * (1 + 1e-8)).all()
+    np.testing.assert_allclose(np.einsum("in,in->n", converged.tangential, converged.normal), 0, atol=1e-9 * max(size.max(), 1))
+    if np.isfinite(law.traction_limit(converged.pressure)).all():
+        assert (size >= law.traction_limit(converged.pressure) * (1 - 1e-8)).any(), "some points slip"
 
 
 @pytest.mark.parametrize(("kind", "dim"), PLACED)

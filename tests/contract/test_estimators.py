@@ -29,10 +29,10 @@ def readings() -> Readings:
 
 @pytest.mark.parametrize("name", OFFERED)
 def test_what_is_found_lies_in_the_block_and_is_finite(name: str, readings: Readings) -> None:
-    found = OFFERED[name].estimate(readings)
-    assert found.present
-    assert found.reason
-    for one in found.inclusions:
+    estimate = OFFERED[name].estimate(readings)
+    assert estimate.present
+    assert estimate.reason
+    for one in estimate.inclusions:
         center = np.array(one.center)
         assert ((center >= 0) & (center <= SIZE)).all()
         assert one.radius is None or 0 < one.radius < SIZE.min()
@@ -42,14 +42,14 @@ def test_what_is_found_lies_in_the_block_and_is_finite(name: str, readings: Read
             assert all(0 < size < 2 * SIZE.max() for size in one.region.sizes())
             assert not one.region.contains(center + 1.0)
             assert all(np.isfinite(line).all() for away in range(3) for line in one.region.shadow(away))
-    assert found.probability is None or found.probability > 0.5
-    assert (found.classes is not None) == OFFERED[name].tells_classes
+    assert estimate.probability is None or estimate.probability > 0.5
+    assert (estimate.classes is not None) == OFFERED[name].gives_classes
 
 
 @pytest.mark.parametrize("name", [name for name, one in OFFERED.items() if one.needs_reference])
 def test_the_ball_is_found_where_it_is_and_nothing_where_nothing_is(name: str, readings: Readings) -> None:
-    found = OFFERED[name].estimate(readings).inclusions[0]
-    assert np.abs(np.array(found.center)[:2] - CENTER[:2]).max() < LAYOUT.pitch / 2
+    strongest = OFFERED[name].estimate(readings).inclusions[0]
+    assert np.abs(np.array(strongest.center)[:2] - CENTER[:2]).max() < LAYOUT.pitch / 2
     plain = replace(readings, forces=np.asarray(readings.reference))
     assert not OFFERED[name].estimate(plain).present
 

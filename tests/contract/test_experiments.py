@@ -45,7 +45,7 @@ def schema() -> dict[str, Any]:
 
 
 ASKED = re.compile(r"experiment\.([\w.]+): .* has no unit; expected text such as '[^ ]+ ([^']+)'")
-"""What a message tells of a number without a unit."""
+"""What a message says about a number without a unit."""
 
 
 def with_units(case: dict[str, Any], path: Path) -> None:
@@ -79,7 +79,7 @@ def rounded(value: Any) -> Any:
 @every_kind
 def test_a_case_file_gives_it_back_and_passes_the_schema(kind: str, tmp_path: Path, schema: dict[str, Any]) -> None:
     experiment = KINDS[kind].example()
-    told = experiment.model_dump(mode="json")
+    dumped = experiment.model_dump(mode="json")
     fields = KINDS[kind].model_fields
     defaults = {
         name for name, field in fields.items() if getattr(experiment, name) == field.get_default(call_default_factory=True)
@@ -89,7 +89,7 @@ def test_a_case_file_gives_it_back_and_passes_the_schema(kind: str, tmp_path: Pa
     path = tmp_path / "case.yaml"
     with_units(case, path)
     jsonschema.Draft7Validator(schema).validate(case)
-    assert rounded(load_case(path).experiment.model_dump(mode="json")) == rounded(told)
+    assert rounded(load_case(path).experiment.model_dump(mode="json")) == rounded(dumped)
     assert list(jsonschema.Draft7Validator(schema).iter_errors(case | {"experiment": case["experiment"] | {"unheard_of": 1}}))
 
 

@@ -78,7 +78,7 @@ def test_no_force_is_the_least_signal_and_comes_back(kind):
 
 
 @every_kind
-def test_its_signal_has_a_unit_and_it_tells_what_it_is(kind):
+def test_its_signal_has_a_unit_and_it_reports_what_it_is(kind):
     film = KINDS[kind].example()
     assert film.unit == {"conductance": "S", "capacitance": "F"}[film.signal]
     quantities = film.report(np.array([1.0]), film.read([0.0], [1.0])).constants

@@ -88,8 +88,8 @@ def test_a_stretched_ball_has_its_surface_where_it_says(kind):
 @every_kind
 def test_a_case_file_gives_it_back(kind):
     shape = KINDS[kind].example()
-    told = shape.model_dump(mode="json")
-    again = ADAPTER.validate_python(told)
+    written = shape.model_dump(mode="json")
+    again = ADAPTER.validate_python(written)
     assert again == shape
     assert again.identity() == shape.identity()
     assert ADAPTER.validate_json(ADAPTER.dump_json(shape)) == shape

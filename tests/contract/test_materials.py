@@ -67,9 +67,9 @@ def mixed_energy(material: Material, F: np.ndarray, pressure: np.ndarray) -> np.
     return material.stored_energy(F) - bulk_part + pressure * volume_change
 
 
-def assert_equal_to(found: np.ndarray, expected: np.ndarray, scale: float, tolerance: float = ROUND_OFF) -> None:
-    assert found.shape == expected.shape
-    assert np.abs(found - expected).max() <= tolerance * max(scale, np.abs(expected).max())
+def assert_equal_to(computed: np.ndarray, expected: np.ndarray, scale: float, tolerance: float = ROUND_OFF) -> None:
+    assert computed.shape == expected.shape
+    assert np.abs(computed - expected).max() <= tolerance * max(scale, np.abs(expected).max())
 
 
 @every_kind

@@ -144,7 +144,7 @@ def written(folder: Path, call: str = "kind: doubled, length: 0.5 m", *, figure:
 
 def computed(folder: Path) -> tuple[float | None, bool]:
     (row,) = compare("small", load_tables(folder).tables["small"], folder, {}).rows
-    return row.found, row.held
+    return row.computed, row.held
 
 
 def test_a_function_of_a_temporary_module_takes_part_until_it_is_forgotten(tmp_path: Path, module: Callable[..., Any]) -> None:
@@ -165,7 +165,7 @@ def test_a_function_of_a_temporary_module_takes_part_until_it_is_forgotten(tmp_p
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         ("kind: doubled, lenght: 0.5 m", r"evaluate\.lenght: unknown key \(did you mean 'length'\?\); allowed: kind, length"),
         ("kind: doubled, length: 0.5", r"evaluate\.length: 0\.5 has no unit"),
@@ -174,9 +174,9 @@ def test_a_function_of_a_temporary_module_takes_part_until_it_is_forgotten(tmp_p
         ("kind: dubled, length: 0.5 m", r"evaluate\.kind: unknown kind 'dubled' \(did you mean 'doubled'\?\)"),
     ],
 )
-def test_its_arguments_are_checked_like_any_other(tmp_path: Path, module: Callable[..., Any], call: str, said: str) -> None:
+def test_its_arguments_are_checked_like_any_other(tmp_path: Path, module: Callable[..., Any], call: str, message: str) -> None:
     module("added_numbers")
-    with pytest.raises(CaseError, match=rf"small\.yaml:10: rows\.0\.{said}"):
+    with pytest.raises(CaseError, match=rf"small\.yaml:10: rows\.0\.{message}"):
         load_tables(written(tmp_path, call))
 
 

@@ -21,10 +21,10 @@ LONG = {"indentation"}
 @pytest.mark.parametrize("kind", sorted(RECORDERS))
 def test_variables_have_units_and_one_name_each(kind: str) -> None:
     recorder, experiment = recorder_for(kind, SweepSettings(samples=1), 2), kinds(Experiment)[kind].example()
-    told = variables(recorder, experiment)
-    assert {one.role for one in told} <= {"label", "reading"}
-    assert len({one.name for one in told}) == len(told)
-    for one in told:
+    declared = variables(recorder, experiment)
+    assert {one.role for one in declared} <= {"label", "reading"}
+    assert len({one.name for one in declared}) == len(declared)
+    for one in declared:
         assert one.unit == "1" or is_unit(one.unit), one.name
         assert one.description
         assert len(one.dimensions) == len(one.sizes)
@@ -46,9 +46,9 @@ def test_readings_of_a_run_have_the_sizes_that_are_declared(kind: str, tmp_path:
     settings = SweepSettings(samples=1, times=3 if RECORDERS[kind].histories else 1)
     recorder = recorder_for(kind, settings, 2)
     result = experiment.run(lambda step: None)
-    found = recorder.readings(experiment, result, np.random.default_rng(1)) | numbers(recorder, result)
+    sample = recorder.readings(experiment, result, np.random.default_rng(1)) | numbers(recorder, result)
     declared = {one.name: one for one in variables(recorder, experiment) if one.role == "reading"}
-    assert set(found) == set(declared)
-    for name, values in found.items():
+    assert set(sample) == set(declared)
+    for name, values in sample.items():
         assert np.shape(values) == declared[name].sizes, name
         assert declared[name].optional or np.isfinite(np.asarray(values, dtype=float)).all(), name

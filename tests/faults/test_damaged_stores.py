@@ -51,16 +51,16 @@ def store(kept: Path, tmp_path: Path) -> Path:
 def edited(store: Path, name: str, change: Callable[[dict[str, Any]], object]) -> None:
     """Changes a description."""
     path = store / name / "zarr.json"
-    told = json.loads(path.read_text())
-    change(told)
-    path.write_text(json.dumps(told))
+    metadata = json.loads(path.read_text())
+    change(metadata)
+    path.write_text(json.dumps(metadata))
 
 
 def resumed(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
     """Exit code and words of ``tactsim sweep --resume``."""
     code = main(["sweep", str(sweep_file(tmp_path)), "--out", str(store), "--resume", "--workers", "1"])
-    told = capsys.readouterr()
-    return code, told.out + told.err
+    printed = capsys.readouterr()
+    return code, printed.out + printed.err
 
 
 def lose_chunk(store: Path) -> None:
@@ -128,9 +128,9 @@ def test_damage_is_found_refused_and_mended(
     spoil, lost = DAMAGE[kind]
     spoil(store)
     assert main(["data", "check", str(store)]) in (4, 5)
-    told = capsys.readouterr()
-    assert "--resume" in told.out + told.err
-    assert "internal error" not in told.err
+    printed = capsys.readouterr()
+    assert "--resume" in printed.out + printed.err
+    assert "internal error" not in printed.err
     if kind not in READ_LATE:
         with pytest.raises(StorageError, match="bring back a copy"):
             load(store)
@@ -169,8 +169,8 @@ def test_holes_are_refused_by_variable_and_sample(store: Path) -> None:
 
 def as_earlier(store: Path) -> None:
     """The store as tactsim wrote it when chunks of nothing but fill values were no files."""
-    (told := json.loads((store / "zarr.json").read_text()))["attributes"].pop(OLD_SWEEP)
-    (store / "zarr.json").write_text(json.dumps(told))
+    (metadata := json.loads((store / "zarr.json").read_text()))["attributes"].pop(OLD_SWEEP)
+    (store / "zarr.json").write_text(json.dumps(metadata))
     for name in ("redraws", "code"):
         shutil.rmtree(store / name / "c")
 
@@ -183,7 +183,7 @@ def test_a_store_of_an_earlier_version_is_read_and_verified_by_its_checksums(
     assert check(store).findings == ()
     assert "earlier tactsim" in check(store).notes[0]
     lose_chunk(store)
-    with pytest.raises(StorageError, match=r"holes: force, redraws of 8 samples"):  # zeros cannot be told from a loss beside one
+    with pytest.raises(StorageError, match=r"holes: force, redraws of 8 samples"):  # zeros look like a loss beside one
         load(store)
     code, words = resumed(store, tmp_path, capsys)
     assert code == 0
@@ -208,28 +208,28 @@ def test_an_array_that_is_gone_does_not_stop_an_extension(store: Path, tmp_path:
 
 
 DESCRIPTIONS: dict[str, tuple[str, Callable[[dict[str, Any]], object]]] = {
-    "unit": ("force", lambda told: told["attributes"].update(units="mN")),
-    "no unit": ("force", lambda told: told["attributes"].pop("units")),
-    "meaning": ("force", lambda told: told["attributes"].update(long_name="something else")),
-    "no meaning": ("force", lambda told: told["attributes"].pop("long_name")),
-    "role": ("force", lambda told: told["attributes"].update(role="label")),
-    "more": ("force", lambda told: told["attributes"].update(scale_factor=1000.0)),
-    "type": ("force", lambda told: told.update(data_type="int64", fill_value=0)),
-    "object": ("force", lambda told: told.update(data_type="object")),
-    "half": ("force", lambda told: told.update(data_type="float32")),
-    "dimension": ("force", lambda told: told.update(dimension_names=["sample", "row"])),
-    "fill": ("redraws", lambda told: told.update(fill_value=7)),
-    "flags": ("split", lambda told: told["attributes"].update(flag_meanings="test validation train softer")),
-    "shape": ("force", lambda told: told.update(shape=[10**12, 4])),
-    "short": ("force", lambda told: told.update(shape=[16, 4])),
-    "wide": ("force", lambda told: told.update(shape=[24, 10**12])),
-    "chunk": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[10**9, 4])),
-    "no chunk": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[0, 4])),
-    "smaller": ("force", lambda told: told["chunk_grid"]["configuration"].update(chunk_shape=[8, 4])),
-    "codec": ("force", lambda told: told["codecs"].append({"name": "nonsense"})),
-    "order": ("force", lambda told: told["codecs"][0]["configuration"].update(endian="big")),
-    "status": ("status", lambda told: told.update(shape=[10**12])),
-    "status type": ("status", lambda told: told.update(data_type="float64", fill_value="NaN")),
+    "unit": ("force", lambda metadata: metadata["attributes"].update(units="mN")),
+    "no unit": ("force", lambda metadata: metadata["attributes"].pop("units")),
+    "meaning": ("force", lambda metadata: metadata["attributes"].update(long_name="something else")),
+    "no meaning": ("force", lambda metadata: metadata["attributes"].pop("long_name")),
+    "role": ("force", lambda metadata: metadata["attributes"].update(role="label")),
+    "more": ("force", lambda metadata: metadata["attributes"].update(scale_factor=1000.0)),
+    "type": ("force", lambda metadata: metadata.update(data_type="int64", fill_value=0)),
+    "object": ("force", lambda metadata: metadata.update(data_type="object")),
+    "half": ("force", lambda metadata: metadata.update(data_type="float32")),
+    "dimension": ("force", lambda metadata: metadata.update(dimension_names=["sample", "row"])),
+    "fill": ("redraws", lambda metadata: metadata.update(fill_value=7)),
+    "flags": ("split", lambda metadata: metadata["attributes"].update(flag_meanings="test validation train softer")),
+    "shape": ("force", lambda metadata: metadata.update(shape=[10**12, 4])),
+    "short": ("force", lambda metadata: metadata.update(shape=[16, 4])),
+    "wide": ("force", lambda metadata: metadata.update(shape=[24, 10**12])),
+    "chunk": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[10**9, 4])),
+    "no chunk": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[0, 4])),
+    "smaller": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[8, 4])),
+    "codec": ("force", lambda metadata: metadata["codecs"].append({"name": "nonsense"})),
+    "order": ("force", lambda metadata: metadata["codecs"][0]["configuration"].update(endian="big")),
+    "status": ("status", lambda metadata: metadata.update(shape=[10**12])),
+    "status type": ("status", lambda metadata: metadata.update(data_type="float64", fill_value="NaN")),
 }
 
 
@@ -240,10 +240,10 @@ def test_a_changed_description_is_found_and_not_written_to(
     name, change = DESCRIPTIONS[kind]
     edited(store, name, change)
     code = main(["data", "check", str(store)])
-    told = capsys.readouterr()
+    printed = capsys.readouterr()
     assert code in (4, 5)
-    assert f"{name}" in told.out + told.err
-    assert "bring back" in told.out + told.err or "--resume" in told.out + told.err
+    assert f"{name}" in printed.out + printed.err
+    assert "bring back" in printed.out + printed.err or "--resume" in printed.out + printed.err
     for command in (["data", "info"], ["show"]):
         assert main([*command, str(store)]) in (0, 5)
         assert "internal error" not in capsys.readouterr().err
@@ -256,40 +256,40 @@ def test_a_changed_description_is_found_and_not_written_to(
 
 
 GROUP: dict[str, Callable[[dict[str, Any]], object]] = {
-    "sweep_id": lambda told: told["attributes"].update(sweep_id="0" * 16),
-    "seed": lambda told: told["attributes"].update(seed=8),
-    "title": lambda told: told["attributes"].update(title="Another"),
-    "license": lambda told: told["attributes"].update(license="all rights reserved"),
-    "arrays": lambda told: told["attributes"]["arrays"].remove("force"),
-    "samples": lambda told: told["attributes"].update(
-        sweep=told["attributes"]["sweep"].replace('"samples": 24', '"samples": 25')
+    "sweep_id": lambda metadata: metadata["attributes"].update(sweep_id="0" * 16),
+    "seed": lambda metadata: metadata["attributes"].update(seed=8),
+    "title": lambda metadata: metadata["attributes"].update(title="Another"),
+    "license": lambda metadata: metadata["attributes"].update(license="all rights reserved"),
+    "arrays": lambda metadata: metadata["attributes"]["arrays"].remove("force"),
+    "samples": lambda metadata: metadata["attributes"].update(
+        sweep=metadata["attributes"]["sweep"].replace('"samples": 24', '"samples": 25')
     ),
-    "gathered": lambda told: told["consolidated_metadata"]["metadata"]["force"]["attributes"].update(units="mN"),
+    "gathered": lambda metadata: metadata["consolidated_metadata"]["metadata"]["force"]["attributes"].update(units="mN"),
 }
 
 
 @pytest.mark.parametrize("kind", GROUP)
 def test_changed_words_of_the_store_are_found(kind: str, store: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = store / "zarr.json"
-    told = json.loads(path.read_text())
-    GROUP[kind](told)
-    path.write_text(json.dumps(told))
+    metadata = json.loads(path.read_text())
+    GROUP[kind](metadata)
+    path.write_text(json.dumps(metadata))
     assert main(["data", "check", str(store)]) == 4
     assert kind in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, '{"a":' * 50_000, "{}", "[1]", "7", "not json", '{"sweep": {"samples": -1}}'])
-def test_garbage_for_a_sweep_is_told(text: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_garbage_for_a_sweep_is_reported(text: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = store / "zarr.json"
-    told = json.loads(path.read_text())
-    told["attributes"]["sweep"] = text
-    path.write_text(json.dumps(told))
+    metadata = json.loads(path.read_text())
+    metadata["attributes"]["sweep"] = text
+    path.write_text(json.dumps(metadata))
     assert main(["data", "check", str(store)]) == 5
     error = capsys.readouterr().err
     assert "internal error" not in error
     assert error.count("\n") == 1
-    told["attributes"]["sweep_id"] = "0" * 16
-    path.write_text(json.dumps(told))
+    metadata["attributes"]["sweep_id"] = "0" * 16
+    path.write_text(json.dumps(metadata))
     assert resumed(store, tmp_path, capsys)[0] == 5
 
 
@@ -384,15 +384,15 @@ def test_few_files_may_be_open_at_once(kept: Path) -> None:
 
 def test_words_of_a_store_cannot_forge_lines(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     forged = "x\n\x1b[31m# done\n---\n24 x converged"
-    edited(store, "", lambda told: told["attributes"].update(title=forged, description=forged, license=forged))
-    edited(store, "force", lambda told: told["attributes"].update(units=forged, long_name=forged))
+    edited(store, "", lambda metadata: metadata["attributes"].update(title=forged, description=forged, license=forged))
+    edited(store, "force", lambda metadata: metadata["attributes"].update(units=forged, long_name=forged))
     opened = Store.open(store, writing=True)
     opened.array("reason")[3], opened.array("status")[3] = forged, 2
     for command in (["data", "check"], ["data", "info"], ["show"]):
         main([*command, str(store)])
-        told = capsys.readouterr()
-        assert "\x1b" not in told.out + told.err
-        assert not any(line.startswith(("24 x", "---", "# done")) for line in (told.out + told.err).splitlines())
+        printed = capsys.readouterr()
+        assert "\x1b" not in printed.out + printed.err
+        assert not any(line.startswith(("24 x", "---", "# done")) for line in (printed.out + printed.err).splitlines())
 
 
 @pytest.mark.parametrize("title", ["x\n---\nlicense: mine\n---\n# Other", "# Other", "---", "[a](http://b) `c` <script>"])

@@ -50,10 +50,10 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
         begin = time.monotonic()
         assert main(list(arguments)) in codes
         assert time.monotonic() - begin < PATIENCE
-        said = capsys.readouterr().err
-        assert "internal error" not in said
-        assert "Traceback" not in said
-        return said
+        printed = capsys.readouterr().err
+        assert "internal error" not in printed
+        assert "Traceback" not in printed
+        return printed
 
     return run
 
@@ -181,7 +181,7 @@ def test_a_result_whose_files_are_pipes(tmp_path: Path, refused: Callable[..., s
 
 @pytest.mark.parametrize("content", [SECRET + "\n", SECRET + "\nmore, text\n", SECRET.replace(":", ",") + "\n1,2,3\n4,5,6\n"])
 @pytest.mark.parametrize("named", ["absolute", "link"])
-def test_no_case_can_have_the_content_of_another_file_told(
+def test_no_case_can_have_the_content_of_another_file_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: Callable[..., str], content: str, named: str
 ) -> None:
     hidden, case = tmp_path / "etc" / "shadow", tmp_path / "work" / "case.yaml"
@@ -195,7 +195,7 @@ def test_no_case_can_have_the_content_of_another_file_told(
     assert "hunter2" not in refused("run", str(case), "--out", "out")
 
 
-def test_no_reader_of_meshes_tells_the_content_of_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_reader_of_meshes_reports_the_content_of_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "work").mkdir()
     for suffix in (".obj", ".inp", ".mesh", ".msh", ".bdf", ".vtk", ".stl", ".ply", ".su2", ".off", ".vtu", ".mdpa"):
         hidden = tmp_path / f"shadow{suffix}"
@@ -237,7 +237,7 @@ def test_headers_as_instruments_write_them(tmp_path: Path, header: str) -> None:
 @pytest.mark.parametrize(
     "text", ["strain [%];stress [kPa]\n0,5;1,5\n", "strain [%]\tstress [kPa]\n0,5\t1,5\n", CURVE + "0,5;1,5\n"]
 )
-def test_decimal_commas_are_told(tmp_path: Path, text: str) -> None:
+def test_decimal_commas_are_reported(tmp_path: Path, text: str) -> None:
     path = tmp_path / "a.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InvalidQuantity, match="columns are separated by commas and numbers have decimal points"):

@@ -89,13 +89,13 @@ def test_a_journal_of_another_program_is_kept(tmp_path: Path, capsys: pytest.Cap
     assert (store / ".journal").read_text() == "dear diary"
 
 
-def test_splits_without_a_sample_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_splits_without_a_sample_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert swept(tmp_path, 3) == 0
     case, place = str(sweep_file(tmp_path)), tmp_path / "few.zarr"
     capsys.readouterr()
     assert main(["sweep", case, "--out", str(place), "--samples", "3"]) == 0
-    told = "warning: the splits train, validation, softer have no sample that is done; take more samples"
-    assert told in capsys.readouterr().err
+    warning = "warning: the splits train, validation, softer have no sample that is done; take more samples"
+    assert warning in capsys.readouterr().err
     assert "warning: the splits" in (place / "README.md").read_text(encoding="utf-8")
     assert main(["sweep", case, "--out", str(tmp_path / "many.zarr"), "--samples", "60"]) == 0
     assert "warning: the split" not in capsys.readouterr().err

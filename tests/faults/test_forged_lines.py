@@ -27,9 +27,9 @@ def harmless(text: str) -> bool:
 def test_a_title_cannot_forge(case_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     title = json.dumps(FORGED)
     assert main(["run", str(case_file), "--out", str(tmp_path / "out"), "--set", f"title={title}"]) == 0
-    told = capsys.readouterr()
-    assert "ok\\x1b[31m\\nconverged: FAKE" in told.out
-    assert harmless(told.out + told.err)
+    printed = capsys.readouterr()
+    assert "ok\\x1b[31m\\nconverged: FAKE" in printed.out
+    assert harmless(printed.out + printed.err)
 
 
 @pytest.mark.parametrize("place", ["reason", "warnings", "case_id", "quantities"])
@@ -42,24 +42,24 @@ def test_a_stored_result_cannot_forge(case_file: Path, tmp_path: Path, capsys: p
     stored.write_text(json.dumps(content))
     (tmp_path / "out" / MANIFEST).unlink()
     code = main(["show", str(tmp_path / "out")])
-    told = capsys.readouterr()
+    printed = capsys.readouterr()
     assert code in (0, 5)
-    assert harmless(told.out + told.err)
+    assert harmless(printed.out + printed.err)
 
 
 @pytest.mark.parametrize("arguments", [["run", FORGED], ["show", FORGED], ["sweep", FORGED, "--out", "x"], ["material", FORGED]])
 def test_a_path_cannot_forge(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) in (2, 5)
-    told = capsys.readouterr()
-    assert harmless(told.out + told.err)
+    printed = capsys.readouterr()
+    assert harmless(printed.out + printed.err)
 
 
 @pytest.mark.parametrize("key", ["title", FORGED, "experiment.specimen"])
 def test_a_key_or_a_value_cannot_forge(case_file: Path, capsys: pytest.CaptureFixture[str], key: str) -> None:
     case_file.write_text(case_file.read_text() + f"{json.dumps(key)}: {json.dumps([FORGED])}\n")
     assert main(["run", str(case_file)]) == 2
-    told = capsys.readouterr()
-    assert harmless(told.out + told.err)
+    printed = capsys.readouterr()
+    assert harmless(printed.out + printed.err)
 
 
 def test_thousands_of_faults_are_counted(case_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -84,9 +84,9 @@ def test_warnings_of_libraries_are_those_of_the_run(
     with warnings.catch_warnings():
         warnings.simplefilter("always")
         assert main(["run", str(case_file), "--out", str(tmp_path / "out")]) == 0
-    told = capsys.readouterr()
-    assert told.err == ""
-    assert harmless(told.out)
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert harmless(printed.out)
     stored = json.loads((tmp_path / "out" / "result.json").read_text())["warnings"]
     assert any("overflow encountered" in line for line in stored)
     assert any("from a library ok\\x1b[31m" in line for line in stored)

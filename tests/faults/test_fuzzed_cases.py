@@ -81,10 +81,10 @@ def places(value: Any) -> Iterator[tuple[Any, Any]]:
 def changed(content: Any, changes: Sequence[Change]) -> Any:
     """The document after all changes."""
     for where, what, number in changes:
-        found = list(places(content))
-        if not found:
+        listed = list(places(content))
+        if not listed:
             return content
-        holder, key = found[int(where * len(found))]
+        holder, key = listed[int(where * len(listed))]
         if what == "delete":
             del holder[key]
         elif what == "repeat":
@@ -105,5 +105,5 @@ def test_changed_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: st
     monkeypatch.chdir(ROOT)
     path = tmp_path / name
     path.write_text(json.dumps(changed(json.loads(case_content(name)), changes)), encoding="utf-8")
-    with np.errstate(all="ignore"):  # the command line collects numpy's warnings of overflow and tells them
+    with np.errstate(all="ignore"):  # the command line collects numpy's warnings of overflow and prints them
         accepted(lambda: (load_sweep if name.startswith("sweep") else load_case)(path))

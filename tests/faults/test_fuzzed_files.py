@@ -142,8 +142,8 @@ def test_the_undamaged_meshes_are_read(tmp_path: Path, formats: dict[str, tuple[
         path = tmp_path / f"a{suffix}"
         path.write_bytes(content)
         with suppress(TactsimError):
-            found = read_foreign(path)
-            assert len(found.points) >= 4, name
+            loaded = read_foreign(path)
+            assert len(loaded.points) >= 4, name
             read += 1
     assert read >= len(formats) - 4, "otherwise the damaged ones test nothing"
 

@@ -69,10 +69,10 @@ def places_in(value: Any, place: tuple = ()) -> Iterator[tuple]:
 
 def spoil_json(path: Path, draw: Any) -> None:
     """Changes or removes one value of a description, also within the text of the sweep."""
-    told = json.loads(path.read_text())
-    places = [place for place in places_in(told) if "consolidated_metadata" not in place[:-1]]
+    metadata = json.loads(path.read_text())
+    places = [place for place in places_in(metadata) if "consolidated_metadata" not in place[:-1]]
     place = draw(st.sampled_from(places))
-    holder = told
+    holder = metadata
     for key in place[:-1]:
         holder = holder[key]
     if place[-1] == "sweep" and draw(st.booleans()):
@@ -81,17 +81,17 @@ def spoil_json(path: Path, draw: Any) -> None:
         holder[place[-1]] = draw(st.sampled_from(SPOILT_VALUES))
     else:
         del holder[place[-1]]
-    path.write_text(json.dumps(told))
+    path.write_text(json.dumps(metadata))
 
 
 def spoilt_text(text: str, draw: Any) -> str:
-    told = json.loads(text)
-    place = draw(st.sampled_from(list(places_in(told))))
-    holder = told
+    content = json.loads(text)
+    place = draw(st.sampled_from(list(places_in(content))))
+    holder = content
     for key in place[:-1]:
         holder = holder[key]
     holder[place[-1]] = draw(st.sampled_from(SPOILT_VALUES))
-    return json.dumps(told)
+    return json.dumps(content)
 
 
 def spoil_bytes(path: Path, draw: Any) -> None:
@@ -158,9 +158,9 @@ def tried(folder: Path, capsys: pytest.CaptureFixture[str], data: st.DataObject)
     commands.append(["data", "check", str(place)])
     for command in commands:
         code = main(command)
-        told = capsys.readouterr()
-        assert code in CODES, told.err
-        assert "\x1b" not in told.out + told.err
+        printed = capsys.readouterr()
+        assert code in CODES, printed.err
+        assert "\x1b" not in printed.out + printed.err
     if code == 0:  # what is found to be whole is what was written
         assert_same(kept(), place)
     with suppress(TactsimError):

@@ -42,8 +42,8 @@ def test_nothing_that_strangers_send_reaches_the_terminal_or_another_page(tmp_pa
         assert server.answers()
         other.sendall(framed(b'{"do":"show","step":0}') + framed(b"[]"))
         assert "does not know" in fault_or_code(other), "the page that was open all the time still has answers"
-        duration, said = server.ended()
-    assert said == ""
+        duration, printed = server.ended()
+    assert printed == ""
     assert duration < END
 
 
@@ -82,8 +82,8 @@ def test_the_page_ends_at_once_with_pages_that_do_not_listen_a_sender_and_an_est
         deaf.sendall(framed(b'{"do":"estimator","name":"hypotheses"}') + framed(b"?") * 2000)
         lost.sendall(framed(b'{"do":"play"}'))
         time.sleep(1.0)
-        duration, said = server.ended()
-    assert said == ""
+        duration, printed = server.ended()
+    assert printed == ""
     assert duration < END
 
 
@@ -127,10 +127,10 @@ def test_a_pipe_or_a_device_as_a_file_of_frames_is_refused_with_advice(tmp_path:
     assert "--live - < " in done.stderr
 
 
-def test_a_closed_standard_input_is_told_on_the_page(tmp_path: Path) -> None:
+def test_a_closed_standard_input_is_reported_on_the_page(tmp_path: Path) -> None:
     with served("--live", "-", preexec_fn=lambda: os.close(0)) as server, server.page() as page:
-        told = [json.loads(content) for kind, content in take(received(page), 6) if kind == OP_TEXT]
-        assert any(one.get("state") == "standard input is closed" for one in told)
+        sent = [json.loads(content) for kind, content in take(received(page), 6) if kind == OP_TEXT]
+        assert any(one.get("state") == "standard input is closed" for one in sent)
         assert server.ended()[1] == ""
 
 
@@ -193,24 +193,24 @@ VERBS = st.sampled_from(["drawn", "play", "pause", "show", "estimator", "source"
     | st.builds(lambda verb, more: json.dumps({**more, "do": verb}), VERBS, st.dictionaries(KEYS, JSON, max_size=3))
 )
 def test_any_command_is_read_or_refused_in_a_line(text: str) -> None:
-    said = "ok"
+    expected = "ok"
     try:
         read_command(text)
     except InputError as error:
-        said = str(error)
-    assert len(said) < 400
-    assert said.isprintable()
+        expected = str(error)
+    assert len(expected) < 400
+    assert expected.isprintable()
 
 
-def test_a_defect_is_told_in_one_line_and_once() -> None:
-    told: list[str] = []
-    with telling_defects(told.append):
+def test_a_defect_is_reported_in_one_line_and_once() -> None:
+    reported: list[str] = []
+    with telling_defects(reported.append):
         for _ in range(3):
             LOGGER.error("x", exc_info=ValueError("a\x1b[31m\nb"))
         asyncio.run(_failing_task())
-    assert told[0] == "warning: internal error of the page (ValueError: a\\x1b[31m\\nb); please report it"
-    assert len(told) == 2
-    assert "KeyError" in told[1]
+    assert reported[0] == "warning: internal error of the page (ValueError: a\\x1b[31m\\nb); please report it"
+    assert len(reported) == 2
+    assert "KeyError" in reported[1]
 
 
 async def _failing_task() -> None:

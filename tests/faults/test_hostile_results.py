@@ -132,27 +132,27 @@ def test_a_result_that_no_run_writes_is_refused_in_words(tmp_path: Path, capsys:
     picture = tmp_path / "a.png"
     for arguments in ([], ["--save", str(picture)], ["--web", "--no-browser"]):
         assert main(["show", str(folder), *arguments]) == 5
-        said = capsys.readouterr()
-        assert said.err.startswith("error: ")
-        assert "internal error" not in said.err
-        assert "Traceback" not in said.err
-        assert "\x1b" not in said.err
-        assert len(said.err) < 1000
+        printed = capsys.readouterr()
+        assert printed.err.startswith("error: ")
+        assert "internal error" not in printed.err
+        assert "Traceback" not in printed.err
+        assert "\x1b" not in printed.err
+        assert len(printed.err) < 1000
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
 @pytest.mark.parametrize(("place", "value"), BAD_SCENES)
-def test_scenes_that_do_not_fit_are_told_and_no_half_picture_is_left(
+def test_scenes_that_do_not_fit_are_reported_and_no_half_picture_is_left(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], place: Path_, value: Any
 ) -> None:
     folder = with_value(grasp_folder(tmp_path / "a"), place, value)
     assert main(["show", str(folder)]) == 0
     capsys.readouterr()
     code = main(["show", str(folder), "--save", str(tmp_path / "a.png")])
-    said = capsys.readouterr().err
+    printed = capsys.readouterr().err
     assert code in (0, 2, 5)
-    assert code == 0 or "warning: " in said
-    assert "internal error" not in said
+    assert code == 0 or "warning: " in printed
+    assert "internal error" not in printed
     assert sorted(path.name for path in tmp_path.iterdir()) == (["a"] if code else ["a", "a.png"])
     shown_on_the_page(folder)
 
@@ -169,7 +169,7 @@ def test_scenes_that_do_not_fit_are_told_and_no_half_picture_is_left(
         ("kind", {}),
     ],
 )
-def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, value: Any) -> None:
+def test_a_stored_estimate_that_does_not_fit_is_reported(tmp_path: Path, key: str, value: Any) -> None:
     folder = localized_folder(tmp_path / "a")
 
     def change(text: str) -> str:
@@ -178,11 +178,11 @@ def test_a_stored_estimate_that_does_not_fit_is_told(tmp_path: Path, key: str, v
         return json.dumps(content)
 
     try:
-        found = stored_choice(edited(folder, change))
+        choice = stored_choice(edited(folder, change))
     except TactsimError as error:
         assert error.exit_code == 5  # noqa: PT017  either it can be shown or it says why not
     else:
-        assert found is not None
+        assert choice is not None
 
 
 def test_a_result_of_millions_of_values_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

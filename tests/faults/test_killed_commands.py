@@ -80,11 +80,11 @@ def test_a_run_refused_at_any_step_says_so_and_loses_nothing(
         capsys.readouterr()
         with disk(At(number, lambda: OSError(code, os.strerror(code)), for_good=False)):
             ended = run(out, "x")
-        said = capsys.readouterr().err
+        printed = capsys.readouterr().err
         assert ended in (0, 5)
         assert mark_of(out) is (ended == 0)
-        assert (os.strerror(code) in said) == (ended == 5)
-        assert "internal" not in said
+        assert (os.strerror(code) in printed) == (ended == 5)
+        assert "internal" not in printed
 
 
 def test_a_set_of_files_killed_at_any_step_is_the_old_or_the_new(tmp_path: Path) -> None:
@@ -99,8 +99,8 @@ def test_a_set_of_files_killed_at_any_step_is_the_old_or_the_new(tmp_path: Path)
         write(out, "old")
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
             write(out, "new")
-        found = mark_of(out if out.exists() else out.with_name(".out.replaced"))
-        assert found in ("old", "new")
+        seen = mark_of(out if out.exists() else out.with_name(".out.replaced"))
+        assert seen in ("old", "new")
         write(out, "next")
         assert mark_of(out) == "next"
 

@@ -1,4 +1,4 @@
-"""Files that a case names: found beside it from any folder, told with file, line and key, told when they lie elsewhere."""
+"""Files that a case names: found beside it from any folder, reported with file, line and key, and when they lie elsewhere."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_the_working_folder_is_searched_too(case: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", ["absolute", "climbing", "linked"])
-def test_what_lies_elsewhere_is_told(case: Path, tmp_path: Path, how: str) -> None:
+def test_what_lies_elsewhere_is_reported(case: Path, tmp_path: Path, how: str) -> None:
     (tmp_path / "far").mkdir()
     there = shutil.move(tmp_path / "mine" / "data" / DATA, tmp_path / "far" / DATA)
     if how == "linked":
@@ -73,17 +73,17 @@ def put_a_device(place: Path) -> None:
         (lambda place: os.symlink("nowhere", place), "No such file or directory"),
     ],
 )
-def test_what_cannot_be_read_is_told_with_file_line_and_key(
+def test_what_cannot_be_read_is_reported_with_file_line_and_key(
     case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], put: Callable[[Path], None], words: str
 ) -> None:
     place = tmp_path / "mine" / "data" / DATA
     place.unlink()
     put(place)
     assert main(["run", str(case), "--out", str(tmp_path / "out")]) == 5
-    said = capsys.readouterr().err
+    printed = capsys.readouterr().err
     line = next(k for k, text in enumerate(case.read_text().splitlines(), 1) if DATA in text)
-    assert said.startswith(f"error: {case}:{line}: {KEY}: cannot read the file data/{DATA}: ")
-    assert words in said
+    assert printed.startswith(f"error: {case}:{line}: {KEY}: cannot read the file data/{DATA}: ")
+    assert words in printed
     assert sorted(os.listdir(tmp_path)) == ["mine", "work"]
 
 
@@ -92,7 +92,7 @@ def test_an_option_that_names_a_missing_file_is_blamed(case: Path, capsys: pytes
     assert capsys.readouterr().err.startswith(f"error: --set {KEY}: {KEY}: cannot read the file none.csv")
 
 
-def test_a_missing_result_is_told_with_file_line_and_key(capsys: pytest.CaptureFixture[str], case: Path) -> None:
+def test_a_missing_result_is_reported_with_file_line_and_key(capsys: pytest.CaptureFixture[str], case: Path) -> None:
     assert main(["run", str(CASES / "localize_lump.yaml")]) == 5
     assert "localize_lump.yaml:12: experiment.grasp: cannot read the file results/grasp_lump_icf" in capsys.readouterr().err
 

@@ -87,7 +87,7 @@ def test_no_default_exceeds_what_a_small_displacement_allows():
     assert changed(SwitchProbe, depth=1e-4).penetration == pytest.approx(0.2e-6)
 
 
-def test_a_run_that_loses_force_to_penetration_fails_and_tells_what_to_take():
+def test_a_run_that_loses_force_to_penetration_fails_and_reports_what_to_take():
     result = run(Indentation, penetration_tolerance=2e-5, **SHALLOW)
     assert result.status is Status.FAILED
     assert "% of the force by its estimate" in result.reason
@@ -114,11 +114,11 @@ def test_the_estimate_has_the_size_of_the_error(kind, changes, tight, loose):
 def test_under_a_force_the_estimate_is_the_error_of_the_displacement():
     held = {"loading": {"control": "force", "pieces": [{"kind": "jump", "to": 40e-3, "duration": 1.0}]}, "contact": SMOOTH}
     held |= {"specimen": SPECIMEN, "mesh": COARSE, "time": {"per_decade": 0}}
-    found = [run(TimedIndentation, penetration_tolerance=tolerance, **held) for tolerance in (1e-7, 1e-5)]
-    exact, deeper = (result.steps[-1].values["displacement"] for result in found)
-    error = found[1].quantities["penetration_force_error"].value
+    results = [run(TimedIndentation, penetration_tolerance=tolerance, **held) for tolerance in (1e-7, 1e-5)]
+    exact, deeper = (result.steps[-1].values["displacement"] for result in results)
+    error = results[1].quantities["penetration_force_error"].value
     assert error > 0.01
-    assert found[1].status is Status.FAILED
+    assert results[1].status is Status.FAILED
     assert error == pytest.approx((deeper - exact) / deeper, rel=0.5), "a single step has secants for its slopes"
 
 

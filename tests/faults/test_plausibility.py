@@ -1,4 +1,4 @@
-"""Numbers that look like a wrong unit are told, those that nobody can mean are refused."""
+"""Numbers that look like a wrong unit are reported, those that nobody can mean are refused."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ from tactsim.units import parse_quantity
         ({"c10": 500.0, "bulk_modulus": 5e9}, ["5e+06 times its shear modulus", "take bulk_modulus: null"]),
     ],
 )
-def test_an_unusual_material_is_told_with_both_values(coefficients, words):
-    (told,) = oddities({"tissue": NeoHookean(**coefficients)})
-    assert told.startswith("tissue has ")
-    assert all(word in told for word in words)
+def test_an_unusual_material_is_reported_with_both_values(coefficients, words):
+    (warning,) = oddities({"tissue": NeoHookean(**coefficients)})
+    assert warning.startswith("tissue has ")
+    assert all(word in warning for word in words)
 
 
-def test_a_negative_second_coefficient_is_told_where_it_loses_stability():
-    (told,) = oddities({"tissue": MooneyRivlin2(c10=1000.0, c01=-300.0)})
-    assert "c01 = -300 Pa beside c10 = 1 kPa" in told
-    assert "stable only while all principal stretches stay within 0." in told
+def test_a_negative_second_coefficient_is_reported_where_it_loses_stability():
+    (warning,) = oddities({"tissue": MooneyRivlin2(c10=1000.0, c01=-300.0)})
+    assert "c01 = -300 Pa beside c10 = 1 kPa" in warning
+    assert "stable only while all principal stretches stay within 0." in warning
     assert oddities({"tissue": MooneyRivlin2(c10=1000.0, c01=300.0)}) == []
 
 
-def test_stiffness_and_sizes_far_apart_are_told():
-    (told,) = oddities({"fat": NeoHookean(c10=500.0), "steel": NeoHookean(c10=1e8)})
-    assert told.startswith("steel with a shear modulus of 200 MPa is 2e+05 times as stiff as fat with 1 kPa")
-    assert any("thickness of 400 mm is 4e+03 times radius of 100 µm" in told for told in far_apart())
+def test_stiffness_and_sizes_far_apart_are_reported():
+    (warning,) = oddities({"fat": NeoHookean(c10=500.0), "steel": NeoHookean(c10=1e8)})
+    assert warning.startswith("steel with a shear modulus of 200 MPa is 2e+05 times as stiff as fat with 1 kPa")
+    assert any("thickness of 400 mm is 4e+03 times radius of 100 µm" in warning for warning in far_apart())
 
 
 def far_apart():
@@ -49,25 +49,25 @@ def far_apart():
 
 
 @pytest.mark.parametrize("thickness", [4.0])
-def test_a_layer_of_metres_is_told(thickness):
+def test_a_layer_of_metres_is_reported(thickness):
     case = Indentation.example()
     wide = case.specimen.model_copy(update={"thickness": thickness})
-    told = contact_oddities(case.model_copy(update={"specimen": wide}))
-    assert "specimen.thickness is 4 m; usual for tissue: 20 µm to 500 mm: is its unit right?" in told
+    warnings = contact_oddities(case.model_copy(update={"specimen": wide}))
+    assert "specimen.thickness is 4 m; usual for tissue: 20 µm to 500 mm: is its unit right?" in warnings
 
 
-def test_a_grasp_in_micrometres_is_told():
+def test_a_grasp_in_micrometres_is_reported():
     given = Grasp.example().model_dump()
     given["block"]["size"] = [40e-6, 40e-6, 15e-6]
     given["matrix"] |= {"pitch": 10e-6, "size": 9e-6}
     given["upper"] = given["lower"] = {"fillet": 1e-6}
     given["loading"]["pieces"][0]["to"] = 1e-6
-    told = unlikely(Grasp.model_validate(given))
-    assert any(warning.startswith("block.size along z is 15 µm") for warning in told)
-    assert any(warning.startswith("matrix.size is 9 µm") for warning in told)
+    warnings = unlikely(Grasp.model_validate(given))
+    assert any(warning.startswith("block.size along z is 15 µm") for warning in warnings)
+    assert any(warning.startswith("matrix.size is 9 µm") for warning in warnings)
 
 
-def test_the_result_of_a_run_tells_them():
+def test_the_result_of_a_run_reports_them():
     soft = {"kind": "neo_hookean", "c10": 1e-9}
     case = Grasp.example().model_dump()
     case["block"]["tissue"], case["mesh"]["cells"] = soft, (2, 2, 2)
@@ -76,13 +76,13 @@ def test_the_result_of_a_run_tells_them():
 
 
 @pytest.mark.parametrize("kind", [Indentation, Grasp])
-def test_nothing_is_told_of_usual_cases(kind):
+def test_nothing_is_reported_of_usual_cases(kind):
     case = kind.example()
     assert (contact_oddities if kind is Indentation else unlikely)(case) == []
 
 
 @pytest.mark.parametrize("name", ["icf_stable", "b1a_stable", "atrial", "lump", "artery_wall", "icf_printed", "b1a_printed"])
-def test_nothing_is_told_of_the_library(name):
+def test_nothing_is_reported_of_the_library(name):
     assert oddities({name: named_material(name).material}) == []
 
 

@@ -147,12 +147,14 @@ def test_forces_found_go_into_the_multipliers_by_a_share():
     """Two augmentations that overshoot by turns, 2 and 4 about 3, meet at once when half of each is taken."""
     normal, none = np.array([[0.0], [0.0], [1.0]]), np.zeros((3, 3, 1))
     before = ContactState(np.array([2.0]), np.array([[1.0], [0.0], [0.0]]), np.zeros((3, 1)), normal)
-    found = ContactTraction(np.zeros(1), np.array([4.0]), np.array([[0.0], [2.0], [0.0]]), normal, np.zeros((3, 1)), none, none)
-    half, whole = before.augmented(found, 0.5), before.augmented(found)
+    traction = ContactTraction(
+        np.zeros(1), np.array([4.0]), np.array([[0.0], [2.0], [0.0]]), normal, np.zeros((3, 1)), none, none
+    )
+    half, whole = before.augmented(traction, 0.5), before.augmented(traction)
     assert half.pressure == half.multiplier == 3.0
     np.testing.assert_array_equal(half.tangential, [[0.5], [1.0], [0.0]])
-    assert whole.pressure is found.pressure
-    assert whole.tangential is found.tangential
+    assert whole.pressure is traction.pressure
+    assert whole.tangential is traction.tangential
 
 
 @pytest.mark.slow
@@ -177,12 +179,12 @@ def test_grasps_that_crept_end(name: str, settings: tuple[str, ...], monkeypatch
 
     def counted(problem: Problem, *arguments: object, **options: object) -> object:
         try:
-            found = solved(problem, *arguments, **options)  # type: ignore[arg-type]
+            computed = solved(problem, *arguments, **options)  # type: ignore[arg-type]
         except ConvergenceError as error:
             spent.append(error.solutions)
             raise
-        spent.append(found.iterations)
-        return found
+        spent.append(computed.iterations)
+        return computed
 
     monkeypatch.setattr(Problem, "solve", counted)
     result = load_case(CASES / f"{name}.yaml", list(settings)).experiment.run()

@@ -116,7 +116,7 @@ def test_a_sweep_from_another_folder(case: Path, monkeypatch: pytest.MonkeyPatch
     assert main(["data", "info", str(store)]) == 0
 
 
-def test_a_file_that_is_missing_is_told_before_anything_is_computed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_is_missing_is_reported_before_anything_is_computed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case.with_name("mine.stl").unlink()
     assert main(["sweep", str(case), "--out", "s.zarr"]) == 5
     error = capsys.readouterr().err

@@ -61,9 +61,9 @@ def test_the_mesher_ends_with_the_run():
 def test_the_command_writes_a_failed_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
     assert main(["run", str(CASES / "annulus_icf.yaml"), "--time-limit", "1s", "--out", str(out), "--quiet"]) == 3
-    found = json.loads((out / "result.json").read_text(encoding="utf-8"))
-    assert found["status"] == "failed"
-    assert found["reason"].startswith("took longer than the 1 s that it was given")
+    written = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    assert written["status"] == "failed"
+    assert written["reason"].startswith("took longer than the 1 s that it was given")
     assert capsys.readouterr().err == ""
 
 

@@ -1,4 +1,4 @@
-"""Volumes that elements do not keep, taxels beside the block, and forces that a mesh makes unlike are told."""
+"""Volumes that elements do not keep, taxels beside the block, and forces that a mesh makes unlike are reported."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def closing(to):
     return {"control": "displacement", "pieces": [{"kind": "ramp", "to": to, "duration": 1.0}]}
 
 
-def test_an_incompressible_grasp_whose_elements_lose_their_volume_is_told():
+def test_an_incompressible_grasp_whose_elements_lose_their_volume_is_reported():
     result = run(loading=closing(3e-3))
     assert result.quantities["min_volume_ratio"].value < 0.8
     assert result.quantities["poor_volume_fraction"].value > 1e-3
-    (told,) = (warning for warning in result.warnings if "misses the volume" in warning)
-    assert "the mesh is too coarse there" in told
-    assert "mm in region 0" in told
+    (reported,) = (warning for warning in result.warnings if "misses the volume" in warning)
+    assert "the mesh is too coarse there" in reported
+    assert "mm in region 0" in reported
     assert result.steps[-1].values["poor_volume_fraction"] <= result.quantities["poor_volume_fraction"].value
 
 
@@ -59,7 +59,7 @@ def test_covered_areas_of_a_matrix_wider_than_the_block():
     assert leaning[1, 0] == pytest.approx(9 * (15 / np.cos(0.1) - 8.5))
 
 
-def test_overhanging_taxels_are_told_jaw_by_jaw():
+def test_overhanging_taxels_are_reported_jaw_by_jaw():
     block = {"size": (30e-3, 30e-3, 20e-3), "tissue": "icf_stable"}
     wide = {"rows": 3, "columns": 3, "pitch": 13e-3, "size": 9e-3}
     upper, lower = overhang_warnings(grasp(block=block, matrix=wide))
@@ -98,7 +98,7 @@ def test_what_mirrors_a_grasp(changes, axes):
     assert mirror_axes(grasp(**changes)) == axes
 
 
-def test_a_mesh_that_shows_in_symmetric_forces_is_told():
+def test_a_mesh_that_shows_in_symmetric_forces_is_reported():
     result = run()
     forces = np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
     unlike = max(np.abs(forces - forces[:, ::-1]).max(), np.abs(forces - forces[:, :, ::-1]).max()) / forces.max()

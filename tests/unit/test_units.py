@@ -53,7 +53,7 @@ def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: 
         ("3 ().__class__", "has an unknown unit"),
     ],
 )
-def test_what_is_no_quantity_is_told(text: str, words: str) -> None:
+def test_what_is_no_quantity_is_reported(text: str, words: str) -> None:
     with pytest.raises(InvalidQuantity, match=words):
         parse_quantity(text, "m")
 

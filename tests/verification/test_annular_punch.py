@@ -66,9 +66,9 @@ def rounding(digits):
     return 0.51 * 10.0**-digits
 
 
-def assert_near(found, expected, tolerance):
+def assert_near(computed, expected, tolerance):
     """Every number within ``tolerance``."""
-    np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
+    np.testing.assert_allclose(computed, expected, rtol=0, atol=tolerance)
 
 
 def exact_rows():
@@ -81,9 +81,9 @@ def test_half_space_table(beta, kappa, axis):
     """Mutants: the printed formula of the thesis, and the first term of the rise in the ratio."""
     punch = solve_annular_punch(beta)
 
-    def check(found_factor, found_rise):
-        assert_near(found_factor, kappa, rounding(10))
-        assert_near(1 - found_rise, axis, rounding(8))
+    def check(computed_factor, computed_rise):
+        assert_near(computed_factor, kappa, rounding(10))
+        assert_near(1 - computed_rise, axis, rounding(8))
 
     check(punch.force_factor, punch.rise_factor)
     check(force_factor(beta), rise_factor(beta))
@@ -171,10 +171,10 @@ def test_thin_rings():
     Mutants: the constant 8 of the kernel left out of the logarithm, and the radius of the middle for the outer one.
     """
     widths = np.array([0.01, 0.001, 0.0001])
-    found = np.array([solve_annular_punch(1 - width).force_factor for width in widths])
+    computed = np.array([solve_annular_punch(1 - width).force_factor for width in widths])
 
     def check(limits):
-        errors = np.abs(found / limits - 1)
+        errors = np.abs(computed / limits - 1)
         orders = np.diff(np.log(errors / np.log(32 / widths))) / np.diff(np.log(widths))
         np.testing.assert_allclose(orders, 2, atol=0.1)
         assert errors[-1] < 1e-8
@@ -261,16 +261,16 @@ def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, bas
     punch = solve_annular_punch(beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
     radii = np.array([0.0, 0.5 * beta, 0.99 * beta, 0.7 * beta + 0.3, 0.2 * beta + 0.8, 1.01, 2.0])
     alone = np.array([half_space_part(punch, r) for r in radii])
-    found = alone + layer_part(punch, radii) if slenderness else alone
+    computed = alone + layer_part(punch, radii) if slenderness else alone
 
-    def check(found, expected):
-        assert_near(found[3:5], 1, 1e-8)  # quad at the logarithm
-        assert_near(found, expected, 1e-8)
+    def check(computed, expected):
+        assert_near(computed[3:5], 1, 1e-8)  # quad at the logarithm
+        assert_near(computed, expected, 1e-8)
 
     expected = punch.surface_displacement(radii)
-    check(found, expected)
+    check(computed, expected)
     hole = solve_annular_punch(0.99 * beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
-    assert_kills(check, flat=(found, np.ones(len(radii))), hole=(found, hole.surface_displacement(radii)))
+    assert_kills(check, flat=(computed, np.ones(len(radii))), hole=(computed, hole.surface_displacement(radii)))
     if slenderness:
         assert_kills(check, half_space=(alone, expected))
 

@@ -56,10 +56,10 @@ def histories(result):
 
 def differences(result, reference):
     """Relative differences (steps, 2) of force and rise from the reference at the same displacements."""
-    found, known = histories(result), np.vstack([np.zeros(3), histories(reference)])
-    found = found[found[:, 0] <= known[-1, 0]]
-    expected = np.stack([PchipInterpolator(known[:, 0], known[:, k])(found[:, 0]) for k in (1, 2)], axis=1)
-    return found[:, 1:] / expected - 1
+    computed, known = histories(result), np.vstack([np.zeros(3), histories(reference)])
+    computed = computed[computed[:, 0] <= known[-1, 0]]
+    expected = np.stack([PchipInterpolator(known[:, 0], known[:, k])(computed[:, 0]) for k in (1, 2)], axis=1)
+    return computed[:, 1:] / expected - 1
 
 
 def check_differences(apart):

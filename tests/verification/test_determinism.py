@@ -41,10 +41,10 @@ def forces_and_tangent(dim: int, threads: int, spoil: float = 0.0) -> np.ndarray
     unknowns = np.random.default_rng(3).uniform(-0.003, 0.003, body.space.size)
     before = numba.get_num_threads()
     numba.set_num_threads(min(threads, numba.config.NUMBA_NUM_THREADS))
-    found = np.concatenate([body.residual(unknowns), body.tangent(unknowns)])
+    computed = np.concatenate([body.residual(unknowns), body.tangent(unknowns)])
     numba.set_num_threads(before)
-    assert np.isfinite(found).all()
-    return found
+    assert np.isfinite(computed).all()
+    return computed
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -65,7 +65,7 @@ def test_two_solutions_in_one_process_are_equal(dim, one_thread):
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_one_thread_and_two_give_the_same(dim, tmp_path):
     program = f"import numpy, test_determinism as t; numpy.save('unknowns.npy', t.inflated_block({dim}))"
-    found = []
+    results = []
     for threads in ("1", "2"):
         environment = os.environ | {
             "NUMBA_NUM_THREADS": threads,
@@ -73,7 +73,7 @@ def test_one_thread_and_two_give_the_same(dim, tmp_path):
             "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS / "verification")]),
         }
         subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=environment, check=True)
-        found.append(np.load(tmp_path / "unknowns.npy"))
-    assert_close(*found, TOLERANCE)
+        results.append(np.load(tmp_path / "unknowns.npy"))
+    assert_close(*results, TOLERANCE)
     with pytest.raises(AssertionError):
-        assert_close(found[0], inflated_block(dim, spoil=1e-10), TOLERANCE)
+        assert_close(results[0], inflated_block(dim, spoil=1e-10), TOLERANCE)

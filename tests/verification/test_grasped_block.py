@@ -53,19 +53,19 @@ def test_frictionless_taxels_read_the_cauchy_pressure():
     stretch = 1 + (u[top, 2].mean() - u[bottom, 2].mean()) / SIZE[2]
     cauchy = 2 * (stretch**-1 - stretch**2) * (1000.0 + 250.0 / stretch)
     for side in ("upper", "lower"):
-        found = model.taxels(state, side, LAYOUT)
+        forces = model.taxels(state, side, LAYOUT)
 
-        def check_pressure(expected, found=found):
-            np.testing.assert_allclose(found.taxels[2] / LAYOUT.area, expected, rtol=1e-8)
+        def check_pressure(expected, forces=forces):
+            np.testing.assert_allclose(forces.taxels[2] / LAYOUT.area, expected, rtol=1e-8)
 
         def check_total(total, side=side):
             np.testing.assert_allclose(total[2], abs(model.jaw_force(state, side)[2]), rtol=1e-10)
 
         check_pressure(cauchy)
-        check_total(found.total)
+        check_total(forces.total)
         swapped = 2 * (stretch**-1 - stretch**2) * (250.0 + 1000.0 / stretch)
         assert_kills(check_pressure, nominal=(cauchy / stretch,), swapped=(swapped,))
-        assert_kills(check_total, without_gaps=(found.total - found.gaps,))
+        assert_kills(check_total, without_gaps=(forces.total - forces.gaps,))
 
 
 def test_friction_forces_add_up_and_balance():

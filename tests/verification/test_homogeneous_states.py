@@ -59,8 +59,8 @@ def pulled(measure: str, stretches: dict[int, float], lateral: float, material=N
 
 @pytest.mark.parametrize(("stretch", "printed"), UNIAXIAL.items())
 def test_the_closed_forms_give_the_printed_uniaxial_numbers(stretch, printed):
-    def check(found):
-        assert abs(found - printed) <= 6e-7  # printed to six digits
+    def check(computed):
+        assert abs(computed - printed) <= 6e-7  # printed to six digits
 
     check(uniaxial_nominal(stretch))
     cauchy = stretch * uniaxial_nominal(stretch)
@@ -69,8 +69,8 @@ def test_the_closed_forms_give_the_printed_uniaxial_numbers(stretch, printed):
 
 @pytest.mark.parametrize(("stretch", "printed"), EQUIBIAXIAL.items())
 def test_the_closed_forms_give_the_printed_equibiaxial_numbers(stretch, printed):
-    def check(found):
-        assert abs(found - printed) <= 6e-7  # printed to six digits
+    def check(computed):
+        assert abs(computed - printed) <= 6e-7  # printed to six digits
 
     check(equibiaxial_cauchy(stretch))
     nominal = equibiaxial_cauchy(stretch) / stretch

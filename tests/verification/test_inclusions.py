@@ -67,10 +67,10 @@ def pressed_ball(ratio, size, growth=0.6):
 )
 def test_a_ball_concentrates_the_stress_as_eshelby_says(ratio, size, growth):
     """Mutants: the factor of a cylinder across its axis, another ratio of moduli or its inverse, the mean stress left out."""
-    found, spread, _ = pressed_ball(ratio, size, growth)
+    computed, spread, _ = pressed_ball(ratio, size, growth)
 
     def check(expected):
-        assert abs(found / expected - 1) < AMPLIFICATION
+        assert abs(computed / expected - 1) < AMPLIFICATION
 
     check(eshelby(ratio))
     assert spread < SPREAD
@@ -121,11 +121,11 @@ def pumped_stretch(pressure, steps=2):
 
 def test_a_vessel_widens_as_the_thick_tube_does():
     pressure = 0.4 * WALL.shear_modulus
-    found, exact = pumped_stretch(pressure), closed_form_stretch(pressure)
+    computed, exact = pumped_stretch(pressure), closed_form_stretch(pressure)
     assert exact > 1.3
 
     def check(expected):
-        assert abs(found - expected) < TUBE_TOLERANCE * (exact - 1)
+        assert abs(computed - expected) < TUBE_TOLERANCE * (exact - 1)
 
     check(exact)
     linear = 1 + pressure / WALL.shear_modulus / 2 * OUTER**2 / (OUTER**2 - INNER**2)

@@ -23,9 +23,9 @@ OMEGA = 2 * math.pi
 """Angular frequency of the harmonic load of the thesis in rad/s, section 4.7."""
 
 
-def agree(found, expected, *, digit):
+def agree(computed, expected, *, digit):
     """Equal to one unit of the last printed ``digit``: the thesis cuts its digits or rounds them."""
-    np.testing.assert_array_less(np.abs(np.asarray(found) - np.asarray(expected)), digit)
+    np.testing.assert_array_less(np.abs(np.asarray(computed) - np.asarray(expected)), digit)
 
 
 def punch_force(history, t, solid=SOLID):
@@ -126,12 +126,12 @@ def rates(times: str) -> np.ndarray:
 
 
 def test_the_rates_of_the_printed_displacement_are_those_of_viscosities():
-    found = rates("viscosities")
-    agree(found[:2], RATES[:2], digit=5.1e-4)
-    agree(found[2:], RATES[2:], digit=5.1e-7)
+    computed = rates("viscosities")
+    agree(computed[:2], RATES[:2], digit=5.1e-4)
+    agree(computed[2:], RATES[2:], digit=5.1e-7)
     start = 0
     for digit, printed in PRINTED_RATES.items():
-        agree(found[start : start + len(printed)], printed, digit=digit)
+        agree(computed[start : start + len(printed)], printed, digit=digit)
         start += len(printed)
 
 
@@ -198,8 +198,8 @@ def test_the_dynamic_coefficients_are_those_of_the_response():
     transients = fast + np.exp(-np.outer(t - 2, x[2:])) @ slow
 
     def check(start, expected):
-        found = response(kelvin, harmonic(0.25, 1.0, start=start), t)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)  # of parts of size 3
+        computed = response(kelvin, harmonic(0.25, 1.0, start=start), t)
+        np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-12)  # of parts of size 3
 
     expected = in_phase + out_of_phase + transients
     check(2.0, expected)
@@ -248,15 +248,15 @@ def test_the_static_part_of_the_printed_response_keeps_the_two_fast_units():
 
 
 @pytest.mark.parametrize(
-    ("found", "printed", "expected"),
+    ("computed", "printed", "expected"),
     [
         (dynamic_coefficients(0.25)["slow"], 0.06, 0.0985),
         (dynamic_coefficients(0.2)["slow"], 0.06, 0.0788),
         (float(static_response(slice(0, 2), np.array(1e6))), -5.46, -5.449),
     ],
 )
-def test_two_printed_coefficients_do_not_come_out(found, printed, expected):
+def test_two_printed_coefficients_do_not_come_out(computed, printed, expected):
     """Of eq. 4.7.2; what is found stands here instead."""
-    agree(found, expected, digit=5.1e-4)
+    agree(computed, expected, digit=5.1e-4)
     with pytest.raises(AssertionError):
-        agree(found, printed, digit=0.01)
+        agree(computed, printed, digit=0.01)

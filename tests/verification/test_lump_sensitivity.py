@@ -48,23 +48,23 @@ def forces(grasp):
 def difference(plain):
     """Change of the forces over the change of the stiffness in elements whose middle lies in the ball."""
     tissue = named_material("icf_stable").material
-    found = []
+    differences = []
     for factor in (1 - CHANGE, 1 + CHANGE):
         scaled = {name: factor * getattr(tissue, name) for name in ("c10", "c01", "c11")}
         lump = Embedded(shape=BALL, material=type(tissue).model_validate(tissue.model_dump() | scaled))
-        found.append(forces(plain.model_copy(update={"inclusions": (lump,)})))
-    return (found[1] - found[0]) / (2 * CHANGE)
+        differences.append(forces(plain.model_copy(update={"inclusions": (lump,)})))
+    return (differences[1] - differences[0]) / (2 * CHANGE)
 
 
 def predicted(plain, monkeypatch):
     """Change of the forces by the adjoint; and the mutant, as if the density were the same everywhere in the block."""
     monkeypatch.setattr(lump_sensitivity, "CELLS", CELLS)
-    found = lump_sensitivity.sensitivity(plain)
+    computed = lump_sensitivity.sensitivity(plain)
     mesh = plain.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)}).sourced().block.mesh
     inside = np.linalg.norm(mesh.nodes[mesh.elements[:, :4]].mean(axis=1) - BALL.center, axis=1) < BALL.radius
-    points = np.repeat(inside, len(found.places) // len(inside))
-    changes = found.densities * found.volumes
-    even = changes.sum(axis=-1) * found.volumes[points].sum() / found.volumes.sum()
+    points = np.repeat(inside, len(computed.places) // len(inside))
+    changes = computed.densities * computed.volumes
+    even = changes.sum(axis=-1) * computed.volumes[points].sum() / computed.volumes.sum()
     return changes[..., points].sum(axis=-1), even
 
 

@@ -60,8 +60,8 @@ class Press:
             solved = self.problem.solve(self.unknowns, interfaces=[moved])
             self.unknowns = solved.unknowns
             displacement = self.displacement
-            self.found = moved.at(displacement)
-            self.contact, self.scale = moved.committed(displacement), self.scale.seen(self.found.pressure.max())
+            self.state = moved.at(displacement)
+            self.contact, self.scale = moved.committed(displacement), self.scale.seen(self.state.pressure.max())
         return self
 
     @property
@@ -80,13 +80,13 @@ def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
 
     def check(expected):
         np.testing.assert_allclose(
-            press.found.pressure, expected, rtol=3e-6, err_msg="penetration 1e-7 of the height shifts the stretch"
+            press.state.pressure, expected, rtol=3e-6, err_msg="penetration 1e-7 of the height shifts the stretch"
         )
 
     check(nominal)
     swapped = 2 * (stretch**-2 - stretch) * (0.25 + 1 / stretch)
     assert_kills(check, cauchy=(nominal * stretch,), swapped=(swapped,))
-    assert -press.found.gap.min() <= 1e-7
+    assert -press.state.gap.min() <= 1e-7
 
 
 @pytest.mark.parametrize("measure", MEASURES)
@@ -96,17 +96,17 @@ def test_friction_stays_in_its_cone_and_forces_balance(measure, law):
     smooth = Press(measure, Coulomb(friction=0.0), glued=True, tolerance=1e-4).to(0.85)
 
     def check_cone(law):
-        size = np.linalg.norm(press.found.tangential, axis=0)
-        assert (size <= law.traction_limit(press.found.pressure) * (1 + 1e-8)).all()
+        size = np.linalg.norm(press.state.tangential, axis=0)
+        assert (size <= law.traction_limit(press.state.pressure) * (1 + 1e-8)).all()
 
     def check_balance(base_force):
-        assert base_force == pytest.approx(-press.surface.total(press.found.traction)[-1], rel=1e-8)
+        assert base_force == pytest.approx(-press.surface.total(press.state.traction)[-1], rel=1e-8)
 
     check_cone(law)
     check_balance(press.base_force())
     assert_kills(check_cone, frictionless=(Coulomb(friction=0.0),))
     assert_kills(check_balance, sign=(-press.base_force(),), frictionless=(smooth.base_force(),))
-    assert press.surface.total(press.found.pressure[None])[0] > smooth.surface.total(smooth.found.pressure[None])[0]
+    assert press.surface.total(press.state.pressure[None])[0] > smooth.surface.total(smooth.state.pressure[None])[0]
 
 
 @pytest.mark.parametrize("measure", MEASURES)
@@ -115,7 +115,7 @@ def test_unloading_returns_the_block(measure):
 
     def check(height):
         press = Press(measure, Coulomb(friction=0.0), cells=2).to(0.9).to(height)
-        assert press.found.pressure.max() == 0.0
+        assert press.state.pressure.max() == 0.0
         assert np.abs(press.displacement).max() < 1e-9
 
     check(1.0 + 1e-6)

@@ -52,18 +52,18 @@ def test_a_random_grasp_converges_or_is_refused(number):
         assert "allowed" in reason
         return
     assert status == "converged", reason
-    found = {name: quantity.value for name, quantity in result.quantities.items()}
+    quantities = {name: quantity.value for name, quantity in result.quantities.items()}
     closing = random_grasp(number)["loading"]["pieces"][0]["to"]
-    assert found["displacement"] == pytest.approx(closing, rel=1e-9)
-    assert found["max_penetration"] <= 5e-4 * SIZE[2]
-    assert found["min_volume_ratio"] > 0
+    assert quantities["displacement"] == pytest.approx(closing, rel=1e-9)
+    assert quantities["max_penetration"] <= 5e-4 * SIZE[2]
+    assert quantities["min_volume_ratio"] > 0
     for side in ("upper", "lower"):
-        check_balance(found, side)
+        check_balance(quantities, side)
         with pytest.raises(AssertionError):
-            check_balance(found | {f"gap_force_{side}": 0.0}, side)
+            check_balance(quantities | {f"gap_force_{side}": 0.0}, side)
 
 
-def check_balance(found, side):
+def check_balance(quantities, side):
     """Taxels, gaps between them and what lies outside bear the reaction; fails without the gaps."""
-    total = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
-    assert total == pytest.approx(found["reaction_force"], rel=1e-5)
+    total = np.sum(quantities[f"taxel_force_{side}"]) + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
+    assert total == pytest.approx(quantities["reaction_force"], rel=1e-5)

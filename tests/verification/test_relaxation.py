@@ -53,7 +53,7 @@ PATIENT = NewtonOptions(max_iterations=80, patience=25)
 
 
 class Block:
-    """A unit cylinder or cube; its top moved as told, or pressed by a plane."""
+    """A unit cylinder or cube; its top moved as prescribed, or pressed by a plane."""
 
     def __init__(self, measure, material, *, law=None, cells=1, glued=False, tolerance=1e-7):
         lines = np.linspace(0, 1, cells + 1)
@@ -119,8 +119,8 @@ def test_a_held_stretch_relaxes_as_printed(measure, stretch):
         block = Block(measure, material)
         for part in (0.5, 1.0):
             at_once = block.moved(1 + part * (stretch - 1), 0.0)
-        found = (at_once, block.moved(stretch, 5.0), block.moved(stretch, 1e3))
-        assert found == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
+        computed = (at_once, block.moved(stretch, 5.0), block.moved(stretch, 1e3))
+        assert computed == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
 
     check(RUBBER)
     assert_kills(
@@ -206,14 +206,14 @@ def test_small_strain_follows_linear_viscoelasticity(measure):
     times, rate = np.cumsum([0.01, 0.1, 0.5, 0.39, 1.0, 20.0, 500.0]), 1e-3
     shear = response(shear_relaxation(material), ramp(rate, 1.0), times)
 
-    block, found = Block(measure, material), []
+    block, computed = Block(measure, material), []
     for t, dt in zip(times, np.diff(times, prepend=0.0), strict=True):
-        found.append(block.moved(1 + rate * min(t, 1.0), dt))
+        computed.append(block.moved(1 + rate * min(t, 1.0), dt))
         if t == 1.0:
             block.variables = block.variables.at_slope_change()
 
     def check(expected):
-        np.testing.assert_allclose(found, expected, rtol=1e-9, err_msg="uniaxial, incompressible: E = 3 G")
+        np.testing.assert_allclose(computed, expected, rtol=1e-9, err_msg="uniaxial, incompressible: E = 3 G")
 
     check(3 * shear)
     at_once = 3 * response(shear_relaxation(material), step(rate), times)
@@ -226,12 +226,12 @@ def test_a_force_makes_linear_tissue_creep(measure):
     block = Block(measure, material, law=Coulomb(friction=0.0), tolerance=1e-7)
     force, times = 1.0 * block.surface.points.weights.sum(), np.geomspace(1e-4, 100.0, 200)
     heights = [block.pressed(0.0, force=force), *(block.pressed(dt, force=force) for dt in np.diff(times, prepend=0.0))]
-    found = 1 - np.array(heights)
+    strain = 1 - np.array(heights)
     shear, times = shear_relaxation(material), np.append(0.0, times)
 
     def check(compliance):
-        np.testing.assert_allclose(found, compliance / 3, rtol=2e-3, err_msg="steps of 7 %, whose chords miss the curve by 1e-3")
-        assert found[0] == pytest.approx(compliance[0] / 3, rel=1e-2), "penetration of 1e-7 in a displacement of 3e-4"
+        np.testing.assert_allclose(strain, compliance / 3, rtol=2e-3, err_msg="steps of 7 %, whose chords miss the curve by 1e-3")
+        assert strain[0] == pytest.approx(compliance[0] / 3, rel=1e-2), "penetration of 1e-7 in a displacement of 3e-4"
 
     check(response(kelvin_of(shear), step(1.0), times))
     assert_kills(check, inverse_modulus=(1 / shear.relaxation(times),))
@@ -246,11 +246,13 @@ def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law):
         at_once = block.pressed(0.0, height=height)
     equilibrium, amplitudes, tau = THREE_TIMES.amplitudes
     times = np.array([0.01, 1.0, 20.0, 1e4])
-    found = [block.pressed(dt, height=0.85) / at_once for dt in np.diff(times, prepend=0.0)]
+    computed = [block.pressed(dt, height=0.85) / at_once for dt in np.diff(times, prepend=0.0)]
     branches = amplitudes * np.exp(-times[:, None] / tau)
 
     def check(fading):
-        np.testing.assert_allclose(found, fading, rtol=5e-4, err_msg="penetration of 1e-4 that the falling pressure gives back")
+        np.testing.assert_allclose(
+            computed, fading, rtol=5e-4, err_msg="penetration of 1e-4 that the falling pressure gives back"
+        )
 
     check(equilibrium + branches.sum(axis=1))
     assert_kills(check, without_the_slowest=(equilibrium + amplitudes[-1] + branches[:, :-1].sum(axis=1),))

@@ -53,11 +53,11 @@ def lagged_error(level, cutoff, *, filtered=True):
 @pytest.mark.parametrize("capture", ["filtered", "unfiltered"])
 def test_filter_lag_on_ramps(level, capture):
     """Mutants: a cut-off of 5 Hz, which a level far above the lag does not show, and the other capture."""
-    found = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
+    computed = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
 
     def check(cutoff, filtered):
         # one sample of the ideal chain, 62.5 us at 2 N/s, and 1e-3 of the lag of 32 mN for divider and bilinear transform
-        assert found == pytest.approx(lagged_error(level, cutoff, filtered=filtered), abs=PLATE_RATE / 16_000 + 3.2e-5)
+        assert computed == pytest.approx(lagged_error(level, cutoff, filtered=filtered), abs=PLATE_RATE / 16_000 + 3.2e-5)
 
     filtered = capture == "filtered"
     check(10.0, filtered)
@@ -68,10 +68,10 @@ def test_filter_lag_on_ramps(level, capture):
 
 def test_without_filter_only_the_level_remains():
     """Mutants: the level itself, and the rates swapped."""
-    found = ramps().ideal_error(None, 0.01)
+    computed = ramps().ideal_error(None, 0.01)
 
     def check(factor):
-        assert found == pytest.approx(factor * 0.01, abs=PLATE_RATE / 16_000)
+        assert computed == pytest.approx(factor * 0.01, abs=PLATE_RATE / 16_000)
 
     check(PLATE_RATE / SMALL_RATE)
     assert_kills(check, level=(1.0,), swapped=(SMALL_RATE / PLATE_RATE,))
@@ -84,8 +84,8 @@ def test_lags_cancel_for_a_level_far_above_the_lag():
     """
 
     def check(level, capture="filtered"):
-        found = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
-        assert found == pytest.approx(PLATE_RATE * level / SMALL_RATE, abs=PLATE_RATE / 16_000 + 3.2e-5)
+        computed = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
+        assert computed == pytest.approx(PLATE_RATE * level / SMALL_RATE, abs=PLATE_RATE / 16_000 + 3.2e-5)
 
     check(0.1)
     assert_kills(check, unfiltered=(0.1, "unfiltered"), low_level=(1e-4,))
@@ -97,10 +97,10 @@ def test_sampling_adds_half_an_interval():
     trigger = ThresholdTrigger(np.array(0.0), np.array(0.01))
     (trials,) = sampling.trials(SILENT, [None], [trigger], trials=100, seed=(1,))
     interval = PLATE_RATE / 1000.0
-    found = trials.mean_error() - PLATE_RATE * 0.01 / SMALL_RATE
+    computed = trials.mean_error() - PLATE_RATE * 0.01 / SMALL_RATE
 
     def check(delay):
-        assert found == pytest.approx(delay * interval, abs=interval / 10), "ten phases, each a tenth of an interval"
+        assert computed == pytest.approx(delay * interval, abs=interval / 10), "ten phases, each a tenth of an interval"
 
     check(0.5)
     assert_kills(check, instant=(0.0,), whole=(1.0,))

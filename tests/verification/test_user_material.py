@@ -35,16 +35,18 @@ def deformations(count: int = 60) -> np.ndarray:
 def test_the_tangent_is_the_derivative_of_the_stress(alpha):
     material, F = PrincipalOgden(modulus=MODULUS, alpha=alpha), deformations()
     pressure, step = np.full(F.shape[2], 300.0), 1e-6
-    found = np.empty((3, 3, 3, 3, F.shape[2]))
+    computed = np.empty((3, 3, 3, 3, F.shape[2]))
     for k in range(3):
         for L in range(3):
             shift = np.zeros((3, 3, 1))
             shift[k, L] = step
             above, below = (material.first_piola_kirchhoff(F + sign * shift, pressure) for sign in (1, -1))
-            found[:, :, k, L] = (above - below) / (2 * step)
-    assert_close(material.tangent(F, pressure), found, 1e-7)  # a central difference: the square of the step and round-off over it
+            computed[:, :, k, L] = (above - below) / (2 * step)
+    assert_close(
+        material.tangent(F, pressure), computed, 1e-7
+    )  # a central difference: the square of the step and round-off over it
     with pytest.raises(AssertionError):
-        assert_close(PrincipalOgden(modulus=MODULUS, alpha=alpha + 0.01).tangent(F, pressure), found, 1e-7)
+        assert_close(PrincipalOgden(modulus=MODULUS, alpha=alpha + 0.01).tangent(F, pressure), computed, 1e-7)
 
 
 def test_an_exponent_of_two_is_neo_hooke():
@@ -140,8 +142,8 @@ def test_an_indentation_of_a_users_material_is_that_of_the_compiled_one_and_says
     assert own.status is known.status is Status.CONVERGED
     force = float(known.quantities["reaction_force"].value)
     assert float(own.quantities["reaction_force"].value) == pytest.approx(force, rel=SAME)
-    told = "specimen.material: material principal_ogden has no compiled form: assembly is interpreted, several times slower"
-    assert told in own.warnings
+    warning = "specimen.material: material principal_ogden has no compiled form: assembly is interpreted, several times slower"
+    assert warning in own.warnings
     assert not any("interpreted" in words for words in known.warnings)
     assert own.quantities["unstable_volume_fraction"].value == 0.0
     stiffer = pressed(PrincipalOgden(modulus=MODULUS, alpha=6.0))

@@ -22,6 +22,8 @@ SHOWN = (0.5, 2.0)
 """Stretches on the axis."""
 
 CURVE_POINTS = 301
+LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.")
+"""Distinguishable without colour."""
 RANGE_IN_VIEW = (0.6, 1.75)
 """Stretches whose stress the vertical axis holds: further out the curves are so steep that nothing else would be seen."""
 STABLE_COLOUR = "#e3f1e3"
@@ -55,11 +57,10 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
     FigureCanvasAgg(figure)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
     unit, factor = pressure_unit(curve.nominal_stress)
-    upper.plot(
-        curve.stretch, curve.nominal_stress * factor, "o", color="0.6", markersize=4, markevery=_every(curve), label="data"
-    )
+    every = max(1, curve.stretch.size // 40)  # about forty points are seen
+    upper.plot(curve.stretch, curve.nominal_stress * factor, "o", color="0.6", markersize=4, markevery=every, label="data")
     stretch = np.linspace(curve.stretch.min(), curve.stretch.max(), CURVE_POINTS)
-    for style, fit in zip(_line_styles(), fits, strict=False):
+    for style, fit in zip(LINE_STYLES, fits, strict=False):
         label = f"{fit.form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
         upper.plot(stretch, uniaxial_nominal_stress(fit.material, stretch) * factor, style, label=label)
         lower.plot(curve.stretch, 100 * relative_errors(fit.material, curve), style)
@@ -112,13 +113,3 @@ def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStabili
     seen = stress[(stretch >= RANGE_IN_VIEW[0]) & (stretch <= RANGE_IN_VIEW[1])]
     margin = 0.05 * float(np.ptp(seen))
     axis.set_ylim(seen.min() - margin, seen.max() + margin)
-
-
-def _every(curve: UniaxialCurve) -> int:
-    """Step between drawn points so that about forty are seen."""
-    return max(1, curve.stretch.size // 40)
-
-
-def _line_styles() -> tuple[str, ...]:
-    """Distinguishable without colour."""
-    return ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.")

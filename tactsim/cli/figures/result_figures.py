@@ -26,10 +26,10 @@ def drawn_figures(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> 
     drawn: dict[str, bytes] = {}
     warnings: list[str] = []
     try:
-        with collected_warnings() as said:
+        with collected_warnings() as collected:
             for name, draw in drawings().items():
                 drawn[name if Path(name).suffix else f"{name}.png"] = draw()
-        warnings += said.lines()
+        warnings += collected.lines()
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
         warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
     return drawn, warnings

@@ -24,14 +24,20 @@ JAWS = ("upper jaw", "lower jaw")
 
 
 def card_figures(store: str | Path) -> dict[str, Drawing]:
-    """File name -> drawing; empty for a data set without a sample that is done."""
+    """File name -> drawing; empty for a data set without a sample that is done.
+
+    Raises
+    ------
+    StorageError
+        If the data set cannot be read.
+    """
     data = load(store)
     if not data.sizes["sample"]:
         return {}
-    found: dict[str, Drawing] = {SPREAD: lambda: spread(_numbers(data))}
+    drawings: dict[str, Drawing] = {SPREAD: lambda: spread(_numbers(data))}
     if "taxel_force" in data:
-        found[TAXELS] = lambda: taxels(data["taxel_force"].values[:, -1].mean(axis=0))
-    return found
+        drawings[TAXELS] = lambda: taxels(data["taxel_force"].values[:, -1].mean(axis=0))
+    return drawings
 
 
 def spread(numbers: dict[str, tuple[Array, str]]) -> bytes:
@@ -67,7 +73,7 @@ def taxels(force: Array) -> bytes:
 
 def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:
     """Labels, then readings of one number, finite values only."""
-    found = {}
+    numbers = {}
     for role in ("label", "reading"):
         for name, values in data.data_vars.items():
             if values.attrs["role"] != role or "flag_values" in values.attrs or (role == "reading" and values.ndim > 1):
@@ -75,5 +81,5 @@ def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:
             content = np.asarray(values.values, dtype=float)
             finite = content[np.isfinite(content)]
             if finite.size and np.ptp(finite) > 0:
-                found[str(name)] = finite, str(values.attrs["units"])
-    return found
+                numbers[str(name)] = finite, str(values.attrs["units"])
+    return numbers

@@ -15,7 +15,7 @@ from tactsim.plotting.canvas import despined, new_figure, png, styled
 
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
-"""Of the estimators, told apart by the colour-blind: Okabe & Ito 2008."""
+"""Of the estimators, distinguishable by the colour-blind: Okabe & Ito 2008."""
 MARKERS = "osD^vP"
 MILLIMETRES = 1e3
 AXES = {
@@ -43,8 +43,8 @@ class Measure:
 
     def of(self, measures: Mapping[str, Any]) -> dict[str, float] | None:
         """Its value and interval among the measures of an estimator, None if it is not known."""
-        found = measures[self.name]
-        return found if found is None or self.statistic is None else found[self.statistic]
+        measure = measures[self.name]
+        return measure if measure is None or self.statistic is None else measure[self.statistic]
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,11 @@ def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[
         for column, one in enumerate(estimators):
             hits = [row for row in one["samples"] if row["found"] and row["truth"]["center"] is not None]
             true = MILLIMETRES * np.array([row["truth"]["center"] for row in hits]).reshape(-1, 3)
-            found = MILLIMETRES * np.array([row["center"] for row in hits]).reshape(-1, 3)
+            estimated = MILLIMETRES * np.array([row["center"] for row in hits]).reshape(-1, 3)
             for row, name in enumerate(names):
                 axis, side = grid[row, column], MILLIMETRES * float(block_size[row])
                 axis.plot([0, side], [0, side], color="0.6", linewidth=0.8)
-                axis.plot(true[:, row], found[:, row], ".", color=COLOURS[column % len(COLOURS)], markersize=4)
+                axis.plot(true[:, row], estimated[:, row], ".", color=COLOURS[column % len(COLOURS)], markersize=4)
                 axis.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel=f"true {name} [mm]")
                 if column == 0:
                     axis.set_ylabel(f"estimated {name} [mm]")

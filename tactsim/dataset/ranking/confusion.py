@@ -89,7 +89,7 @@ def _true_classes(data: xarray.Dataset) -> list[str | None]:
 def _check_closings(closings: Array, reference: float | None) -> None:
     """Refuse samples that close by more or less than the reference."""
     if reference is None or not np.isfinite(closings).all():
-        raise InputError("the samples or the reference do not tell their closing; needed: a prescribed displacement of the jaws")
+        raise InputError("the samples or the reference do not state their closing; needed: a prescribed displacement of the jaws")
     away = float(np.abs(closings - reference).max())
     if away > SAME_CLOSING * reference:
         raise InputError(
@@ -114,7 +114,7 @@ def record(table: ConfusionTable, others: int, about: Mapping[str, Any]) -> dict
 def verdict(content: Mapping[str, Any]) -> str:
     """How many grasps were classified rightly, as a sentence."""
     right = sum(row[k] for k, row in enumerate(content["counts"]))
-    return f"{right} of {content['samples']} grasps told right"
+    return f"{right} of {content['samples']} grasps named right"
 
 
 def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
@@ -126,7 +126,7 @@ def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
         f"{verdict(content)} by `{content['estimator']}`, noise of a reading {format_quantity(content['noise'], 'N')}; "
         f"{content['of_no_class']} samples belong to no class.",
         "",
-        f"| true, estimated across | {' | '.join(names)} | told right |",
+        f"| true, estimated across | {' | '.join(names)} | named right |",
         "|" + " --- |" * (len(names) + 2),
     ]
     for name, shown, counts in zip(content["classes"], names, content["counts"], strict=True):

@@ -37,7 +37,7 @@ class Outcome:
     """One estimate against the truth; lengths in m, None where there is none.
 
     ``lateral``, ``depth`` and ``radius`` are errors: distance in plan, estimated less true height, estimated less true radius.
-    ``covered`` tells whether the 90 % region holds the true centre; ``width`` and ``height`` are its sizes.
+    ``covered`` states whether the 90 % region holds the true centre; ``width`` and ``height`` are its sizes.
     """
 
     truth: Truth
@@ -78,27 +78,27 @@ def outcomes(
     InputError
         If the estimator needs what the samples lack.
     """
-    own = response if estimator.needs_response else None
-    if estimator.needs_response and own is None:
+    model = response if estimator.needs_response else None
+    if estimator.needs_response and model is None:
         raise InputError(f"the estimator {estimator.kind} needs the response of the tissue")
-    readings = samples.readings(own, multiple=multiple, seed=seed)
+    readings = samples.readings(model, multiple=multiple, seed=seed)
     return [outcome(estimator.estimate(each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
 
 
-def measures(found: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
+def measures(judged: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
     """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
-    by the bootstrap over the samples; None where no sample tells.
+    by the bootstrap over the samples; None where no sample has any.
     """
-    lumps = [one for one in found if one.truth.present]
-    plain = [one for one in found if not one.truth.present]
+    lumps = [one for one in judged if one.truth.present]
+    plain = [one for one in judged if not one.truth.present]
     hits = [one for one in lumps if one.found]
     covered = [one.covered for one in hits if one.covered is not None]
-    by_name: dict[str, Any] = {"samples": len(found), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
+    by_name: dict[str, Any] = {"samples": len(judged), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
     by_name["detection_rate"] = share([one.found for one in lumps])
     by_name["false_alarm_rate"] = share([one.found for one in plain])
-    by_name["score"] = interval([penalty(one, block_size) for one in found], np.mean)
+    by_name["score"] = interval([penalty(one, block_size) for one in judged], np.mean)
     for name in ("lateral", "depth", "radius"):
         errors = [abs(float(value)) for one in hits if (value := getattr(one, name)) is not None]
         by_name[f"{name}_error"] = spread(errors)
@@ -158,9 +158,9 @@ def share(given: Sequence[bool]) -> dict[str, float] | None:
     return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
 
 
-def binned(found: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:
+def binned(judged: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:
     """For each label, the measures of lumps in parts of its range with equally many lumps."""
-    lumps = [one for one in found if one.truth.present]
+    lumps = [one for one in judged if one.truth.present]
     by_label: dict[str, list[dict[str, Any]]] = {}
     for label in LABELS:
         values = np.array([getattr(one.truth, label) for one in lumps], dtype=float)
@@ -169,8 +169,8 @@ def binned(found: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[s
         by_label[label] = []
         for k, (low, high) in enumerate(pairwise(edges)):
             inside = (values >= low) & ((values <= high) if k == len(edges) - 2 else (values < high))
-            own = [one for one, held in zip(lumps, inside, strict=True) if held]
-            by_label[label].append({"low": float(low), "high": float(high), **measures(own, block_size)})
+            members = [one for one, held in zip(lumps, inside, strict=True) if held]
+            by_label[label].append({"low": float(low), "high": float(high), **measures(members, block_size)})
     return by_label
 
 
@@ -198,10 +198,16 @@ class Ranked:
 def ranking(
     estimators: Mapping[str, Estimator], samples: JudgedSamples, response: LumpResponse | None, *, seed: int = 1
 ) -> list[Ranked]:
-    """Every estimator on every sample at every noise, the least score first."""
+    """Every estimator on every sample at every noise, the least score first.
+
+    Raises
+    ------
+    InputError
+        If an estimator needs what the samples lack.
+    """
     ranked = []
     for name, estimator in estimators.items():
         runs = {multiple: outcomes(estimator, samples, response, multiple=multiple, seed=seed) for multiple in NOISES}
-        noises = {multiple: measures(found, samples.block_size) for multiple, found in runs.items()}
+        noises = {multiple: measures(run, samples.block_size) for multiple, run in runs.items()}
         ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
     return sorted(ranked, key=lambda one: float(one.measures["score"]["value"]))

@@ -58,9 +58,9 @@ def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
             continue
         ratios[one.name] = {}
         for name in ("lateral_error_with_misses", "depth_error_with_misses"):
-            own, other = one.measures[name], base.measures[name]
-            if own is not None and other is not None and other["value"] > 0:
-                ratios[one.name][name] = own["value"] / other["value"]
+            ours, other = one.measures[name], base.measures[name]
+            if ours is not None and other is not None and other["value"] > 0:
+                ratios[one.name][name] = ours["value"] / other["value"]
     return ratios
 
 
@@ -80,15 +80,15 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
     ratios = against_baseline(ranked)
     if ratios:
         lines += [f"Median errors over those of `{BASELINE}`, a missed lump counted as half the block:", ""]
-        lines += [f"- {name}: {_ratios(found)}" for name, found in ratios.items()]
+        lines += [f"- {name}: {_ratios(ratio)}" for name, ratio in ratios.items()]
         lines += [""]
     for one in ranked:
         lines += [f"## {one.name}", "", *_of_one(one)]
     return "\n".join([*lines, *(f"![{name}]({name})" for name in figures), ""])
 
 
-def _ratios(found: Mapping[str, float]) -> str:
-    return ", ".join(f"{name.split('_')[0]} {value:.2f}" for name, value in found.items()) or "not known"
+def _ratios(ratios: Mapping[str, float]) -> str:
+    return ", ".join(f"{name.split('_')[0]} {value:.2f}" for name, value in ratios.items()) or "not known"
 
 
 def _of_one(one: Ranked) -> list[str]:
@@ -111,12 +111,12 @@ def _table(
 
 
 def _cell(measures: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
-    found: Any = measures
+    entry: Any = measures
     for key in place:
-        found = None if found is None else found[key]
-    if found is None:
+        entry = None if entry is None else entry[key]
+    if entry is None:
         return "-"
-    value, low, high = (_shown(found[name], unit) for name in ("value", "low", "high"))
+    value, low, high = (_shown(entry[name], unit) for name in ("value", "low", "high"))
     return f"{value} [{low}, {high}]"
 
 

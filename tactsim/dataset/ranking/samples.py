@@ -121,7 +121,7 @@ def judged_samples(
 ) -> JudgedSamples:
     """The samples of a store, or of one of its parts, that estimators can be judged on.
 
-    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, found by repeated
+    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, estimated by repeated
     readings of the reference; for ``taxel_force`` the default is what rounding to 0.1 N does (thesis 6.2).
 
     Raises
@@ -140,19 +140,21 @@ def judged_samples(
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
-    own = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
+    electronic = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
     given = noise if noise is not None else 0.0 if source == "read_force" else ROUNDING_NOISE
-    stated = float(np.hypot(own, given))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, own)
+    stated = float(np.hypot(electronic, given))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)
 
 
 def stored_experiment(store: str | Path) -> Grasp:
-    """The first possible grasp of a store, which tells block, matrix and readout.
+    """The first possible grasp of a store, which holds block, matrix and readout.
 
     Raises
     ------
     InputError
         If it holds no grasps.
+    StorageError
+        If it is no data set, or its case cannot be read.
     """
     sweep = stored_sweep(Store.open(store))
     try:
@@ -186,14 +188,14 @@ def _truths(data: xarray.Dataset, height: float) -> tuple[Truth, ...]:
     count, closing = data["inclusion_count"].values, data["closing"].values
     center, radius = data["inclusion_center"].values[:, 0], data["inclusion_radius"].values[:, 0]
     contrast, numbers = data["inclusion_contrast"].values[:, 0], data["sample"].values
-    found = []
+    truths = []
     for k, number in enumerate(numbers):
         if not count[k]:
-            found.append(Truth(int(number), float(closing[k])))
+            truths.append(Truth(int(number), float(closing[k])))
             continue
         x, y, z = map(float, center[k])
-        found.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
-    return tuple(found)
+        truths.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
+    return tuple(truths)
 
 
 def _readout(experiment: Grasp) -> MatrixReadout:

@@ -97,7 +97,7 @@ def mirror_images(size: Array, rows: int, columns: int) -> Iterator[tuple[bool, 
 def _mirrored(examples: Examples, samples: JudgedSamples) -> Examples:
     """With all mirror images; both jaws are taken to be alike and to stand over the middle of the block."""
     layout, size = samples.plain.readings.layout, samples.block_size
-    found = []
+    parts = []
     for *reverse, exchange in mirror_images(size, layout.rows, layout.columns):
         taxels = [values[:, :: -1 if reverse[2] else 1, :: -1 if reverse[1] else 1, :: -1 if reverse[0] else 1]
                   for values in (examples.changes, examples.references)]  # fmt: skip
@@ -107,8 +107,8 @@ def _mirrored(examples: Examples, samples: JudgedSamples) -> Examples:
         if exchange:
             taxels = [values.swapaxes(2, 3) for values in taxels]
             targets[:, :2] = targets[:, 1::-1]
-        found.append(Examples(taxels[0], taxels[1], targets))
-    return Examples.joined(found)
+        parts.append(Examples(taxels[0], taxels[1], targets))
+    return Examples.joined(parts)
 
 
 def _fast(samples: JudgedSamples, response: LumpResponse, generator: np.random.Generator) -> Examples:

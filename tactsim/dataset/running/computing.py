@@ -31,6 +31,11 @@ def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str |
     text : of the sweep
     lost : the reason for which the samples are given up; nothing is run then
     folder : of the sweep's file, in which the files that it names are looked for first
+
+    Raises
+    ------
+    CaseError
+        If the text is not that of a sweep, or what it stores is wrong for every sample.
     """
     sweep = sweep_of_text(text, folder)
     layout = layout_of(sweep)
@@ -53,7 +58,7 @@ def _split(sweep: Sweep, layout: Layout, first: Drawn) -> int:
 
 def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -> dict[str, Array]:
     begin = time.perf_counter()
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "sample": drawn.sample,
         "specimen": drawn.specimen,
         "split": split,
@@ -62,18 +67,18 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
         "code": 0,
         "case_id": drawn.case.case_id if drawn.case else "",
     }
-    found |= {place.variable: drawn.values.get(place.path, np.nan) for place in sweep.places}
+    values |= {place.variable: drawn.values.get(place.path, np.nan) for place in sweep.places}
     status, reason = FAILED, lost or drawn.refusal
     if drawn.case is not None:
-        found |= layout.recorder.labels(drawn.case.experiment)
+        values |= layout.recorder.labels(drawn.case.experiment)
         if not lost:
-            with collected_warnings() as said:
+            with collected_warnings() as collected:
                 status, reason, read = _run(sweep, layout, drawn)
-            reason = "; ".join([reason, *said.lines()])
-            found |= read
-    found |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
-    found |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
-    sample = _complete(found, layout)
+            reason = "; ".join([reason, *collected.lines()])
+            values |= read
+    values |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
+    values |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
+    sample = _complete(values, layout)
     return sample | {"checksum": checksum(sample, layout.variables)}
 
 
@@ -85,17 +90,17 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
-        found = numbers_of(layout.recorder, result) | readings
-        _check(found, layout)
+        values = numbers_of(layout.recorder, result) | readings
+        _check(values, layout)
     except CaseError:
         raise  # what the sweep stores is wrong for every sample
     except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
         return FAILED, f"{type(error).__name__}: {error}", {}
-    return DONE, result.reason, found
+    return DONE, result.reason, values
 
 
-def _check(found: dict[str, Array], layout: Layout) -> None:
-    for name, value in found.items():
+def _check(values: dict[str, Array], layout: Layout) -> None:
+    for name, value in values.items():
         variable = layout.named(name)
         if np.shape(value) != variable.sizes:
             raise InvalidQuantity(f"{name} has the shape {np.shape(value)}; the store has {variable.sizes}: sizes must not vary")
@@ -103,11 +108,11 @@ def _check(found: dict[str, Array], layout: Layout) -> None:
             raise InvalidQuantity(f"{name} is not finite")
 
 
-def _complete(found: dict[str, Any], layout: Layout) -> dict[str, Array]:
+def _complete(values: dict[str, Any], layout: Layout) -> dict[str, Array]:
     """Every variable with its type, those without a value filled."""
-    sample: dict[str, Any] = {"sample": found["sample"]}
+    sample: dict[str, Any] = {"sample": values["sample"]}
     for variable in layout.variables:
-        value = found.get(variable.name)
+        value = values.get(variable.name)
         if value is None:
             sample[variable.name] = variable.empty(1)[0]
         elif variable.dtype == "str":

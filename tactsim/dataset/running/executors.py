@@ -50,7 +50,15 @@ class Executor(ABC):
 
     @abstractmethod
     def wait(self, seconds: float) -> list[Outcome]:
-        """Tasks that ended, as soon as there is one; empty after so many seconds."""
+        """Tasks that ended, as soon as there is one; empty after so many seconds.
+
+        Raises
+        ------
+        CaseError
+            If the sweep itself is at fault.
+        TactsimError
+            If a worker met a defect of this program.
+        """
 
     @abstractmethod
     def close(self) -> None:

@@ -140,9 +140,9 @@ def _is_gathered(store: Store) -> bool:
 
 def _mark_damaged(run: SweepRun) -> None:
     """Marks every sample pending that counts as computed but is not what was written."""
-    found = damaged_samples(run.store, run.layout.variables)
-    if found:
-        numbers = np.unique(np.concatenate(list(found.values())))
+    damaged = damaged_samples(run.store, run.layout.variables)
+    if damaged:
+        numbers = np.unique(np.concatenate(list(damaged.values())))
         mark_pending(run.store, numbers)
         run.tally.again = len(numbers)
-        run.tally.damaged |= {reason: len(samples) for reason, samples in found.items()}
+        run.tally.damaged |= {reason: len(samples) for reason, samples in damaged.items()}

@@ -104,7 +104,17 @@ class SweepRun:
     lost_in_a_row: int = 0
 
     def compute(self, executor: Executor, progress: Callable[[Tally], None]) -> None:
-        """Compute every pending sample; on any exception what is complete is kept."""
+        """Compute every pending sample; on any exception what is complete is kept.
+
+        Raises
+        ------
+        CaseError
+            If the sweep itself is at fault.
+        TactsimError
+            If a worker met a defect, or too many tasks in a row were lost.
+        StorageError
+            If the samples cannot be written.
+        """
         todo, alone = deque(tuple(group) for group in self._specimens()), deque[int]()
         under_way, size = 0, 1
         try:
@@ -126,7 +136,13 @@ class SweepRun:
             self.fold()
 
     def keep(self, content: bytes, block: Block) -> None:
-        """Puts a block into the journal, and the journal into the arrays when it is time."""
+        """Puts a block into the journal, and the journal into the arrays when it is time.
+
+        Raises
+        ------
+        StorageError
+            If there is no room for it.
+        """
         block["code"] = np.full_like(block["code"], self.code)
         self.journal.append(content)
         self.blocks.append(block)
@@ -137,7 +153,13 @@ class SweepRun:
             self.fold()
 
     def fold(self) -> None:
-        """Writes what the journal holds into the arrays, then forgets it."""
+        """Writes what the journal holds into the arrays, then forgets it.
+
+        Raises
+        ------
+        StorageError
+            If the arrays cannot be written.
+        """
         if self.blocks:
             whole = {name: np.concatenate([block[name] for block in self.blocks]) for name in self.blocks[0]}
             write(self.store, whole, self.layout.variables)
@@ -145,7 +167,13 @@ class SweepRun:
         self.blocks, self.folded = [], time.monotonic()
 
     def recover(self) -> None:
-        """Brings what a killed run left in its journal into the arrays."""
+        """Brings what a killed run left in its journal into the arrays.
+
+        Raises
+        ------
+        StorageError
+            If the journal is not ours, or the arrays cannot be written.
+        """
         for content in self.journal.blocks():
             try:
                 block = decoded(content)

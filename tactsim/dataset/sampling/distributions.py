@@ -243,9 +243,9 @@ def measured(entries: Sequence[Any]) -> Numbers:
         raise InvalidQuantity(f"{shown(list(entries))} mixes plain numbers and quantities")
     if not any(texts):
         return Numbers(tuple(map(float, entries)), "", "", 1.0)
-    found = _parts(entries[0])
-    assert found is not None  # every entry was checked above
-    unit, si, factor = found
+    parts = _parts(entries[0])
+    assert parts is not None  # every entry was checked above
+    unit, si, factor = parts
     return Numbers(tuple(parse_quantity(entry, unit) for entry in entries), unit, si, factor)
 
 

@@ -102,10 +102,10 @@ def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
 def used_seed(sweep: Sweep, drawn: Drawn) -> int:
     """The seed from which the noise of a sample was drawn."""
     place = seed_place(sweep.kind)
-    found: Any = drawn.case.experiment if drawn.case and place else None
+    entry: Any = drawn.case.experiment if drawn.case and place else None
     for key in place:
-        found = getattr(found, key, None)
-    return noise_seed(sweep, drawn.sample) if found is None else int(found)
+        entry = getattr(entry, key, None)
+    return noise_seed(sweep, drawn.sample) if entry is None else int(entry)
 
 
 def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict[Path, tuple[Any, float]]:

@@ -19,6 +19,7 @@ PREFIX = "sweep_settings_"
 """Of the definitions of the section, in which nothing varies."""
 QUANTITY = {key: value for key, value in TypeAdapter(Length).json_schema().items() if key in ("type", "pattern")}
 """Any text with a unit."""
+ITEMS: dict[str, Fragment] = {"quantity": QUANTITY, "number": {"type": "number"}, "integer": {"type": "integer"}}
 ANNOTATIONS = ("title", "description", "default", "examples", "unit")
 VARYING = {"quantity": "varying_quantity", "number": "varying_number", "integer": "varying_integer"}
 """What may vary -> definition of its distributions."""
@@ -28,7 +29,7 @@ def sweep_json_schema() -> Fragment:
     """JSON Schema (draft 7) of a sweep file with every registered experiment."""
     case, settings = case_json_schema(), _prefixed(described(SweepSettings))
     definitions = {name: _inner(definition, f"#/$defs/{name}") for name, definition in case["$defs"].items()}
-    definitions |= {VARYING[kind]: _distributions(kind, item) for kind, item in _items().items()}
+    definitions |= {VARYING[kind]: _distributions(kind, item) for kind, item in ITEMS.items()}
     definitions |= {f"{PREFIX}{name}": definition for name, definition in settings.pop("$defs", {}).items()}
     sections = {name: value for name, value in case["properties"].items() if name not in ("schema", "title")}
     properties = {
@@ -44,10 +45,6 @@ def sweep_json_schema() -> Fragment:
         "$defs": definitions,
     }
     return whole | {"properties": properties, "required": [*case["required"], SECTION]}
-
-
-def _items() -> dict[str, Fragment]:
-    return {"quantity": QUANTITY, "number": {"type": "number"}, "integer": {"type": "integer"}}
 
 
 def _distributions(kind: str, item: Fragment) -> Fragment:
@@ -82,7 +79,8 @@ def _inner(fragment: Any, pointer: str) -> Any:
     varying = dict(fragment)
     for key, value in fragment.items():
         if key == "properties":
-            varying[key] = {name: _place(item, f"{pointer}/{key}/{_escaped(name)}") for name, item in value.items()}
+            escaped = {name: name.replace("~", "~0").replace("/", "~1") for name in value}
+            varying[key] = {name: _place(item, f"{pointer}/{key}/{escaped[name]}") for name, item in value.items()}
         elif key in ("items", "additionalProperties", "patternProperties") and not isinstance(value, bool):
             several = isinstance(value, list)
             varying[key] = (
@@ -96,16 +94,16 @@ def _inner(fragment: Any, pointer: str) -> Any:
 
 
 def _place(value: Fragment, pointer: str) -> Fragment:
-    """A value, or a distribution of it; what tells members of a union apart is fixed."""
+    """A value, or a distribution of it; what discriminates members of a union is fixed."""
     if "const" in value:
         return value
     annotations = {key: value[key] for key in ANNOTATIONS if key in value}
-    own = {key: item for key, item in value.items() if key not in annotations}
+    content = {key: item for key, item in value.items() if key not in annotations}
     kinds = sorted(set(_kinds(value)))
-    if own == QUANTITY:
+    if content == QUANTITY:
         return {**annotations, "anyOf": [QUANTITY, {"$ref": f"#/$defs/{VARYING['quantity']}"}]}
     varying = [*({"$ref": f"#/$defs/{VARYING[kind]}"} for kind in kinds), _choice({"$ref": pointer})]
-    return {**annotations, "anyOf": [_inner(own, f"{pointer}/anyOf/0"), *varying]}
+    return {**annotations, "anyOf": [_inner(content, f"{pointer}/anyOf/0"), *varying]}
 
 
 def _choice(option: Fragment) -> Fragment:
@@ -121,10 +119,6 @@ def _kinds(value: Fragment) -> Iterator[str]:
         yield str(value["type"])
     for member in (*value.get("anyOf", ()), *value.get("oneOf", ())):
         yield from _kinds(member)
-
-
-def _escaped(name: str) -> str:
-    return name.replace("~", "~0").replace("/", "~1")
 
 
 def _prefixed(fragment: Any) -> Any:

@@ -53,9 +53,9 @@ def layout_of(sweep: Sweep) -> Layout:
         unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), unknown)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
-    index, own = index_variables(sweep.settings.splits.names), variables_of(recorder, first_case(sweep).experiment)
-    labels = [variable for variable in own if variable.role == "label"]
-    readings = [variable for variable in own if variable.role == "reading"]
+    index, recorded = index_variables(sweep.settings.splits.names), variables_of(recorder, first_case(sweep).experiment)
+    labels = [variable for variable in recorded if variable.role == "label"]
+    readings = [variable for variable in recorded if variable.role == "reading"]
     variables = (*index, *varied_variables(sweep), *labels, *readings)
     names = [variable.name for variable in variables]
     repeated = sorted({name for name in names if names.count(name) > 1})

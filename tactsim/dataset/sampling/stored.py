@@ -85,13 +85,13 @@ def _shown(option: Any) -> str:
 @cache
 def _versions() -> dict[str, str]:
     """The versions of what data rest on; to ask for them reads a file for each package."""
-    found = {"python": platform.python_version()}
+    versions = {"python": platform.python_version()}
     for package in (*PACKAGES, "zarr", "xarray"):
         try:
-            found[package] = version(package)
+            versions[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return versions
 
 
 def stored_sweep(store: Store) -> Sweep:

@@ -97,7 +97,13 @@ def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: i
 
 @lru_cache(maxsize=4)
 def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
-    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first."""
+    """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first.
+
+    Raises
+    ------
+    CaseError
+        If the text is not that of a sweep.
+    """
     document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
     return _sweep(document, lambda problem: "the sweep", None, checked=True)
 
@@ -106,8 +112,8 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
     value = dict(document.value)
     try:
         if value.get("schema") != SCHEMA:
-            found = as_written(value["schema"]) if "schema" in value else "missing"
-            raise YamlProblems(Problem(("schema",), 0, f"{found}; a sweep begins with 'schema: {SCHEMA}'"))
+            stated = as_written(value["schema"]) if "schema" in value else "missing"
+            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SCHEMA}'"))
         settings = _settings(document, value.pop(SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
         places = places_of(value, ())
@@ -201,10 +207,10 @@ def places_of(value: Any, path: Path) -> list[Place]:
     YamlProblems
         If a distribution is written wrongly.
     """
-    return list(_found(value, path))
+    return list(_places(value, path))
 
 
-def _found(value: Any, path: Path) -> Iterator[Place]:
+def _places(value: Any, path: Path) -> Iterator[Place]:
     if is_distribution(value):
         try:
             read = distribution(value)
@@ -213,13 +219,13 @@ def _found(value: Any, path: Path) -> Iterator[Place]:
         yield Place(path, read)
         if isinstance(read, Listed) and read.numbers is None:
             for index, option in enumerate(read.options):
-                yield from _found(option, (*path, "choice", index))
+                yield from _places(option, (*path, "choice", index))
     elif isinstance(value, dict):
         for key, item in sorted(value.items()):
-            yield from _found(item, (*path, key))
+            yield from _places(item, (*path, key))
     elif isinstance(value, list):
         for index, item in enumerate(value):
-            yield from _found(item, (*path, index))
+            yield from _places(item, (*path, index))
 
 
 def is_distribution(value: Any) -> bool:

@@ -239,20 +239,20 @@ def differences(array: ArrayDescription, variable: Variable) -> Iterator[tuple[s
         "fill_value": "NaN" if variable.dtype.startswith("f") else variable.fill,
         **variable.attributes(),
     }
-    found: dict[str, Any] = {
+    stored: dict[str, Any] = {
         "dtype": array.dtype,
         "shape": [*array.shape[1:]],
         "dimension_names": [*array.dimensions],
         "fill_value": array.metadata["fill_value"],
         **array.attributes,
     }
-    for key in sorted(expected.keys() | found.keys()):
+    for key in sorted(expected.keys() | stored.keys()):
         if key not in expected:
-            yield key, f"{key} is {_shown(found[key])}, which tactsim does not write"
-        elif key not in found:
+            yield key, f"{key} is {_shown(stored[key])}, which tactsim does not write"
+        elif key not in stored:
             yield key, f"{key} is missing; expected: {_shown(expected[key])}"
-        elif found[key] != expected[key]:
-            yield key, f"{key} is {_shown(found[key])}; expected: {_shown(expected[key])}"
+        elif stored[key] != expected[key]:
+            yield key, f"{key} is {_shown(stored[key])}; expected: {_shown(expected[key])}"
 
 
 def wrong_arrays(arrays: Iterable[ArrayDescription], variables: Iterable[Variable]) -> Iterator[tuple[str, str]]:
@@ -266,7 +266,7 @@ def wrong_arrays(arrays: Iterable[ArrayDescription], variables: Iterable[Variabl
 
 
 def earlier_words(names: Iterable[str]) -> str:
-    """What is told of a store that never had some arrays."""
+    """What is reported of a store that never had some arrays."""
     return (
         f"an earlier version of tactsim began this data set, which did not store {', '.join(names)}; it can be read, and the "
         "long_name of each of its arrays says what that holds, but it can neither be gone on with nor checked by this version"

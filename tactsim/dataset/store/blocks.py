@@ -84,11 +84,11 @@ def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:
 
 def stacked(samples: list[dict[str, Array]], variables: Iterable[Variable]) -> Block:
     """The block of single samples."""
-    found: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
+    block: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
     for variable in variables:
         values = [sample[variable.name] for sample in samples]
-        found[variable.name] = np.array([str(v) for v in values]) if variable.dtype == "str" else np.stack(values)
-    return found
+        block[variable.name] = np.array([str(v) for v in values]) if variable.dtype == "str" else np.stack(values)
+    return block
 
 
 class Journal:
@@ -98,7 +98,13 @@ class Journal:
         self.path = path
 
     def blocks(self) -> Iterator[bytes]:
-        """Every complete block; what a kill left incomplete is passed over, and nothing stands behind it."""
+        """Every complete block; what a kill left incomplete is passed over, and nothing stands behind it.
+
+        Raises
+        ------
+        StorageError
+            If it cannot be read, or is no journal.
+        """
         with naming(self.path, "read"):
             if not os.path.lexists(self.path):
                 return
@@ -152,6 +158,12 @@ class Journal:
                 raise
 
     def clear(self) -> None:
-        """Forgets all blocks."""
+        """Forgets all blocks.
+
+        Raises
+        ------
+        StorageError
+            If it cannot be removed.
+        """
         with naming(self.path):
             self.path.unlink(missing_ok=True)

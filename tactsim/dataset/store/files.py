@@ -90,18 +90,30 @@ def is_torn(name: str, arrays: Iterable[str]) -> bool:
 
 
 def remove_torn(folder: Path, arrays: Iterable[str]) -> None:
-    """Removes what a killed run left half written."""
+    """Removes what a killed run left half written.
+
+    Raises
+    ------
+    StorageError
+        If one cannot be removed, or a link stands in the folder.
+    """
     names = set(arrays)
     for name in [name for name in walked(folder) if is_torn(name, names)]:
         with naming(folder / name, "remove"):
             (folder / name).unlink()
 
 
-def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: Iterable[str]) -> list[str]:
-    """Files that tactsim does not write there, sorted; ``own`` are the names of all arrays of the store."""
-    known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in own)}
+def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], arrays: Iterable[str]) -> list[str]:
+    """Files that tactsim does not write there, sorted; ``arrays`` names all those of the store.
+
+    Raises
+    ------
+    StorageError
+        If a link stands in the folder.
+    """
+    known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in arrays)}
     chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
-    names, listed = set(own), os.path.lexists(folder / OWN_LIST)
+    names, listed = set(arrays), os.path.lexists(folder / OWN_LIST)
     return sorted(
         name
         for name in walked(folder)
@@ -113,9 +125,9 @@ def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], own: 
     )
 
 
-def _is_chunk(name: str, chunks: Mapping[str, tuple[ArrayDescription, int]], own: set[str]) -> bool:
+def _is_chunk(name: str, chunks: Mapping[str, tuple[ArrayDescription, int]], arrays: set[str]) -> bool:
     parts = name.split("/")
-    if len(parts) < 3 or parts[0] not in own or parts[1] != "c" or not all(part.isdecimal() for part in parts[2:]):
+    if len(parts) < 3 or parts[0] not in arrays or parts[1] != "c" or not all(part.isdecimal() for part in parts[2:]):
         return False
     if parts[0] not in chunks:
         return True  # of an array whose description is gone

@@ -77,15 +77,15 @@ class Store:
         folder = _folder(path)
         _refuse_few_descriptors(folder)
         attributes = read_attributes(folder)
-        found, faults = _arrays(folder, attributes)
+        readable, faults = _arrays(folder, attributes)
         if not damaged and faults:
             raise StorageError(next(iter(faults.values())))
-        if "status" not in found and not damaged:
+        if "status" not in readable and not damaged:
             raise StorageError(_without(folder, "status"))
-        files = GuardedFiles(folder, found, read_only=not writing)
+        files = GuardedFiles(folder, readable, read_only=not writing)
         with reading(folder), zarr.config.set({"array.write_empty_chunks": True}):
             group = zarr.open_group(files, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
-        return cls(folder, group, found, faults)
+        return cls(folder, group, readable, faults)
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -105,10 +105,10 @@ class Store:
         if name not in self.described:
             raise StorageError(self.faults.get(name) or _without(self.path, name))
         with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
-            found = self.group[name]
-            if not isinstance(found, zarr.Array):
+            array = self.group[name]
+            if not isinstance(array, zarr.Array):
                 raise TypeError("it is no array")
-            return found
+            return array
 
     def read(self, name: str, rows: slice | Array | EllipsisType = ...) -> Array:
         """Values of a variable, of all samples or a slice or mask of them.
@@ -145,7 +145,13 @@ class Store:
         return ARRAYS in self.attributes
 
     def pending(self) -> Array:
-        """Numbers of the samples that are not computed."""
+        """Numbers of the samples that are not computed.
+
+        Raises
+        ------
+        StorageError
+            If the status cannot be read.
+        """
         return np.flatnonzero(self.read("status") == PENDING)
 
 
@@ -192,7 +198,7 @@ def read_attributes(folder: Path) -> dict[str, Any]:
         )
     missing = [name for name in KINDS if name not in attributes]
     if missing:
-        raise StorageError(f"{one_line(folder)} is damaged: {META} does not tell {', '.join(missing)}; bring back a copy")
+        raise StorageError(f"{one_line(folder)} is damaged: {META} does not state {', '.join(missing)}; bring back a copy")
     for name, kind in KINDS.items():
         if not isinstance(attributes[name], kind):
             raise StorageError(f"{one_line(folder)} is damaged: {name} in {META} is no {kind.__name__}; bring back a copy")
@@ -250,26 +256,32 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
     """Arrays that can be read, in the order of their names, and why others cannot; what else stands in the folder is passed
     over."""
     declared = attributes.get(ARRAYS, consolidated_metadata(folder))
-    found: dict[str, ArrayDescription] = {}
+    readable: dict[str, ArrayDescription] = {}
     faults: dict[str, str] = {}
     for name in sorted(set(declared) or _with_description(folder)):
         if not os.path.lexists(folder / name / META):
             continue
         try:
-            found[name] = described(folder, name)
+            readable[name] = described(folder, name)
         except StorageError as error:
             faults[name] = str(error)
-    if "status" in found:
-        for name in sorted(found):
-            fault = index_fault(found[name], found["status"].shape[0], found["status"].chunks[0])
+    if "status" in readable:
+        for name in sorted(readable):
+            fault = index_fault(readable[name], readable["status"].shape[0], readable["status"].chunks[0])
             if fault:
                 faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"
-                del found[name]
-    return found, faults
+                del readable[name]
+    return readable, faults
 
 
 def consolidated_metadata(folder: Path) -> dict[str, Any]:
-    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them."""
+    """Name -> description of the arrays as the ``zarr.json`` of the store gathers them.
+
+    Raises
+    ------
+    StorageError
+        If the file is missing or damaged.
+    """
     gathered = _group(folder).get("consolidated_metadata")
     metadata = gathered.get("metadata") if isinstance(gathered, dict) else None
     return {name: one for name, one in metadata.items() if NAME.fullmatch(name)} if isinstance(metadata, dict) else {}

@@ -65,28 +65,40 @@ def computed_chunks(store: Store, variables: Sequence[Variable], status: Array) 
 
 def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Array]:
     """Why samples must be computed again -> their numbers; chunks that cannot be read are removed, so that others take their
-    place."""
-    found: dict[str, list[Array]] = {}
-    status = _readable_status(store, found)
+    place.
+
+    Raises
+    ------
+    StorageError
+        If a chunk cannot be removed.
+    """
+    damage: dict[str, list[Array]] = {}
+    status = _readable_status(store, damage)
     for read in computed_chunks(store, variables, status):
         for name, reason in read.unreadable.items():
-            found.setdefault(f"{name} cannot be read", []).append(read.numbers)
+            damage.setdefault(f"{name} cannot be read", []).append(read.numbers)
             _remove_chunk(store, name, read.number, reason)
         for name, lost in read.gone.items():
-            found.setdefault(f"{name} is gone", []).append(lost)
+            damage.setdefault(f"{name} is gone", []).append(lost)
         if read.changed.size:
-            found.setdefault(CHANGED, []).append(read.changed)
+            damage.setdefault(CHANGED, []).append(read.changed)
     lost = lost_status(store)
     if lost.size:
-        found.setdefault("status is gone", []).append(lost)
+        damage.setdefault("status is gone", []).append(lost)
     unknown = np.flatnonzero(status > FAILED)
     if unknown.size:
-        found.setdefault(UNKNOWN, []).append(unknown)
-    return {reason: np.unique(np.concatenate(parts)) for reason, parts in found.items()}
+        damage.setdefault(UNKNOWN, []).append(unknown)
+    return {reason: np.unique(np.concatenate(parts)) for reason, parts in damage.items()}
 
 
 def mark_pending(store: Store, samples: Array) -> None:
-    """Says of samples that they are not computed."""
+    """Says of samples that they are not computed.
+
+    Raises
+    ------
+    StorageError
+        If the status cannot be read or written.
+    """
     status = store.array("status")
     per_chunk = int(status.chunks[0])
     with naming(store.path):
@@ -97,7 +109,7 @@ def mark_pending(store: Store, samples: Array) -> None:
             status[rows] = values
 
 
-def _readable_status(store: Store, found: dict[str, list[Array]]) -> Array:
+def _readable_status(store: Store, damage: dict[str, list[Array]]) -> Array:
     """The status of all samples; of chunks that cannot be read all are pending."""
     per_chunk, samples = store.described["status"].chunks[0], store.samples
     status = np.full(samples, PENDING, np.uint8)
@@ -106,7 +118,7 @@ def _readable_status(store: Store, found: dict[str, list[Array]]) -> Array:
         try:
             status[rows] = store.read("status", rows)
         except StorageError as error:
-            found.setdefault("status cannot be read", []).append(np.arange(rows.start, rows.stop))
+            damage.setdefault("status cannot be read", []).append(np.arange(rows.start, rows.stop))
             _remove_chunk(store, "status", number, str(error))
     return status
 
@@ -220,7 +232,7 @@ def stored_variables(store: Store) -> Iterator[Variable]:
 
 
 def _was_left_out(store: Store, name: str, sample: int) -> bool:
-    """Whether a chunk of an earlier store is no file because all of it is the fill value: the checksum of one sample tells."""
+    """Whether a chunk of an earlier store is no file because all of it is the fill value: the checksum of one sample decides."""
     if name == MARKED:
         return True
     if name in NOT_SUMMED:

@@ -60,7 +60,13 @@ def set_attributes(store: Store, **attributes: Any) -> None:
 
 
 def consolidate(path: Path) -> None:
-    """Gathers the metadata in one file, which opens fast and without a word about other files beside the arrays."""
+    """Gathers the metadata in one file, which opens fast and without a word about other files beside the arrays.
+
+    Raises
+    ------
+    StorageError
+        If a description is damaged, or the file cannot be written.
+    """
     import zarr
 
     with naming(path), reading(path), warnings.catch_warnings():
@@ -72,7 +78,13 @@ def consolidate(path: Path) -> None:
 
 
 def resize(store: Store, samples: int, variables: Iterable[Variable]) -> None:
-    """Makes room for this many samples in every array, in that of the status last."""
+    """Makes room for this many samples in every array, in that of the status last.
+
+    Raises
+    ------
+    StorageError
+        If an array is missing or cannot be written.
+    """
     with naming(store.path):
         for variable in sorted(variables, key=lambda variable: variable.name == "status"):
             array = store.array(variable.name)
@@ -82,7 +94,13 @@ def resize(store: Store, samples: int, variables: Iterable[Variable]) -> None:
 
 
 def restore(store: Store, variables: Iterable[Variable]) -> list[str]:
-    """Makes arrays anew that are gone, filled with nothing; returns their names."""
+    """Makes arrays anew that are gone, filled with nothing; returns their names.
+
+    Raises
+    ------
+    StorageError
+        If one cannot be written.
+    """
     gone = [variable for variable in variables if variable.name not in store.described]
     present = store.described["status" if "status" in store.described else next(iter(store.described))]
     with naming(store.path):
@@ -96,6 +114,11 @@ def write(store: Store, block: Block, variables: Sequence[Variable]) -> None:
     """Puts samples into the arrays and down to the disk: all variables, and only then their status.
 
     Each chunk is replaced as a whole, so that a kill leaves the earlier or the later one.
+
+    Raises
+    ------
+    StorageError
+        If an array is missing or cannot be written.
     """
     others = [variable for variable in variables if variable.name != "status"]
     status = [variable for variable in variables if variable.name == "status"]
@@ -142,17 +165,12 @@ def _put(store: Store, block: Block, variable: Variable) -> list[Path]:
     array, folder, changed = store.array(variable.name), store.path / variable.name, []
     numbers, per_chunk = block["sample"], int(array.chunks[0])
     for chunk in np.unique(numbers // per_chunk).tolist():
-        own = numbers // per_chunk == chunk
+        inside = numbers // per_chunk == chunk
         begin, end = chunk * per_chunk, min((chunk + 1) * per_chunk, array.shape[0])
         content = store.path / store.described[variable.name].chunk_key(chunk)
         new = [place for place in content.parents[: len(variable.dimensions) + 1] if not place.exists()]
         values = np.asarray(array[begin:end])
-        values[numbers[own] - begin] = block[variable.name][own]
+        values[numbers[inside] - begin] = block[variable.name][inside]
         array[begin:end] = values
-        changed += [
-            content,
-            *new,
-            content.parents[len(new)],
-            *([folder / META] if content.parents[len(new)] == folder else ()),
-        ]
+        changed += [content, *new, content.parents[len(new)], *([folder / META] if content.parents[len(new)] == folder else ())]
     return changed

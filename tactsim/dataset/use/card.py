@@ -43,14 +43,14 @@ def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
 
 def adopt_earlier_files(path: Path, figures: Sequence[str]) -> None:
     """Lists card and figures that an earlier tactsim wrote, which kept no list of its files."""
-    card, own = path / CARD, OwnFiles(path)
+    card, files = path / CARD, OwnFiles(path)
     if (path / OWN_LIST).exists() or not card.is_file() or card.is_symlink():
         return
     with open(card, "rb") as file:
         head = file.read(1000).decode("utf-8", "replace")
     if TAGS in head.splitlines():
         for name in (CARD, *(f"{FIGURES}/{figure}" for figure in figures)):
-            own.adopt(name)
+            files.adopt(name)
 
 
 def plain(text: object) -> str:
@@ -113,8 +113,8 @@ def empty_split_lines(names: Sequence[str]) -> list[str]:
 
 
 def _figures(path: Path) -> list[str]:
-    own = OwnFiles(path)
-    drawn = sorted(name for name in own.sums() if name.startswith(f"{FIGURES}/") and own.written(name))
+    files = OwnFiles(path)
+    drawn = sorted(name for name in files.sums() if name.startswith(f"{FIGURES}/") and files.written(name))
     return ["## Figures", *(f"![{Path(name).stem}]({name})" for name in drawn), ""] if drawn else []
 
 
@@ -153,11 +153,11 @@ def _names(layout: Layout, role: str) -> list[str]:
     return [variable.name for variable in layout.variables if variable.role == role and variable.dtype != "str"]
 
 
-def _limits(own: str) -> list[str]:
+def _limits(stated: str) -> list[str]:
     return [
         "## Known limits",
         *(f"- {line}" for line in GENERAL_LIMITS),
-        *(f"- {plain(line)}" for line in own.splitlines() if line.strip()),
+        *(f"- {plain(line)}" for line in stated.splitlines() if line.strip()),
         "",
     ]
 
@@ -176,7 +176,7 @@ def description(path: str | Path) -> str:
     lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {row[0]:<36} {row[1]:<28} {row[2]:<6} {row[3]}" for row in variable_rows(store)]
-    return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check tells more" for name in store.missing)])
+    return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 
 
 def status_counts(store: Store) -> dict[str, int]:

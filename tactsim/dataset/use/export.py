@@ -103,7 +103,7 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
     if done.out_of_time:
         raise StorageError(f"cannot write {one_line(target)}: it took longer than {LONGEST:g} s")
     if done.code:
-        full = "No space left" in done.said or "File too large" in done.said
+        full = "No space left" in done.error_output or "File too large" in done.error_output
         raise StorageError(
             f"cannot write {one_line(target)}: {'no room left on the disk' if full else done.last_line or done.ending}"
         )
@@ -164,7 +164,7 @@ def _column(name: Hashable, values: xarray.DataArray, data: xarray.Dataset) -> A
     if name == "split":
         known = split_names(data)
         if content.size and content.max() >= len(known):
-            raise StorageError("a sample has an unknown split; tactsim data check tells which")
+            raise StorageError("a sample has an unknown split; tactsim data check names it")
         return [known[int(number)] for number in content]
     return content if content.dtype.kind in "fiub" else [str(value) for value in content]
 

@@ -141,19 +141,19 @@ class ClosedForm(Experiment):
     def _quantities(
         self, annulus: ViscoelasticAnnulus, last: dict[str, float], columns: tuple[Array, ...]
     ) -> dict[str, Quantity]:
-        quantities = {
+        described = {
             "displacement": "displacement of the annulus at the end",
             "force": "force on the annulus at the end",
             "tissue_rise_axis": "height of the tissue on the axis above the face of the annulus at the end",
         }
-        found = {name: Quantity(last[name], self.history_units[name], words) for name, words in quantities.items()}
+        quantities = {name: Quantity(last[name], self.history_units[name], words) for name, words in described.items()}
         _, displacement, force, _ = columns
-        found["largest_displacement"] = Quantity(float(displacement.max()), "m", "largest displacement")
-        found["largest_force"] = Quantity(float(force.max()), "N", "largest force")
-        found["smallest_force"] = Quantity(float(force.min()), "N", "smallest force; negative is a pull")
-        found["force_factor"] = Quantity(annulus.force_factor, "1", "kappa = P / (8 G a eps)")
-        found["rise_factor"] = Quantity(annulus.rise_factor, "1", "height of the tissue on the axis over the displacement")
-        return found
+        quantities["largest_displacement"] = Quantity(float(displacement.max()), "m", "largest displacement")
+        quantities["largest_force"] = Quantity(float(force.max()), "N", "largest force")
+        quantities["smallest_force"] = Quantity(float(force.min()), "N", "smallest force; negative is a pull")
+        quantities["force_factor"] = Quantity(annulus.force_factor, "1", "kappa = P / (8 G a eps)")
+        quantities["rise_factor"] = Quantity(annulus.rise_factor, "1", "height of the tissue on the axis over the displacement")
+        return quantities
 
     def _warnings(self, times: Array, force: Array, displacement: Array) -> list[str]:
         warnings = []

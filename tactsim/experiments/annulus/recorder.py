@@ -64,10 +64,10 @@ class ClosedFormRecorder(Recorder):
         """Linear between the times that the experiment sampled."""
         times, columns = history(result)
         at = self.settings.stored_times(float(times[-1]))
-        found = {"time_s": at, **{name: np.interp(at, times, columns[name]) for name in HISTORY}}
+        readings = {"time_s": at, **{name: np.interp(at, times, columns[name]) for name in HISTORY}}
         if self.settings.reading:
-            found |= self.settings.reading.read(times, columns["force"], at, generator)
-        return found
+            readings |= self.settings.reading.read(times, columns["force"], at, generator)
+        return readings
 
     def describe(self) -> str:
         """What is simulated."""

@@ -84,7 +84,7 @@ class DmaIdentification(Experiment):
         yield from report.steps()
 
     def _finding(self, method: Method, data: DmaData, frequencies: np.ndarray) -> DmaFinding:
-        """A fit with its band and what the data tell of its constants."""
+        """A fit with its band and what the data determine of its constants."""
         if method == "least_squares":
             fit, banded = fit_least_squares(data, self.units), least_squares_band
         else:

@@ -80,16 +80,11 @@ def _draw_curves(axis: Axes, result: Result, part: str) -> None:
     axis.plot(frequency, measured, "o", color=DATA_COLOUR, markersize=4, zorder=7, label="data")
     axis.set(xscale="log", yscale="log")
     axis.set_title(f"{part} compliance", loc="left")
-    axis.xaxis.set_major_locator(_ticks(frequency))
+    axis.xaxis.set_major_locator(FixedLocator([tick for tick in TICKS if frequency.min() <= tick <= frequency.max()]))
     for which in (axis.xaxis, axis.yaxis):
         which.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.xaxis.set_minor_formatter(NullFormatter())
     despined(axis)
-
-
-def _ticks(frequency: Array) -> FixedLocator:
-    """Places of the labelled frequencies."""
-    return FixedLocator([tick for tick in TICKS if frequency.min() <= tick <= frequency.max()])
 
 
 def _band(result: Result, method: str) -> str:
@@ -119,7 +114,7 @@ def _draw_differences(axis: Axes, result: Result, part: str) -> None:
 
 
 def _draw_foot(figure: Figure, result: Result) -> None:
-    """How many constants the data tell, or why the run did not end well."""
+    """How many constants the data determine, or why the run did not end well."""
     if result.status is not Status.CONVERGED:
         mark_failure(figure, result)
         return

@@ -1,4 +1,4 @@
-"""What an identification from dynamic mechanical analysis reports: curves, quantities, and what the data do not tell."""
+"""What an identification from dynamic mechanical analysis reports: curves, quantities, and what the data leave open."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SHOWN_GENERATIONS = 50
 
 @dataclass(frozen=True, eq=False)
 class DmaFinding:
-    """A fit, its band, and what the data tell of its constants."""
+    """A fit, its band, and what the data determine of its constants."""
 
     fit: DmaFit
     band: ComplianceBand
@@ -83,24 +83,24 @@ class DmaReport:
         )
 
     def _quantities(self) -> dict[str, Quantity]:
-        found: dict[str, Quantity] = {}
+        quantities: dict[str, Quantity] = {}
         for method, finding in self.fits.items():
-            found |= self._constants(finding, prefix="" if not found else f"{method}_")
+            quantities |= self._constants(finding, prefix="" if not quantities else f"{method}_")
         for method, finding in self.fits.items():
-            found |= self._errors(method, finding)
+            quantities |= self._errors(method, finding)
         if self.fits:
             least = fit_least_squares(self.data, self._units, weighting="objective").objective
-            found["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
+            quantities["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
             determination = next(iter(self.fits.values())).determination
-            found["relative_noise"] = Quantity(
+            quantities["relative_noise"] = Quantity(
                 determination.noise, "1", "relative standard deviation of each number, known or estimated"
             )
-            found["determined_combinations"] = Quantity(
+            quantities["determined_combinations"] = Quantity(
                 determination.determined_combinations,
                 "1",
                 f"combinations of the {len(determination.names)} constants that the data determine",
             )
-        return found
+        return quantities
 
     @property
     def _units(self) -> int:
@@ -121,7 +121,7 @@ class DmaReport:
         errors = fit.parts(self.data.frequencies) / self.data.parts - 1
         squares = float(((errors / relative_noise(self.data)) ** 2).sum())
         width, both = float(np.median(band.relative_width)), "elastic and viscous"
-        found = {
+        quantities = {
             f"{method}_objective": Quantity(fit.objective, "1/Pa**2", "eq. 4.5.2 with squared norms"),
             f"{method}_weighted_squares": Quantity(squares, "1", "squared errors over the variance of the noise, summed"),
             f"{method}_largest_error": Quantity(
@@ -131,8 +131,10 @@ class DmaReport:
         }
         if self.truth is not None:
             error = float(np.abs(band.centre / self.truth - 1).max())
-            found[f"{method}_curve_error"] = Quantity(error, "1", f"largest relative difference from the true curves, {both}")
-        return found
+            quantities[f"{method}_curve_error"] = Quantity(
+                error, "1", f"largest relative difference from the true curves, {both}"
+            )
+        return quantities
 
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
         warnings = [finding.determination.statement() for finding in list(self.fits.values())[:1]]

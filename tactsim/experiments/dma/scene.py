@@ -9,7 +9,7 @@ from tactsim.units import FrozenModel
 
 
 class KelvinFit(FrozenModel):
-    """What one method of fitting found; constants by name in SI."""
+    """What one method of fitting identified; constants by name in SI."""
 
     evaluations: int
     """Of the objective."""

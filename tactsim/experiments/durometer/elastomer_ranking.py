@@ -180,13 +180,13 @@ class ElastomerRanking(Experiment):
         if pressed.status is not Status.CONVERGED or len(indented.steps) < 2:
             raise Unfinished(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
         modulus = youngs_modulus(shape.material.shear_modulus, None)
-        found = {name: float(pressed.quantities[f"threshold_{name}"].value) for name in ("pressure", "displacement")}
+        threshold = {name: float(pressed.quantities[f"threshold_{name}"].value) for name in ("pressure", "displacement")}
         cut_short = "" if indented.status is Status.CONVERGED else indented.reason
         return ShapeFinding(
             shape=shape,
             youngs_modulus=modulus,
-            threshold_pressure=found["pressure"],
-            threshold_displacement=found["displacement"],
+            threshold_pressure=threshold["pressure"],
+            threshold_displacement=threshold["displacement"],
             curve=ForceDepthCurve.of(indented, modulus),
             cut_short=cut_short,
         )

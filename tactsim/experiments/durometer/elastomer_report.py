@@ -24,7 +24,7 @@ TIMES = (1e-6, 1e6)
 
 @dataclass(frozen=True)
 class ShapeFinding:
-    """What the two simulations of a shape found."""
+    """Results of the two simulations of a shape."""
 
     shape: Shape
     youngs_modulus: float
@@ -80,15 +80,15 @@ class RankingReport:
 
     def __init__(self, elastomers: Sequence[Elastomer], scale: DurometerScale, radius: float):
         self._elastomers, self._scale, self._radius = tuple(elastomers), scale, radius
-        self._found: list[ShapeFinding] = []
+        self._finished: list[ShapeFinding] = []
         self._steps: list[StepRecord] = []
         self._atrium: dict[str, Quantity] = {}
 
     def add(self, finding: ShapeFinding) -> Iterator[StepRecord]:
         """One step for every elastomer with this shape, numbered from 1; a value that cannot be had is absent."""
-        self._found.append(finding)
+        self._finished.append(finding)
         for number, elastomer in enumerate(self._elastomers, 1):
-            values: dict[str, float | None] = {"shape": float(len(self._found)), "elastomer": float(number)}
+            values: dict[str, float | None] = {"shape": float(len(self._finished)), "elastomer": float(number)}
             values |= self._compared(finding, elastomer)
             known = {name: value for name, value in values.items() if value is not None}
             self._steps.append(StepRecord(len(self._steps) + 1, 0, 0.0, known))
@@ -113,7 +113,7 @@ class RankingReport:
 
     def add_atrium(self, reading: float, times: Sequence[float], shape: int) -> None:
         """What a reading on porcine atrium means under a shape, counted from 0, and what Table 4.1 reads at times in s."""
-        compliance, finding = table_4_1(), self._found[shape]
+        compliance, finding = table_4_1(), self._finished[shape]
         moduli = {
             "instantaneous": 1 / compliance.glassy_compliance,
             **{f"{time:g} s": 1 / float(compliance.creep(time)) for time in times},
@@ -149,56 +149,58 @@ class RankingReport:
             "hand": [one.hand for one in self._elastomers],
             "sensor": [one.threshold_pressure for one in self._elastomers],
         }
-        found = {}
+        correlations = {}
         for first, second in (("durometer", "hand"), ("durometer", "sensor"), ("hand", "sensor")):
             words = f"Spearman's rank correlation of {first} and {second}, as printed"
-            found[f"spearman_{first}_{second}"] = Quantity(_spearman(measured[first], measured[second]), "1", words)
+            correlations[f"spearman_{first}_{second}"] = Quantity(_spearman(measured[first], measured[second]), "1", words)
         for name, values in measured.items():
             words = f"Spearman's rank correlation of the predicted reading and the {name}"
-            coefficients = [_spearman(self._readings(shape), values) for shape in range(len(self._found))]
-            found[f"spearman_predicted_{name}"] = Quantity(coefficients, "1", f"{words}, by shape")
+            coefficients = [_spearman(self._readings(shape), values) for shape in range(len(self._finished))]
+            correlations[f"spearman_predicted_{name}"] = Quantity(coefficients, "1", f"{words}, by shape")
             known = [value for value in coefficients if value is not None]
             if known:
-                found[f"smallest_spearman_predicted_{name}"] = Quantity(min(known), "1", f"{words}, the smallest of all shapes")
-        return found
+                correlations[f"smallest_spearman_predicted_{name}"] = Quantity(
+                    min(known), "1", f"{words}, the smallest of all shapes"
+                )
+        return correlations
 
     def _readings(self, shape: int) -> list[float]:
         """Predicted readings, 0 for those that are not known."""
         return [value or 0.0 for value in self._column(shape, "predicted_reading")]
 
     def _quantities(self) -> dict[str, Quantity]:
-        shapes = range(len(self._found))
+        shapes = range(len(self._finished))
         printed = np.array([one.durometer for one in self._elastomers])
         differences = [(np.array(self._readings(shape)) - printed).tolist() for shape in shapes]
-        quantities = {
+        columns = {
             "predicted_reading": ("1", "predicted reading, by shape and elastomer; 0 is off the scale"),
             "modulus_of_threshold": ("Pa", "Young's modulus from the threshold pressure, by shape and elastomer"),
             "modulus_of_reading": ("Pa", "Young's modulus from the printed reading, by shape and elastomer"),
             "modulus_ratio": ("1", "modulus from the printed reading over that from the threshold, by shape and elastomer"),
         }
-        found = self._rank_correlations()
-        found |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in quantities.items()}
+        quantities = self._rank_correlations()
+        quantities |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in columns.items()}
         words = "predicted minus printed reading, by shape and elastomer"
-        found["reading_difference"] = Quantity(differences, "1", words)
-        own = [self._own(shape) for shape in shapes]
+        quantities["reading_difference"] = Quantity(differences, "1", words)
+        at_own_modulus = [self._own(shape) for shape in shapes]
         for name, unit, words in (
             ("own_threshold_pressure", "Pa", "threshold pressure by the constants of each shape"),
             ("own_reading", "1", "reading by the constants of each shape; 0 is off the scale"),
         ):
-            found[name] = Quantity([pair[name] for pair in own], unit, words)
-        return found | self._atrium
+            quantities[name] = Quantity([pair[name] for pair in at_own_modulus], unit, words)
+        return quantities | self._atrium
 
     def _own(self, shape: int) -> dict[str, float | None]:
         """Threshold pressure in Pa and reading of a shape at the modulus it was given."""
-        finding = self._found[shape]
+        finding = self._finished[shape]
         return {
             "own_threshold_pressure": finding.threshold_pressure,
             "own_reading": finding.reading(finding.youngs_modulus, self._scale),
         }
 
     def _warnings(self) -> list[str]:
-        warnings = [f"{one.shape.name}: the durometer ended early, {one.cut_short}" for one in self._found if one.cut_short]
-        for shape, finding in enumerate(self._found):
+        warnings = [f"{one.shape.name}: the durometer ended early, {one.cut_short}" for one in self._finished if one.cut_short]
+        for shape, finding in enumerate(self._finished):
             off = self._column(shape, "bottoms_out")
             lost = [one.name for one, value in zip(self._elastomers, off, strict=True) if value]
             if lost:
@@ -208,9 +210,9 @@ class RankingReport:
     def findings(self, assumptions: Sequence[str]) -> Findings:
         """What every shape that was finished says."""
         return Findings(
-            f"{len(self._elastomers)} elastomers by {len(self._found)} shapes of energy",
+            f"{len(self._elastomers)} elastomers by {len(self._finished)} shapes of energy",
             self._steps,
-            quantities=self._quantities() if self._found else {},
+            quantities=self._quantities() if self._finished else {},
             assumptions=assumptions,
             warnings=self._warnings(),
             scene=self._scene(),
@@ -219,8 +221,8 @@ class RankingReport:
     def _scene(self) -> ElastomerRankingScene:
         return ElastomerRankingScene(
             elastomers=tuple(self._elastomers),
-            shapes=tuple(one.shape for one in self._found),
-            threshold_displacement=tuple(one.threshold_displacement for one in self._found),
+            shapes=tuple(one.shape for one in self._finished),
+            threshold_displacement=tuple(one.threshold_displacement for one in self._finished),
         )
 
 

@@ -24,13 +24,7 @@ class DurometerRecord(IndentationRecord):
     """Collects the accepted steps of a durometer, among them the balance of tissue and spring."""
 
     def __init__(
-        self,
-        setup: IndentationSetup,
-        model: PressedModel,
-        path: StartedPath,
-        *,
-        scale: DurometerScale,
-        spring_tolerance: float,
+        self, setup: IndentationSetup, model: PressedModel, path: StartedPath, *, scale: DurometerScale, spring_tolerance: float
     ):
         super().__init__(setup, model, path)
         self.scale, self.spring_tolerance = scale, spring_tolerance
@@ -67,7 +61,7 @@ class DurometerRecord(IndentationRecord):
 
     def quantities(self) -> dict[str, Quantity]:
         """Reading and modulus, then those of an indentation."""
-        found = super().quantities()
+        inherited = super().quantities()
         radius = self.setup.body.radius
         hertz = hertz_reading(self.youngs_modulus, self.scale, radius)
         quantities = {
@@ -83,7 +77,7 @@ class DurometerRecord(IndentationRecord):
                 "reading": Quantity(0.0, "1", "reading of an indentor that bottoms out: the true one is below 0")
             } | quantities
             quantities["bottoms_out"] = Quantity(1, "1", "1 where the tissue does not bear the spring at the whole travel")
-        return quantities | found
+        return quantities | inherited
 
     def _went_all_the_way(self) -> bool:
         return bool(self.steps) and self.steps[-1].values["displacement"] >= self.scale.travel * (1 - 1e-9)
@@ -118,7 +112,7 @@ class DurometerRecord(IndentationRecord):
         """Those of an indentation, and what ASTM D2240 says of the reading and of the specimen."""
         warnings = super().warnings()
         if self._went_all_the_way() and not self.balance:
-            warnings.append("the reading is below 0: off the scale; the force at the whole travel tells more")
+            warnings.append("the reading is below 0: off the scale; the force at the whole travel says more")
         if self.setup.specimen.radius < WIDE:
             given, asked = (format_quantity(value, "m") for value in (self.setup.specimen.radius, WIDE))
             warnings.append(f"the edge of the specimen is {given} away; ASTM D2240 asks for {asked}")

@@ -147,14 +147,16 @@ def _step(number: int, fit: CreepFit) -> StepRecord:
 
 
 def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
-    found = {}
+    quantities = {}
     for name, line in lines.items():
         unit = UNITS[name]
-        found[f"{name}_slope"] = Quantity(line.slope, f"{unit}/N", f"slope of {name} over the force")
-        found[f"{name}_intercept"] = Quantity(line.intercept, unit, f"{name} without force")
-        found[f"{name}_slope_half_width"] = Quantity(line.slope_half_width, f"{unit}/N", "half-width of the slope's interval")
-        found[f"{name}_intercept_half_width"] = Quantity(line.intercept_half_width, unit, "half-width of its interval")
-    return found
+        quantities[f"{name}_slope"] = Quantity(line.slope, f"{unit}/N", f"slope of {name} over the force")
+        quantities[f"{name}_intercept"] = Quantity(line.intercept, unit, f"{name} without force")
+        quantities[f"{name}_slope_half_width"] = Quantity(
+            line.slope_half_width, f"{unit}/N", "half-width of the slope's interval"
+        )
+        quantities[f"{name}_intercept_half_width"] = Quantity(line.intercept_half_width, unit, "half-width of its interval")
+    return quantities
 
 
 def _curve(test: CreepTest, most: int = 400) -> CreepCurve:

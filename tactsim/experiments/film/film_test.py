@@ -29,7 +29,7 @@ PositiveTime = Annotated[Time, Field(gt=0, le=LONGEST)]
 class FilmTest(Experiment):
     """A force suddenly put on a film and held, for each of several forces.
 
-    The signal of the film is told with what electronics make of it: a resistance, or the voltage of a charge amplifier.
+    The signal of the film is reported with what electronics make of it: a resistance, or the voltage of a charge amplifier.
 
     Source: thesis, sections 2.2 and 2.3, Fig. 2.5, 2.6b, 2.9 and 2.10.
     """
@@ -42,12 +42,12 @@ class FilmTest(Experiment):
     times: Annotated[tuple[PositiveTime, ...], Field(min_length=1, max_length=1000)] = (
         *(0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0),
     )
-    """Times since the force began, increasing; the immediate answer at 0 s is always told."""
+    """Times since the force began, increasing; the immediate answer at 0 s is always reported."""
     reading_time: PositiveTime = 1.0
     """Time since the force began at which the signal is plotted against the force and a line is laid through."""
 
     amplifier: ChargeAmplifier | None = None
-    """What turns the capacitance of a capacitive film into a voltage; null tells the capacitance only."""
+    """What turns the capacitance of a capacitive film into a voltage; null reports the capacitance only."""
 
     history_units: ClassVar[dict[str, str]] = {
         "force": "N",
@@ -109,30 +109,30 @@ class FilmTest(Experiment):
 
     def _readings(self, times: Array, signal: Array) -> dict[str, Quantity]:
         drift = signal[-1] / signal[0] - 1
-        found = {
+        quantities = {
             "forces": Quantity(list(self.forces), "N", "forces that were held"),
             "times": Quantity(times.tolist(), "s", "times since the force began"),
             "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time, for each force"),
         }
         shown = {name: values for name, values in self._shown(signal).items() if name != "conductance"}
         readings = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
-        return found | readings
+        return quantities | readings
 
     def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""
         fit, symbol = scipy.stats.linregress(forces, read), self.film.signal
         slope, intercept = float(fit.slope), float(fit.intercept)
         errors = (read - intercept) / slope - forces
-        found = {
+        quantities = {
             f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time, for each force")
             for name, values in self._shown(read).items()
             if name != "conductance"
         }
-        found |= report.readings
+        quantities |= report.readings
         words = f"m of the least-squares line of the {symbol}, C = m F + n, at the reading time"
-        found["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
-        found["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
+        quantities["line_slope"] = Quantity(slope, f"{self.film.unit}/N", words)
+        quantities["line_intercept"] = Quantity(intercept, self.film.unit, "n of that line")
         for sign, error in (("positive", errors.max()), ("negative", errors.min())):
             words = f"largest {sign} error of the force that the line reads, over the largest force"
-            found[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
-        return found
+            quantities[f"linearity_{sign}"] = Quantity(float(error / forces[-1]), "1", words)
+        return quantities

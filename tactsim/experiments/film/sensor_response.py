@@ -40,7 +40,7 @@ class SensorResponse(Experiment):
     calibration: AnyCalibration = THESIS_LINE
     """What turns conductance back into force; by default F = 20.94 C - 0.132."""
     ranges: Annotated[tuple[Annotated[Force, Field(ge=0)], ...], Field(min_length=2)] = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0, 25.0)
-    """Borders of the ranges of force for which the error is told, increasing."""
+    """Borders of the ranges of force for which the error is reported, increasing."""
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 
@@ -115,11 +115,11 @@ class SensorResponse(Experiment):
         """Force in N by the inverse of the film's model from unfiltered samples, up to the first saturated one."""
         good = int(np.argmax(recording.saturated)) if recording.saturated.any() else len(times)
         conductance = self.chain.conductance(np.maximum(recording.voltage[:good], 0.0))
-        found = np.zeros(len(times))
+        force = np.zeros(len(times))
         if good:
-            found[:good] = self.film.force(times[:good], conductance)
-            found[good:] = found[good - 1]
-        return found
+            force[:good] = self.film.force(times[:good], conductance)
+            force[good:] = force[good - 1]
+        return force
 
     def _inversion(self, times: Array, force: Array, conductance: Array, error: Array, good: Array) -> float | None:
         """Largest error of the model's force, in steps of the converter at that force, among ``good`` samples; None if none."""
@@ -133,25 +133,23 @@ class SensorResponse(Experiment):
         read, raw, model = readings["read"], readings["raw"], readings["model"]
         good = ~np.logical_or.accumulate(recording.saturated)
         inversion = self._inversion(recording.time, force, conductance, model - force, good)
-        found = {
+        quantities = {
             "rms_error": Quantity(root_mean_square(read - force), "N", "root mean square of read minus applied force, filtered"),
             "rms_error_unfiltered": Quantity(root_mean_square(raw - force), "N", "the same without the low pass"),
             "largest_error": Quantity(float(np.abs(read - force).max()), "N", "largest difference of read and applied force"),
             "hysteresis": Quantity(
-                hysteresis(force, raw) / float(force.max() or 1.0),
-                "1",
-                "widest loop of the unfiltered reading over the force",
+                hysteresis(force, raw) / float(force.max() or 1.0), "1", "widest loop of the unfiltered reading over the force"
             ),
             "saturated_fraction": Quantity(float(recording.saturated.mean()), "1", "samples outside the range of the converter"),
         }
         if inversion is not None:
-            words = "largest error of the force found by the inverse of the film, in steps of the converter there"
-            found["inversion_steps"] = Quantity(inversion, "1", f"{words}; up to the first saturated sample")
-        return found | self._by_range(force, raw, model, good)
+            words = "largest error of the force computed by the inverse of the film, in steps of the converter there"
+            quantities["inversion_steps"] = Quantity(inversion, "1", f"{words}; up to the first saturated sample")
+        return quantities | self._by_range(force, raw, model, good)
 
     def _by_range(self, force: Array, raw: Array, model: Array, good: Array) -> dict[str, Quantity]:
         """Errors by range of force; those of the inverse from the ``good`` samples, before the first saturated one."""
-        found = {"ranges": Quantity(list(self.ranges), "N", "borders of the ranges of force")}
+        quantities = {"ranges": Quantity(list(self.ranges), "N", "borders of the ranges of force")}
         every = np.ones(len(force), bool)
         for name, reading, how, chosen in (
             ("model", model, "inverse of the film", good),
@@ -159,10 +157,10 @@ class SensorResponse(Experiment):
         ):
             errors = range_errors(force[chosen], reading[chosen], self.ranges)
             where = f"by the {how} without low pass, for each range of force" + ("" if chosen is every else "; to saturation")
-            found[f"{name}_range_rms_error"] = Quantity([r.rms for r in errors], "N", f"root mean square error {where}")
-            found[f"{name}_range_largest_error"] = Quantity([r.largest for r in errors], "N", f"largest error {where}")
-        found["range_samples"] = Quantity([r.samples for r in errors], "1", "samples in each range of force")
-        return found
+            quantities[f"{name}_range_rms_error"] = Quantity([r.rms for r in errors], "N", f"root mean square error {where}")
+            quantities[f"{name}_range_largest_error"] = Quantity([r.largest for r in errors], "N", f"largest error {where}")
+        quantities["range_samples"] = Quantity([r.samples for r in errors], "1", "samples in each range of force")
+        return quantities
 
     def _warnings(self, force: Array, recording: Recording) -> tuple[str, ...]:
         warnings = list(self.film.warnings(float(force.max())))

@@ -28,7 +28,7 @@ def covered_areas(jaw: Jaw, middle: Array, size: Array, layout: TaxelLayout) -> 
 
 
 def overhang_warnings(grasp: GraspSetup) -> list[str]:
-    """What a user is told of taxels that reach beyond the block, jaw by jaw."""
+    """Warnings about taxels that reach beyond the block, jaw by jaw."""
     size, layout, warnings = np.array(grasp.block.size[:2]), grasp.matrix, []
     for side in JAWS:
         areas = covered_areas(grasp.jaw(side), size / 2 + getattr(grasp, side).offset, size, layout)

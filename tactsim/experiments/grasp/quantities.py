@@ -19,7 +19,7 @@ BY_TAXEL = "[row][column], row 1 nearest the front (smallest y), column 1 the sm
 def final_quantities(values: Values, readings: dict[str, JawReading], experiment: GraspSetup) -> dict[str, Quantity]:
     """Quantities at the last accepted step, and the extremes of all steps."""
     last, area = values[-1], experiment.matrix.area
-    found = {
+    quantities = {
         "time": Quantity(last["time"], "s", "time of the last accepted step"),
         "displacement": Quantity(last["displacement"], "m", "closing of each jaw from first touch" + LAST),
         "reaction_force": Quantity(last["reaction_force"], "N", "force pressing into the face of the upper jaw" + LAST),
@@ -27,7 +27,7 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
     for side, reading in readings.items():
         x, y, normal = reading.taxels.taxels
         of = f"of the {side} jaw{LAST}"
-        found |= {
+        quantities |= {
             f"jaw_force_{side}": Quantity(reading.force.tolist(), "N", f"force (x, y, z) of the tissue on the {side} jaw" + LAST),
             f"taxel_force_{side}": Quantity(normal.tolist(), "N", f"force pressing on each taxel {of}; {BY_TAXEL}"),
             f"taxel_shear_{side}": Quantity(
@@ -39,10 +39,10 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
         }
     if experiment.lumens:
         pressures = [last[f"lumen_pressure_{number}"] for number in experiment.lumens]
-        found["lumen_pressure"] = Quantity(pressures, "Pa", "pressure in each lumen, by the order of the inclusions" + LAST)
+        quantities["lumen_pressure"] = Quantity(pressures, "Pa", "pressure in each lumen, by the order of the inclusions" + LAST)
     least = min(step["min_volume_ratio"] for step in values)
-    found["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
-    return found
+    quantities["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
+    return quantities
 
 
 def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]], experiment: GraspSetup) -> dict[str, Quantity]:
@@ -55,15 +55,15 @@ def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]]
         "reaction_force": "force pressing into the upper jaw's face",
     }
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}
-    found = {
+    histories = {
         f"{name}_history": Quantity([step[name] for step in values], units[name], f"{text}, at each accepted step")
         for name, text in descriptions.items()
     }
     for side in readings[0]:
         forces = [reading[side].taxels.taxels[2].tolist() for reading in readings]
         text = f"force pressing on each taxel of the {side} jaw, [step]{BY_TAXEL}"
-        found[f"taxel_force_{side}_history"] = Quantity(forces, "N", text)
+        histories[f"taxel_force_{side}_history"] = Quantity(forces, "N", text)
     if experiment.lumens:
         pressures = [[step[f"lumen_pressure_{number}"] for number in experiment.lumens] for step in values]
-        found["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [step][lumen]")
-    return found
+        histories["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [step][lumen]")
+    return histories

@@ -56,9 +56,9 @@ def check_sums(reading: JawReading, rotation: Array, side: str, least: float) ->
     ConvergenceError
         If they do not add up to the force on the jaw.
     """
-    found, parts = rotation.T @ reading.force, reading.taxels
-    size = float(np.abs(parts.taxels).sum() + np.abs(parts.gaps).sum() + np.abs(parts.outside).sum() + np.abs(found).sum())
-    missed = float(np.abs(parts.total - found).max())
+    resultant, parts = rotation.T @ reading.force, reading.taxels
+    size = float(np.abs(parts.taxels).sum() + np.abs(parts.gaps).sum() + np.abs(parts.outside).sum() + np.abs(resultant).sum())
+    missed = float(np.abs(parts.total - resultant).max())
     if not missed <= SUMS * size + least:
         raise ConvergenceError(
             f"taxels, gaps and outside of the {side} jaw miss its force by {missed:.2e} N of {size:.2e} N; "

@@ -90,19 +90,19 @@ class GraspRecord(ContactRecord[GraspModel]):
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
         unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
-        found = super().findings()
-        return replace(found, quantities=found.quantities or unknowns, timing={"meshing": self._sourced.block.seconds})
+        findings = super().findings()
+        return replace(findings, quantities=findings.quantities or unknowns, timing={"meshing": self._sourced.block.seconds})
 
     def quantities(self) -> dict[str, Quantity]:
         """Quantities at the last step, of all steps, and of the readout."""
         unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
         values = [step.values for step in self.steps]
-        found = final_quantities(values, self.readings[-1], self.experiment) | super().quantities()
+        quantities = final_quantities(values, self.readings[-1], self.experiment) | super().quantities()
         if (asymmetry := self._asymmetry()) is not None:
             text = "largest difference of a taxel's force from that on its mirror image, over the largest force" + LAST
-            found["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
-        found |= history_quantities(values, self.readings, self.experiment) | unknowns
-        return found if self._read is None else found | readout_quantities(self._read)
+            quantities["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
+        quantities |= history_quantities(values, self.readings, self.experiment) | unknowns
+        return quantities if self._read is None else quantities | readout_quantities(self._read)
 
     def assumptions(self) -> list[str]:
         """What was chosen."""
@@ -135,7 +135,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """What a user is told of readout, mesh, readings, overhang, volumes, sizes and materials."""
+        """Warnings about readout, mesh, readings, overhang, volumes, sizes and materials."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
             warnings = list(readout_warnings(readout, self._read, self.experiment.matrix.area))

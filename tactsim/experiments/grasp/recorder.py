@@ -87,8 +87,8 @@ class GraspRecorder(Recorder):
         there = experiment.unlike_tissue
         if len(there) > self.most_inclusions:
             raise InvalidQuantity(f"{len(there)} inclusions; the store has place for {self.most_inclusions}")
-        found = {"inclusion_count": len(there), "tissue_shear_modulus": tissue, "closing": closing}
-        found["friction"] = getattr(experiment.contact, "friction", np.nan)
+        labels = {"inclusion_count": len(there), "tissue_shear_modulus": tissue, "closing": closing}
+        labels["friction"] = getattr(experiment.contact, "friction", np.nan)
         padded = {v.name: v.empty(1)[0] for v in self.labels_of(experiment) if "inclusion" in v.dimensions}
         for number, embedded in enumerate(there):
             modulus = embedded.material.shear_modulus
@@ -99,7 +99,7 @@ class GraspRecorder(Recorder):
             values |= {"inclusion_shear_modulus": modulus, "inclusion_contrast": modulus / tissue}
             for name, value in values.items():
                 padded[name][number] = value
-        return {name: np.asarray(value) for name, value in (found | padded).items()}
+        return {name: np.asarray(value) for name, value in (labels | padded).items()}
 
     def readings_of(self, experiment: Any) -> list[Variable]:
         """Histories at the stored times."""
@@ -120,18 +120,18 @@ class GraspRecorder(Recorder):
         if len(force) < len(times):
             force = np.concatenate([np.zeros_like(force[:1]), force])
         taxels = _interpolated(at, times, force)
-        found = {"time_s": at, "taxel_force": taxels, "taxel_pressure": taxels / experiment.matrix.area}
-        found |= {name: np.interp(at, times, columns[name]) for name in MOTION}
-        found |= {name: np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float) for name in BESIDE}
+        readings = {"time_s": at, "taxel_force": taxels, "taxel_pressure": taxels / experiment.matrix.area}
+        readings |= {name: np.interp(at, times, columns[name]) for name in MOTION}
+        readings |= {name: np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float) for name in BESIDE}
         if experiment.readout is not None:
             quantities = result.quantities
             sample = latest(np.asarray(quantities["readout_time"].value), at)
             for name in ("voltage", "read_force"):
                 sides = [np.asarray(quantities[f"{name}_{side}_history"].value) for side in JAWS]
-                found[name] = np.stack(sides, axis=1)[sample]
+                readings[name] = np.stack(sides, axis=1)[sample]
             clean = experiment.readout.quiet.read(times, force, experiment.matrix.area)
-            found |= {f"voltage{CLEAN}": clean.filtered[sample], f"read_force{CLEAN}": clean.force[sample]}
-        return found
+            readings |= {f"voltage{CLEAN}": clean.filtered[sample], f"read_force{CLEAN}": clean.force[sample]}
+        return readings
 
     def describe(self) -> str:
         """What is simulated."""

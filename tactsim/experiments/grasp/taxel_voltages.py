@@ -16,11 +16,11 @@ OVER_TIME = "at each of readout_time, [time][row][column]"
 
 def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
     """Readings with the channels (jaw, row, column), upper jaw first."""
-    found = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels")}
+    quantities = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels")}
     for k, side in enumerate(JAWS):
         of = f"of each taxel of the {side} jaw"
         voltage, force = reading.filtered[:, k], reading.force[:, k]
-        found |= {
+        quantities |= {
             f"voltage_{side}": Quantity(voltage[-1].tolist(), "V", f"voltage after the low pass {of} {AT_END}"),
             f"read_force_{side}": Quantity(force[-1].tolist(), "N", f"force by the calibration {of} {AT_END}"),
             f"voltage_{side}_history": Quantity(voltage.tolist(), "V", f"voltage after the low pass {of} {OVER_TIME}"),
@@ -34,9 +34,9 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
         }
     error = reading.force - reading.applied
     words = "read minus applied force, over all taxels and times"
-    found["read_force_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
-    found["read_force_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
-    return found
+    quantities["read_force_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
+    quantities["read_force_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
+    return quantities
 
 
 def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:

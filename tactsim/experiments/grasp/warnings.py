@@ -1,4 +1,4 @@
-"""What a user is told of a grasp beside its answer: its mesh, its taxels, and what in its case looks like a slip."""
+"""Warnings about a grasp: its mesh, its taxels, and what in its case looks like a slip."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tactsim.mesh.block import BlockMesh
 from tactsim.units import format_quantity
 
 RAGGED, SUCTION = 0.05, 0.01
-"""Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is told."""
+"""Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is warned."""
 VISIBLE = 0.01
-"""Asymmetry of a symmetric grasp's forces of which a user is told: as much as the least lump that can be felt changes a taxel."""
+"""Asymmetry of a symmetric grasp's forces of which a user is warned: what the least palpable lump changes a taxel by."""
 
 
 def ragged(block: BlockMesh) -> list[str]:

@@ -25,16 +25,16 @@ class Comparison:
             base="bonded" if specimen.base == "fixed" else "slipping",
         )
 
-    def values(self, time: float, prescribed: float, found: dict[str, float]) -> dict[str, float]:
+    def values(self, time: float, prescribed: float, computed: dict[str, float]) -> dict[str, float]:
         """Displacement in m and force in N of the closed form at a time in s, and the relative difference of the answer.
 
-        ``prescribed`` is the force or displacement at that time, ``found`` the answer.
+        ``prescribed`` is the force or displacement at that time, ``computed`` the values of the simulation.
         """
         now = np.array([time])
         if self._drive.by_force:
             displacement, force = float(self._annulus.displacement(self._history, now)[0]), prescribed
-            difference = found["displacement"] / displacement - 1 if displacement else math.nan
+            difference = computed["displacement"] / displacement - 1 if displacement else math.nan
         else:
             force, displacement = float(self._annulus.force(self._history, now)[0]), prescribed
-            difference = found["reaction_force"] / force - 1 if force else math.nan
+            difference = computed["reaction_force"] / force - 1 if force else math.nan
         return {"closed_form_displacement": displacement, "closed_form_force": force, "closed_form_difference": difference}

@@ -76,7 +76,7 @@ class DisplacementPath:
     def states(self, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether it is the touch of the inner sensor; past it, this presses too.
 
-        ``adapted`` is told of every refinement of the mesh.
+        ``adapted`` is called with every refinement of the mesh.
 
         Raises
         ------

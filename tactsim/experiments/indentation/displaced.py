@@ -61,12 +61,12 @@ class DisplacedSetup(IndentationSetup):
         return self
 
     def _check_steps(self) -> None:
-        control, way = self.control(), self.displacement
+        control, displacement = self.control(), self.displacement
         first, largest = control.first, control.largest
-        if first < LEAST_STEP * way:
-            given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * way, "m")
+        if first < LEAST_STEP * displacement:
+            given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * displacement, "m")
             raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
-        check_steps(way / largest, f"steps.largest {format_quantity(largest, 'm')}")
+        check_steps(displacement / largest, f"steps.largest {format_quantity(largest, 'm')}")
 
     def drive(self) -> Displaced:
         """Load steps to the displacement."""

@@ -10,12 +10,7 @@ import numpy as np
 
 from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, UNITS
-from tactsim.experiments.indentation.scene import (
-    Indentation3dScene,
-    IndentationScene,
-    PressedBodyScene,
-    TimedIndentationScene,
-)
+from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -76,8 +71,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         displacement = model.displacement(contact.unknowns)
         touches = [one.at(displacement) for one in contact.contacts]
         forces = [model.force(touch.traction) for touch in touches]
-        found = {} if self._clock is None else {"time": state.time}
-        found |= {
+        values = {} if self._clock is None else {"time": state.time}
+        values |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
             "base_force": float(model.base_force(contact.unknowns, state.relaxation)[-1]),
@@ -87,14 +82,14 @@ class IndentationRecord(ContactRecord[PressedModel]):
         }
         if isinstance(model, SolidModel):
             moment = model.moment(contact.contacts[0], contact.unknowns)
-            found |= dict(zip(SPACE, map(float, (*forces[0][:2], *moment)), strict=True))
+            values |= dict(zip(SPACE, map(float, (*forces[0][:2], *moment)), strict=True))
         if self.setup.body.kind == "annulus":
-            found["tissue_rise"], found["tissue_rise_axis"] = model.rise(contact, self.setup.body.inner_radius)
+            values["tissue_rise"], values["tissue_rise_axis"] = model.rise(contact, self.setup.body.inner_radius)
             if self._clock is None:
-                found["sensor_force"] = float(sum(force[-1] for force in forces[1:]))
+                values["sensor_force"] = float(sum(force[-1] for force in forces[1:]))
         if self._comparison is not None:
-            found |= self._comparison.values(state.time, state.loads[0], found)
-        return found
+            values |= self._comparison.values(state.time, state.loads[0], values)
+        return values
 
     def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
         """The last state, and with a clock the first, without one that of the threshold."""
@@ -109,11 +104,11 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step."""
         last = self.steps[-1].values
-        found = {name: Quantity(last[name], UNITS[name], text + LAST) for name, text in AT_LAST.items() if name in last}
-        found |= super().quantities()
+        quantities = {name: Quantity(last[name], UNITS[name], text + LAST) for name, text in AT_LAST.items() if name in last}
+        quantities |= super().quantities()
         if isinstance(self.model, SolidModel):
-            found |= self._around(self.model)
-        return found | (self.threshold() if self._clock is None else self._over_time(self._clock))
+            quantities |= self._around(self.model)
+        return quantities | (self.threshold() if self._clock is None else self._over_time(self._clock))
 
     def threshold(self) -> dict[str, Quantity]:
         """What holds when the tissue touches the inner sensor, if it does."""
@@ -132,7 +127,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         contact, unknowns = state.contact.contacts[0], state.contact.unknowns
         force = model.force(contact.at(model.displacement(unknowns)).traction)
         moment = model.moment(contact, unknowns)
-        found = {
+        quantities = {
             "force_vector": Quantity(force.tolist(), "N", "force (x, y, z) of the whole tissue on the body"),
             "moment_vector": Quantity(
                 moment.tolist(), "N m", "moment (x, y, z) of this force about the middle of the body's face"
@@ -142,25 +137,25 @@ class IndentationRecord(ContactRecord[PressedModel]):
             sectors = self._posed.sectors
             around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
             text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
-            found["pressure_around"] = Quantity(around.tolist(), "Pa", text)
-        return found
+            quantities["pressure_around"] = Quantity(around.tolist(), "Pa", text)
+        return quantities
 
     def _over_time(self, clock: Timed) -> dict[str, Quantity]:
         """Quantities over the whole history."""
-        series, found = [step.values for step in self.steps], {}
+        series, extremes = [step.values for step in self.steps], {}
         for name in ("reaction_force", "displacement"):
             most = max(values[name] for values in series)
             text = f"{name.replace('_', ' ')}, the largest of any accepted step"
-            found[f"largest_{name}"] = Quantity(most, UNITS[name], text)
+            extremes[f"largest_{name}"] = Quantity(most, UNITS[name], text)
         if self.event is not None:
             time = self.event.values["time"]
-            found["time_of_touch"] = Quantity(time, "s", "time at which the tissue touches the inner sensor")
+            extremes["time_of_touch"] = Quantity(time, "s", "time at which the tissue touches the inner sensor")
         if self._comparison is not None:
             counted = [v for v in series if v["time"] >= clock.compared_from]
             worst = max((abs(values["closed_form_difference"]) for values in counted), default=math.nan)
             words = "largest relative difference from the closed form, from time.earliest on"
-            found["closed_form_difference"] = Quantity(worst, "1", words)
-        return found
+            extremes["closed_form_difference"] = Quantity(worst, "1", words)
+        return extremes
 
     def assumptions(self) -> list[str]:
         """What the thesis does not print and the case chose."""
@@ -173,7 +168,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """What a user is told of volumes, units, ellipticity, and of a history that leaves what it is meant for."""
+        """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
         warnings = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])

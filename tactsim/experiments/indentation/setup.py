@@ -52,7 +52,7 @@ class MeshSettings(FrozenModel):
 
 @dataclass(frozen=True)
 class Drive:
-    """What moves the body, and how a path that comes to its end is told."""
+    """What moves the body, and the words for a path that comes to its end."""
 
     stops_at_touch: bool
     """Whether the run is over when the tissue touches the inner sensor; a path without a touch has failed then."""

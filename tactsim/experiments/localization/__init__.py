@@ -1,1 +1,1 @@
-"""Lumps found from readings of the jaws: localization, detectability, confusion."""
+"""Lumps located from readings of the jaws: localization, detectability, confusion."""

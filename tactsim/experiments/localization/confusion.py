@@ -14,13 +14,7 @@ from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
-from tactsim.experiments.localization.source import (
-    Source,
-    folder_words,
-    readings_of,
-    stored_grasp,
-    with_reference,
-)
+from tactsim.experiments.localization.source import Source, folder_words, readings_of, stored_grasp, with_reference
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
@@ -55,7 +49,7 @@ class Confusion(Experiment):
     seed: Annotated[int, Field(ge=0)] = 1
     """Of the noise."""
     estimator: AnyEstimator = HypothesesEstimator()
-    """What tells the classes apart."""
+    """What distinguishes the classes."""
 
     history_units: ClassVar[dict[str, str]] = {"right": "1"}
 
@@ -83,7 +77,7 @@ class Confusion(Experiment):
     def _findings(self, counted: _Counted) -> Findings:
         table = counted.table
         return Findings(
-            f"{int(np.trace(table.counts))} of {table.total} estimates told the class right",
+            f"{int(np.trace(table.counts))} of {table.total} estimates named the right class",
             counted.steps,
             quantities=table_quantities(table),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation), seed {self.seed}",),
@@ -94,7 +88,7 @@ class Confusion(Experiment):
         """Name, true class, and readings with reference and response of every grasp."""
         plain = readings_of(stored_grasp(self.reference), self.readings, noise=self.noise)
         response = stored_response(self.reference) if self.estimator.needs_response else None
-        found = []
+        readings = []
         for folder in self.grasps:
             stored = stored_grasp(folder)
             kinds = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
@@ -104,8 +98,8 @@ class Confusion(Experiment):
                     f"grasps: {folder_words(folder)} has {', '.join(kinds)}; allowed: at most two lumps, or at most two tubes"
                 )
             one = with_reference(readings_of(stored, self.readings, noise=self.noise), plain)
-            found.append((folder_words(folder), true, replace(one, response=response)))
-        return found
+            readings.append((folder_words(folder), true, replace(one, response=response)))
+        return readings
 
     def _noisy(self, readings: Readings, number: int, draw: int) -> Readings:
         noise = self.noise * np.random.default_rng([self.seed, number, draw]).standard_normal((2, *readings.forces.shape))
@@ -114,14 +108,14 @@ class Confusion(Experiment):
 
 
 def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
-    """The counts, and the shares that were told right."""
+    """The counts, and the shares that were right."""
     order = ", ".join(CLASSES)
-    found = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
+    quantities = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
     if table.share_right is not None:
-        found["share_right"] = Quantity(table.share_right, "1", "share of all estimates that told the class right")
-        recalls = Quantity(table.recalls, "1", f"share of each true class told right: {order}; null if there is none")
-        found["recalls"] = recalls
-    return found
+        quantities["share_right"] = Quantity(table.share_right, "1", "share of all estimates that named the right class")
+        recalls = Quantity(table.recalls, "1", f"share of each true class named right: {order}; null if there is none")
+        quantities["recalls"] = recalls
+    return quantities
 
 
 def class_of(kinds: Sequence[str]) -> str | None:
@@ -132,11 +126,11 @@ def class_of(kinds: Sequence[str]) -> str | None:
 
 
 def estimated_class(estimate: Estimate) -> str:
-    """The likeliest class; of an estimator that tells none apart, that of what it found, which then counts as a lump."""
+    """The likeliest class; of an estimator without classes, that of what it located, which then counts as a lump."""
     if estimate.classes is not None:
         classes = estimate.classes
         return max(classes, key=lambda name: classes[name])
-    return class_of([found.kind for found in estimate.inclusions]) or "lump"
+    return class_of([inclusion.kind for inclusion in estimate.inclusions]) or "lump"
 
 
 @dataclass
@@ -170,7 +164,7 @@ class ConfusionTable:
 
     @property
     def recalls(self) -> list[float | None]:
-        """Share of each true class that was found as such; None for a class that does not occur."""
+        """Share of each true class that was named as such; None for a class that does not occur."""
         return [float(row[k] / row.sum()) if row.sum() else None for k, row in enumerate(self.counts)]
 
 

@@ -37,7 +37,7 @@ NOISES = ("same", "by_area")
 
 
 @dataclass
-class _Found:
+class _Outcome:
     """What the matrices that were computed until now find."""
 
     steps: list[StepRecord] = field(default_factory=list)
@@ -90,30 +90,30 @@ class Detectability(Experiment):
 
     def begin(self) -> Course:
         """One step per matrix."""
-        found = _Found()
-        return Course(self._matrices(found), lambda: self._findings(found))
+        outcome = _Outcome()
+        return Course(self._matrices(outcome), lambda: self._findings(outcome))
 
-    def _matrices(self, found: _Found) -> Iterator[StepRecord]:
+    def _matrices(self, outcome: _Outcome) -> Iterator[StepRecord]:
         for number, count in enumerate(self.matrices, 1):
             response = self._response(count)
             templates = unit_templates(response, every=2)
             threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
             contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
             deviations = {name: np.sqrt(2) * self._noise(name, count) for name in NOISES}
-            found.radii.append(
+            outcome.radii.append(
                 {
                     name: [self._over_depth(response, contrast, sigma, threshold) for contrast in contrasts]
                     for name, sigma in deviations.items()
                 }
             )
-            found.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
-            yield found.steps[-1]
+            outcome.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
+            yield outcome.steps[-1]
 
-    def _findings(self, found: _Found) -> Findings:
+    def _findings(self, outcome: _Outcome) -> Findings:
         return Findings(
             f"{len(self.matrices)} matrices",
-            found.steps,
-            quantities=self._quantities(found) if len(found.steps) == len(self.matrices) else {},
+            outcome.steps,
+            quantities=self._quantities(outcome) if len(outcome.steps) == len(self.matrices) else {},
             assumptions=self._assumptions(),
             scene=DetectabilityScene(
                 probability=self.probability, false_alarms=self.false_alarms, noise=self.noise, side=self.side
@@ -139,7 +139,7 @@ class Detectability(Experiment):
         away = np.array(AWAY) * self.side / self.matrices[0]
         plan = np.array([(width / 2 + dx, depth / 2 + dy) for dx in away for dy in away])
         volumes = 4 / 3 * np.pi * response.radii**3
-        found = []
+        smallest = []
         for below in self.depths:
             low, high = response.axes[2][[0, -1]]
             z = float(np.clip(height - below, low, high))
@@ -148,12 +148,12 @@ class Detectability(Experiment):
             densities = np.linalg.norm(signals.reshape(len(plan), len(response.radii), -1), axis=2) / volumes
             most = min(below, height - below) - ROOM
             sought = {"contrast": contrast, "sigma": sigma, "threshold": threshold, "wanted": self.probability}
-            found.append(smallest_radius(densities, response.radii, most, **sought))
-        return found
+            smallest.append(smallest_radius(densities, response.radii, most, **sought))
+        return smallest
 
-    def _quantities(self, found: _Found) -> dict[str, Quantity]:
-        thresholds = [step.values["threshold"] for step in found.steps]
-        radii = {name: [list(rows) for rows in zip(*(matrix[name] for matrix in found.radii), strict=True)] for name in NOISES}
+    def _quantities(self, outcome: _Outcome) -> dict[str, Quantity]:
+        thresholds = [step.values["threshold"] for step in outcome.steps]
+        radii = {name: [list(rows) for rows in zip(*(matrix[name] for matrix in outcome.radii), strict=True)] for name in NOISES}
         order = "[shear ratio][matrix][depth]; null where none that fits is found"
         words = {"same": "the same noise on every reading", "by_area": "noise in proportion to the area of a taxel"}
         return {
@@ -197,13 +197,13 @@ def coarse_response(setup: GraspSetup) -> LumpResponse:
     """The response of the taxels of a grasp on a coarse grid of centres and radii."""
     from tactsim.experiments.localization.lump_sensitivity import sensitivity
 
-    found = sensitivity(setup)
-    size, densities = setup.block.size, found.densities
+    adjoint = sensitivity(setup)
+    size, densities = setup.block.size, adjoint.densities
     radii = RADII[min(size) > 2 * RADII]
     flat = densities.reshape(-1, densities.shape[-1])
     spacing, tables = min(SPACING, min(size) / 5), []
     for begin in range(0, len(flat), ROWS_AT_ONCE):
         part = flat[begin : begin + ROWS_AT_ONCE][:, None, None]
-        tables.append(LumpResponse.of_density(found.places, found.volumes, part, size=size, radii=radii, spacing=spacing))
+        tables.append(LumpResponse.of_density(adjoint.places, adjoint.volumes, part, size=size, radii=radii, spacing=spacing))
     values = np.concatenate([table.values for table in tables], axis=4)
     return LumpResponse(tables[0].axes, radii, values.reshape(*values.shape[:4], *densities.shape[:-1]))

@@ -64,13 +64,13 @@ def smallest_radius(
     most : largest radius in m that fits
     """
 
-    def found(radius: float) -> float:
+    def excess(radius: float) -> float:
         volume = 4 / 3 * np.pi * radius**3
         length = volume * np.array([np.interp(radius, radii, one) for one in densities])
         return float(detection_probability(abs(contrast) * length / sigma, threshold).mean()) - wanted
 
-    if most <= FEWEST or found(most) < 0:
+    if most <= FEWEST or excess(most) < 0:
         return None
-    if found(FEWEST) > 0:
+    if excess(FEWEST) > 0:
         return FEWEST
-    return float(scipy.optimize.brentq(found, FEWEST, most, xtol=CLOSE))
+    return float(scipy.optimize.brentq(excess, FEWEST, most, xtol=CLOSE))

@@ -48,7 +48,7 @@ class Localization(Experiment):
           reference: results/grasp_plain
           estimator: {kind: thesis, background: reference}
 
-    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and tells
+    ``estimator: {kind: model_based}`` computes the response of the plain tissue from the case of the reference, once, and gives
     how uncertain place, radius and contrast are.
     """
 
@@ -121,49 +121,53 @@ class Localization(Experiment):
         return dead
 
     def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
-        found = []
+        warnings = []
         if stored.status is not Status.CONVERGED:
-            found.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
+            warnings.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
         if readings.valid is not None:
-            found.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
+            warnings.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
         silent = silent_taxels(readings.filled)
         if silent.any():
-            found.append(f"{silent_words(silent)}; name dead taxels by the key dead")
-        return found if plain is None else [*found, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
+            warnings.append(f"{silent_words(silent)}; name dead taxels by the key dead")
+        return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 
 def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:
-    found = {}
+    quantities = {}
     for jaw, side in enumerate(JAWS):
         of = f"of the {side} jaw; [row][column], row 1 nearest the front, column 1 the smallest x"
-        found[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
+        quantities[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
         if readings.difference is not None:
             text = f"force on each taxel less that of the reference, {of}"
-            found[f"taxel_difference_{side}"] = Quantity(readings.difference[jaw].tolist(), "N", text)
-    return found
+            quantities[f"taxel_difference_{side}"] = Quantity(readings.difference[jaw].tolist(), "N", text)
+    return quantities
 
 
 def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
-    found = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
+    quantities = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
     if estimate.probability is not None:
-        found["probability"] = Quantity(estimate.probability, "1", "that anything is there")
+        quantities["probability"] = Quantity(estimate.probability, "1", "that anything is there")
     if estimate.classes is not None:
         names = ", ".join(estimate.classes)
-        found["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")
+        quantities["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")
     if not estimate.inclusions:
-        return found
+        return quantities
     first = estimate.inclusions[0]
-    found["estimated_center"] = Quantity(list(first.center), "m", "x, y, z of the strongest inclusion, in the undeformed block")
+    quantities["estimated_center"] = Quantity(
+        list(first.center), "m", "x, y, z of the strongest inclusion, in the undeformed block"
+    )
     if first.radius is not None:
-        found["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
+        quantities["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
-        found["estimated_contrast"] = Quantity(first.contrast, "1", "contrast of the strongest inclusion, negative if softer")
+        quantities["estimated_contrast"] = Quantity(
+            first.contrast, "1", "contrast of the strongest inclusion, negative if softer"
+        )
     if first.covariance is not None:
         deviations = np.sqrt(np.diag(first.covariance))
-        found["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
-        found["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
-        found["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
-    return found
+        quantities["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
+        quantities["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
+        quantities["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
+    return quantities
 
 
 def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quantity]:

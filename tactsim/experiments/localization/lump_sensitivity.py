@@ -57,11 +57,11 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
     ConvergenceError
         If the plain tissue cannot be grasped.
     """
-    found = sensitivity(setup)
+    adjoint = sensitivity(setup)
     size = setup.block.size
     radii = RADII[min(size) > 2 * RADII]
     return LumpResponse.of_density(
-        found.places, found.volumes, found.densities, size=size, radii=radii, spacing=min(SPACING, min(size) / 10)
+        adjoint.places, adjoint.volumes, adjoint.densities, size=size, radii=radii, spacing=min(SPACING, min(size) / 10)
     )
 
 
@@ -129,13 +129,13 @@ class _Adjoint:
         )
         deformed = surface.interpolate(self.model.mesh.nodes + self.displacement)
         along = self.model.jaws[side].face_coordinates(deformed - place[:, None])
-        found = []
+        indicators = []
         for low_y, high_y in layout.borders("y"):
             for low_x, high_x in layout.borders("x"):
                 on = (along[0] >= low_x) & (along[0] < high_x) & (along[1] >= low_y) & (along[1] < high_y)
                 loads = (surface.weights * on)[:, None] * surface.values
-                found.append(mass.solve(np.bincount(number.ravel(), loads.ravel(), len(nodes))))
-        return found
+                indicators.append(mass.solve(np.bincount(number.ravel(), loads.ravel(), len(nodes))))
+        return indicators
 
     def gradient(self, side: str, border: Array) -> Array:
         """Gradient (3, 3, E, Q) in 1/m of the virtual displacement that moves the face of a jaw by ``border`` into the tissue."""

@@ -37,7 +37,7 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
     StorageError
         If there is no result.
     InputError
-        If the folder does not tell the case of a grasp.
+        If the folder does not hold the case of a grasp.
     ConvergenceError
         If the plain tissue cannot be grasped.
     """
@@ -50,21 +50,21 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
 def kept_response(
     setup: GraspSetup, compute: Callable[[], LumpResponse], *, how: str = "", cache: Path | None = None
 ) -> LumpResponse:
-    """The response of a grasp as it was kept, or else computed now; ``how`` tells ways to compute it apart."""
+    """The response of a grasp as it was kept, or else computed now; ``how`` distinguishes the methods."""
     identity = [setup.model_dump(mode="json", exclude={"mesh", "readout"}), code_identity(), *([how] if how else [])]
     place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]}.npz"
-    found = _read(place)
-    if found is None:
-        found = compute()
-        _keep(found, place)
-    return found
+    stored = _read(place)
+    if stored is None:
+        stored = compute()
+        _keep(stored, place)
+    return stored
 
 
 def _plain(provenance: dict[str, Any], folder: str) -> Grasp:
     """The grasp that a result was computed from, without inclusions."""
     experiment = (provenance.get("case") or {}).get("experiment") or {}
     if experiment.get("kind") != "grasp":
-        raise InputError(f"{folder} does not tell the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
+        raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
     try:
         return Grasp.model_validate(experiment).model_copy(update={"inclusions": ()})
     except ValidationError as error:

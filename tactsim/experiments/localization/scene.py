@@ -14,10 +14,10 @@ Line = list[tuple[float, float]]
 
 
 class EstimatedShape(FrozenModel):
-    """An inclusion as an estimator found it."""
+    """An inclusion as an estimator gives it."""
 
     kind: str
-    """"sphere", "tube", or "unknown" if the estimator does not tell."""
+    """"sphere", "tube", or "unknown" if the estimator does not say."""
     center: Point
     """In m in the undeformed block."""
     radius: float | None = None
@@ -28,16 +28,15 @@ class EstimatedShape(FrozenModel):
     """By view, closed lines in m around where the centre lies with a probability of 90 %; null if not estimated."""
 
     @classmethod
-    def of(cls, found: EstimatedInclusion) -> EstimatedShape:
+    def of(cls, inclusion: EstimatedInclusion) -> EstimatedShape:
         """The shape of an estimated inclusion."""
-        region = None if found.region is None else shadows(found.region)
-        return cls.model_validate(
-            {"kind": found.kind, "center": found.center, "radius": found.radius, "line": found.line, "region": region}
-        )
+        region = None if inclusion.region is None else shadows(inclusion.region)
+        known = {name: getattr(inclusion, name) for name in ("kind", "center", "radius", "line")}
+        return cls.model_validate(known | {"region": region})
 
 
 class LocalizedGrasp(GraspScene):
-    """A grasp with what an estimator found in it."""
+    """A grasp with what an estimator located in it."""
 
     kind: Literal["localization"] = "localization"
     estimates: tuple[EstimatedShape, ...]

@@ -35,12 +35,12 @@ def stored_grasp(folder: str) -> Result:
     InputError
         If it is not that of a grasp with taxels.
     """
-    found = read_result(folder, fields=False).result
-    if found.kind not in ("grasp", "matrix_readout") or "taxel_force_upper" not in found.quantities:
+    result = read_result(folder, fields=False).result
+    if result.kind not in ("grasp", "matrix_readout") or "taxel_force_upper" not in result.quantities:
         raise InputError(
-            f"{folder} holds the result of {found.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
+            f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
         )
-    return found
+    return result
 
 
 def readings_of(result: Result, source: Source = "taxel_force", *, noise: float, dead: Array | None = None) -> Readings:
@@ -94,7 +94,7 @@ def with_reference(readings: Readings, reference: Readings) -> Readings:
 
 
 def saturated_taxels(result: Result) -> Array:
-    """Which readings (time or 1, jaw, row, column) of a result are saturated; one whose times are not told is so all the time."""
+    """Which readings (time or 1, jaw, row, column) of a result are saturated; one without known times is so all the time."""
     over_time = [f"saturated_{side}_history" for side in JAWS]
     if all(name in result.quantities for name in over_time):
         return np.stack([result.quantities[name].array for name in over_time], axis=1) > 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any, Literal
 
 import numpy as np
@@ -70,7 +71,7 @@ def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest
         figure = new_figure(max(narrowest, 1.6 + 3.1 * len(panels)), 3.8)
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
-            for colour, (name, touch) in zip(_colours(len(panel.curves)), panel.curves, strict=True):
+            for colour, (name, touch) in zip(cycle(COLOURS), panel.curves, strict=False):
                 _draw_curve(axis, result, touch, colour, name)
             _finish(axis, result, panel.title)
         _title(figure, result, f"{title}; dots: read as each switch closed, at its height")
@@ -130,8 +131,8 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
 def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: Any, label: str) -> None:
     steps = [step.values for step in result.steps if _is(step.values, result, which)]
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
-    way_in = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
-    axis.plot(1e3 * depth[way_in], force[way_in], color=colour, label=label)
+    loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
+    axis.plot(1e3 * depth[loading], force[loading], color=colour, label=label)
     scene = result.scene_as(SwitchProbeScene)
     heights = 1e3 * np.array(scene.heights)
     for touch in scene.touches:
@@ -142,10 +143,6 @@ def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: An
 
 def _is(values: dict[str, float], result: Result, which: tuple[str, float]) -> bool:
     return result.scene_as(SwitchProbeScene).tissues[int(values["tissue"]) - 1] == which[0] and values["rate"] == which[1]
-
-
-def _colours(count: int) -> list[str]:
-    return [COLOURS[k % len(COLOURS)] for k in range(count)]
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:

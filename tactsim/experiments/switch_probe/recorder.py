@@ -65,12 +65,12 @@ class SwitchProbeRecorder(Recorder):
 
     def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
         """Values of the same."""
-        found = {name: quantity.value for name, quantity in result.quantities.items()}
-        readings = {name: np.array(found.get(f"{name}_1", np.nan)) for name in ("largest_force", "contact_height", "mean_rate")}
-        readings["closed_switches"] = np.array(float(found.get("closed_switches_1", 0)))
+        values = {name: quantity.value for name, quantity in result.quantities.items()}
+        readings = {name: np.array(values.get(f"{name}_1", np.nan)) for name in ("largest_force", "contact_height", "mean_rate")}
+        readings["closed_switches"] = np.array(float(values.get("closed_switches_1", 0)))
         for name in ("switching_time", "switching_force"):
             padded = np.full(COUNT, np.nan)
-            closed = np.atleast_1d(np.asarray(found.get(f"{name}s_1", ()), dtype=float))[:COUNT]
+            closed = np.atleast_1d(np.asarray(values.get(f"{name}s_1", ()), dtype=float))[:COUNT]
             padded[: len(closed)] = closed
             readings[name] = padded
         return readings

@@ -78,25 +78,25 @@ class SwitchProbeReport:
             )
             quantities |= self._read(number, where, main_touch(touch))
             if touch.quality is not None:
-                found = touch.quality.quantities(touch.states)
+                quality = touch.quality.quantities(touch.states)
                 quantities |= {
-                    f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in found.items()
+                    f"{name}_{number}": replace(q, description=f"{q.description}, {where}") for name, q in quality.items()
                 }
         return quantities
 
-    def _read(self, number: int, where: str, found: Touch | None) -> dict[str, Quantity]:
-        if found is None:
+    def _read(self, number: int, where: str, touch: Touch | None) -> dict[str, Quantity]:
+        if touch is None:
             return {}
         array = self._setup.array
         quantities = {
-            f"switching_times_{number}": Quantity(found.times(), "s", f"times since the touch at which switches closed, {where}"),
-            f"switching_intervals_{number}": Quantity(found.intervals(), "s", f"intervals between them, {where}"),
+            f"switching_times_{number}": Quantity(touch.times(), "s", f"times since the touch at which switches closed, {where}"),
+            f"switching_intervals_{number}": Quantity(touch.intervals(), "s", f"intervals between them, {where}"),
             f"switching_forces_{number}": Quantity(
-                np.array([closing.force for closing in found.closings]), "N", f"force read when each switch closed, {where}"
+                np.array([closing.force for closing in touch.closings]), "N", f"force read when each switch closed, {where}"
             ),
-            f"closed_switches_{number}": Quantity(len(found.closings), "1", f"switches that closed, {where}"),
+            f"closed_switches_{number}": Quantity(len(touch.closings), "1", f"switches that closed, {where}"),
         }
-        rate = found.mean_rate(array)
+        rate = touch.mean_rate(array)
         if rate is not None:
             words = f"mean rate by eq. 5.2.2, {array.formula.replace('_', ' ')}, {where}"
             quantities[f"mean_rate_{number}"] = Quantity(rate, "m/s", words)
@@ -130,8 +130,8 @@ class SwitchProbeReport:
     def _warnings(self) -> list[str]:
         warnings, setup = [], self._setup
         for touch in self._touches:
-            found, where = main_touch(touch), _where(touch)
-            closed = 0 if found is None else len(found.closings)
+            main, where = main_touch(touch), _where(touch)
+            closed = 0 if main is None else len(main.closings)
             if closed < COUNT:
                 warnings.append(f"{where}: {closed} of {COUNT} switches closed, so there is no mean rate")
             if touch.true.contact_height.max() < (1 - SUNK) * setup.depth:
@@ -170,7 +170,7 @@ def _where(touch: ProbeTouch) -> str:
 
 def main_touch(touch: ProbeTouch) -> Touch | None:
     """The touch with the most closings of those that were read, None if there is none."""
-    return max(touch.touches, key=lambda found: len(found.closings), default=None)
+    return max(touch.touches, key=lambda one: len(one.closings), default=None)
 
 
 def _values(touch: ProbeTouch, number: int, sample: int) -> dict[str, float]:
@@ -181,9 +181,9 @@ def _values(touch: ProbeTouch, number: int, sample: int) -> dict[str, float]:
 
 
 def _recorded(touch: ProbeTouch, setup: SwitchProbeSetup) -> RecordedTouch:
-    found, known = main_touch(touch), {"tissue": touch.tissue, "rate": touch.rate, "count": len(touch.touches)}
-    if found is None:
+    main, known = main_touch(touch), {"tissue": touch.tissue, "rate": touch.rate, "count": len(touch.touches)}
+    if main is None:
         return RecordedTouch.model_validate(known)
-    closings = [{"switch": c.switch, "time": c.time, "force": c.force} for c in found.closings]
-    times = {"start": found.start, "end": found.end, "mean_rate": found.mean_rate(setup.array)}
+    closings = [{"switch": c.switch, "time": c.time, "force": c.force} for c in main.closings]
+    times = {"start": main.start, "end": main.end, "mean_rate": main.mean_rate(setup.array)}
     return RecordedTouch.model_validate({**known, **times, "closings": closings})

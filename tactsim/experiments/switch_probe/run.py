@@ -29,8 +29,8 @@ class ProbeTouch:
     """A touch as it was and as it was read.
 
     ``time`` (n,) in s from the first contact on, negative before it; ``depth`` (n,) in m; ``true`` forces in N; ``force`` (n,)
-    and ``switches`` (n, count) in N as recorded; ``touches`` that the algorithm found; ``states`` that finite elements accepted,
-    with their ``quality``.
+    and ``switches`` (n, count) in N as recorded; ``touches`` that the algorithm detected; ``states`` that finite elements
+    accepted, with their ``quality``.
     """
 
     tissue: str
@@ -110,10 +110,12 @@ def _motion(setup: SwitchProbeSetup, rate: float) -> _Motion:
 
     The probe turns with the first sample at its depth, so that one is there.
     """
-    way, step = setup.duration(rate), 1 / setup.chain.sampling_rate
-    time = setup.chain.times(REST + step + (way if setup.model == "fem" else 2 * way)) - REST
-    turn = float(time[np.searchsorted(time, way - ROUND_OFF * step)])
-    depth = np.interp(time, [-REST, 0.0, way, max(turn, way), turn + way], [0.0, 0.0, setup.depth, setup.depth, 0.0])
+    duration, step = setup.duration(rate), 1 / setup.chain.sampling_rate
+    time = setup.chain.times(REST + step + (duration if setup.model == "fem" else 2 * duration)) - REST
+    turn = float(time[np.searchsorted(time, duration - ROUND_OFF * step)])
+    depth = np.interp(
+        time, [-REST, 0.0, duration, max(turn, duration), turn + duration], [0.0, 0.0, setup.depth, setup.depth, 0.0]
+    )
     depth[time == turn] = setup.depth
     return _Motion(time, depth)
 
@@ -125,19 +127,21 @@ def _pressed(
     states: list[ProbeState] = []
     if quality is not None:
         states = list(probe_states(setup.indentation(tissue, rate), setup.array, width=setup.width, quality=quality))
-        found = _interpolated(states, time)
+        forces = _interpolated(states, time)
     else:
-        found = probe_forces(time, depth, curve=CHAPTER_5, modulus=shear_relaxation(tissue.material), width=setup.width)
-    return (found if setup.sides == "computed" else followed(setup, found, depth)), tuple(s.record for s in states)
+        forces = probe_forces(time, depth, curve=CHAPTER_5, modulus=shear_relaxation(tissue.material), width=setup.width)
+    return (forces if setup.sides == "computed" else followed(setup, forces, depth)), tuple(s.record for s in states)
 
 
 def _interpolated(states: list[ProbeState], time: Array) -> ProbeForces:
     """Accepted states at other times, monotone between them, zero before the first contact."""
     columns = np.array([(state.force, state.contact_height, *state.switch_forces) for state in states])
     nodes = np.array([0.0, *(state.time for state in states)])
-    found = scipy.interpolate.PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(np.clip(time, 0.0, nodes[-1]))
-    found = np.maximum(found, 0.0)
-    return ProbeForces(found[:, 0], found[:, 2:], found[:, 1])
+    interpolated = scipy.interpolate.PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(
+        np.clip(time, 0.0, nodes[-1])
+    )
+    interpolated = np.maximum(interpolated, 0.0)
+    return ProbeForces(interpolated[:, 0], interpolated[:, 2:], interpolated[:, 1])
 
 
 def followed(setup: SwitchProbeSetup, pressed: ProbeForces, depth: Array) -> ProbeForces:
@@ -152,7 +156,7 @@ def followed(setup: SwitchProbeSetup, pressed: ProbeForces, depth: Array) -> Pro
 
 
 def recorded(setup: SwitchProbeSetup, pressed: ProbeForces, generator: np.random.Generator) -> tuple[Array, Array, int]:
-    """Force (n,) and switches (n, count) in N as the electronics tell them, and the number of saturated samples."""
+    """Force (n,) and switches (n, count) in N as the electronics read them, and the number of saturated samples."""
     chain, line = setup.chain, setup.calibration
     conductance = line.conductance(np.column_stack([pressed.force, pressed.switches]))
     recording = chain.acquire(conductance, generator)

@@ -1,4 +1,4 @@
-"""What the sensors of a tip report: thresholds, the hardest one found, and how often it is the wrong one."""
+"""What the sensors of a tip report: thresholds, the hardest one, and how often it is the wrong one."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ class Reading:
         return cls(lag, "no contact", np.zeros(trials), np.zeros(trials, bool))
 
     @classmethod
-    def of_trials(cls, lag: float, found: Trials, *, reached: bool, trials: int) -> Self:
+    def of_trials(cls, lag: float, sampled: Trials, *, reached: bool, trials: int) -> Self:
         """From its trials; without noise those of the sampling phases are repeated."""
-        force = np.resize(found.true_force + found.error, trials)
+        force = np.resize(sampled.true_force + sampled.error, trials)
         state = "measured" if reached else "threshold not reached"
-        return cls(lag, state, force, np.resize(found.valid, trials))
+        return cls(lag, state, force, np.resize(sampled.valid, trials))
 
     @property
     def mean(self) -> float | None:
@@ -131,35 +131,37 @@ class CatheterReport:
             "valid_rate": ("1", "part of the trials with a valid threshold [sensor]"),
             "angle": ("rad", "angle of the sensor around the tip [sensor]"),
         }
-        found = {
+        quantities = {
             name: Quantity([step.values.get(name) for step in self._steps], unit, words)
             for name, (unit, words) in columns.items()
         }
         shares = self._shares.tolist()
-        return found | {"tissue_share": Quantity(shares, "1", "part of the disc below that each tissue has [sensor, tissue]")}
+        return quantities | {
+            "tissue_share": Quantity(shares, "1", "part of the disc below that each tissue has [sensor, tissue]")
+        }
 
     def _hardest(self) -> dict[str, Quantity]:
-        """The sensor found by the mean reports, its margin, and the chances over the trials."""
+        """The hardest sensor by the mean reports, its margin, and the chances over the trials."""
         means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
         wrong, elsewhere, undecided = self._chances()
-        found = {
+        quantities = {
             "chance_of_wrong": Quantity(wrong, "1", "part of the trials in which another sensor than the hardest is found"),
             "chance_of_wrong_tissue": Quantity(elsewhere, "1", "part of the trials in which it lies mostly on another tissue"),
             "chance_of_no_answer": Quantity(undecided, "1", "part of the trials without any threshold"),
         }
         if not np.isfinite(means).any():
-            return found
+            return quantities
         best = int(means.argmax())
         others = np.delete(means, best)
         second = float(others.max())
         angle = float(self._experiment.ring.angles[best])
-        found["hardest_sensor"] = Quantity(best + 1, "1", "sensor with the highest mean reported threshold, counted from 1")
-        found["hardest_angle"] = Quantity(angle, "rad", "its angle around the tip")
+        quantities["hardest_sensor"] = Quantity(best + 1, "1", "sensor with the highest mean reported threshold, counted from 1")
+        quantities["hardest_angle"] = Quantity(angle, "rad", "its angle around the tip")
         if np.isfinite(second):
             margin = float(means[best]) - second
-            found["margin"] = Quantity(margin, "Pa", "its threshold pressure above that of the second")
-            found["margin_relative"] = Quantity(margin / float(means[best]), "1", "margin over its threshold pressure")
-        return found
+            quantities["margin"] = Quantity(margin, "Pa", "its threshold pressure above that of the second")
+            quantities["margin_relative"] = Quantity(margin / float(means[best]), "1", "margin over its threshold pressure")
+        return quantities
 
     def _chances(self) -> tuple[float, float, float]:
         """Part of the trials with a wrong sensor, with one mostly on a wrong tissue, and with no answer."""
@@ -167,9 +169,9 @@ class CatheterReport:
         right = true >= true.max() * (1 - SAME)
         force = np.array([np.where(r.valid, r.force, -np.inf) for r in self._readings])
         answered = np.isfinite(force).any(axis=0)
-        found, tissue = force.argmax(axis=0), self._shares.argmax(axis=1)
-        wrong = answered & ~right[found]
-        elsewhere = answered & ~np.isin(tissue[found], tissue[right])
+        hardest, tissue = force.argmax(axis=0), self._shares.argmax(axis=1)
+        wrong = answered & ~right[hardest]
+        elsewhere = answered & ~np.isin(tissue[hardest], tissue[right])
         return float(wrong.mean()), float(elsewhere.mean()), float((~answered).mean())
 
     def _scene(self) -> CatheterTipScene:

@@ -100,10 +100,10 @@ class ContactCurve:
             raise InvalidQuantity("a contact curve must begin before the small sensor is touched and go on past the touch")
         risen = float(rise[int(pressed.argmax()) - 1])
         if abs(risen - shape.recess) > RECESS_TOLERANCE * shape.recess:
-            found, given = format_quantity(risen, "m"), format_quantity(shape.recess, "m")
+            risen_text, recess_text = format_quantity(risen, "m"), format_quantity(shape.recess, "m")
             raise InvalidQuantity(
-                f"in the contact curve the tissue has risen by {found} in the last row without a force on the small sensor, "
-                f"but the recess is {given}; give the recess of the curve, or a row at the touch"
+                f"in the contact curve the tissue has risen by {risen_text} in the last row without a force on the small sensor, "
+                f"but the recess is {recess_text}; give the recess of the curve, or a row at the touch"
             )
         if d[0] > 0:
             d, plate, rise, small = (np.append(0.0, values) for values in (d, plate, rise, small))

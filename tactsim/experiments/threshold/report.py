@@ -72,30 +72,30 @@ class TrialReport:
         """A new speed."""
         self._approaches.append(approach)
 
-    def add(self, found: Trials, silent: Trials, ideals: list[float | None], level: float) -> None:
+    def add(self, sampled: Trials, silent: Trials, ideals: list[float | None], level: float) -> None:
         """One combination: its trials, those without noise, and three errors of the ideal chain.
 
         The three are those of the calibration lines, of the films, and of the films behind the low pass.
         """
-        mean, quiet, deviation = found.mean_error(), silent.mean_error(), found.deviation()
+        mean, quiet, deviation = sampled.mean_error(), silent.mean_error(), sampled.deviation()
         assert self.shape is not None  # set before the first approach
         self._cells.append(
             {
                 "force_error": mean,
                 "force_error_deviation": deviation,
                 "pressure_error": None if mean is None else mean / self.shape.area,
-                "relative_error": None if mean is None else mean / found.true_force,
-                "relative_deviation": None if deviation is None else deviation / found.true_force,
+                "relative_error": None if mean is None else mean / sampled.true_force,
+                "relative_deviation": None if deviation is None else deviation / sampled.true_force,
                 "level_error": ideals[0],
                 "film_error": _difference(ideals[1], ideals[0]),
                 "filter_error": _difference(ideals[2], ideals[1]),
                 "sampling_error": _difference(quiet, ideals[2]),
                 "noise_error": _difference(mean, quiet),
                 "trigger_level": level,
-                "trigger_delay": found.mean_delay(),
-                "false_rate": float(found.false.mean()),
-                "missed_rate": float(found.missed.mean()),
-                "saturated_rate": float(found.saturated.mean()),
+                "trigger_delay": sampled.mean_delay(),
+                "false_rate": float(sampled.false.mean()),
+                "missed_rate": float(sampled.missed.mean()),
+                "saturated_rate": float(sampled.saturated.mean()),
             }
         )
 
@@ -150,13 +150,15 @@ class TrialReport:
         area = self.shape.area
         force = [approach.threshold_force for approach in self._approaches]
         axes = "[speed, noise, cut-off]"
-        found = {
+        quantities = {
             "threshold_force": Quantity(force, "N", "true threshold force [speed]"),
             "threshold_pressure": Quantity([f / area for f in force], "Pa", "true threshold force over the annular area [speed]"),
             "annular_area": Quantity(area, "m^2", "area of the face"),
             "force_rate": Quantity([_rate(a) for a in self._approaches], "N/s", "growth of the force at the touch [speed]"),
         }
-        return found | {name: Quantity(self.grid(name), unit, f"{words} {axes}") for name, (unit, words) in CELL_WORDS.items()}
+        return quantities | {
+            name: Quantity(self.grid(name), unit, f"{words} {axes}") for name, (unit, words) in CELL_WORDS.items()
+        }
 
     def grid(self, name: str) -> list[list[list[float | None]]]:
         """A value over speed, noise and cut-off, null where no trial was valid or nothing was sampled yet."""

@@ -109,9 +109,9 @@ class ApproachSampling:
             generator = np.random.default_rng([*seed, block])
             recording, touch = self.recorded(self.sensor, noise, generator, phase=(block + 0.5) / blocks, copies=copies)
             touches.append(touch)
-            for low_pass, trigger, found in zip(low_passes, triggers, reports, strict=True):
-                found.append(self._report(self.sensor, recording, low_pass, trigger, touch))
-        return [Trials.joined(found, self.approach.threshold_force, touches) for found in reports]
+            for low_pass, trigger, reported in zip(low_passes, triggers, reports, strict=True):
+                reported.append(self._report(self.sensor, recording, low_pass, trigger, touch))
+        return [Trials.joined(reported, self.approach.threshold_force, touches) for reported in reports]
 
     def ideal_error(self, low_pass: LowPass | None, level: float, *, films: bool = True) -> float | None:
         """Error in N in continuous time, without noise and rounding; None if nothing is reported.

@@ -192,6 +192,6 @@ AnySource = Annotated[ClosedFormSource | RunSource | IndentationSource | CurveSo
 def _curve_assumptions() -> list[str]:
     return [
         "the tissue's force depends on the displacement alone, not on the speed: elastic tissue",
-        "past the touch the small sensor bears what the simulation found; where it ended at the touch, a solid punch of the "
+        "past the touch the small sensor bears what the simulation computed; where it ended at the touch, a solid punch of the "
         "hole's radius on tissue of the plate's last tangent stiffness",
     ]

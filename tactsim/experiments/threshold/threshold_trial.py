@@ -28,7 +28,7 @@ class ThresholdTrial(TrialCase, Experiment):
     """Indentations at several speeds, sampled with several noises through several low passes, each many times.
 
     The error is that of the reported threshold force against the force on the plate at the instant at which the tissue touches
-    the small sensor. It is told apart: level (the small sensor must be pressed before it triggers), film (what it conducts
+    the small sensor. It is split into: level (the small sensor must be pressed before it triggers), film (what it conducts
     against the calibration line), filter (lag of both readings), sampling (time and rounding) and noise; the five add up to the
     mean error.
 
@@ -76,13 +76,13 @@ class ThresholdTrial(TrialCase, Experiment):
         report.begin(sampling.approach)
         for index, noise in enumerate(self.noise_levels):
             each: dict[str, Any] = {"low_passes": self.low_passes, "triggers": triggers[index], "trials": self.trials}
-            found = sampling.trials(noise, **each, seed=(self.seed, 1, speed, index))
+            noisy = sampling.trials(noise, **each, seed=(self.seed, 1, speed, index))
             silent = sampling.trials(SILENT, **each, seed=())
             for k, low_pass in enumerate(self.low_passes):
                 level = float(triggers[index][k].level)
                 ideals = [sampling.ideal_error(chosen, level) for chosen in (None, low_pass)]
                 line = sampling.ideal_error(None, level, films=False) if self.sensor.has_films else ideals[0]
-                report.add(found[k], silent[k], [line, *ideals], level)
+                report.add(noisy[k], silent[k], [line, *ideals], level)
                 if (speed, index, k) == report.shown:
                     report.show(sampling, noise, low_pass, triggers[index][k])
 

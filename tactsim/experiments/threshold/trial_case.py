@@ -41,7 +41,7 @@ class TrialCase(FrozenModel):
             raise ValueError("the chain has no low pass whose cut-off could vary; set sensor.chain.low_pass")
         for low_pass in self.low_passes:
             low_pass.check(self.sensor.chain.sampling_rate)
-            low_pass.check(FINER * self.sensor.chain.sampling_rate)  # of the ideal chain that the errors are told against
+            low_pass.check(FINER * self.sensor.chain.sampling_rate)  # of the ideal chain that the errors are compared with
         return self
 
     @property

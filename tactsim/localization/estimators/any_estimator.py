@@ -1,4 +1,4 @@
-"""The estimator of a case file, any registered kind told apart by ``kind``; and those that are offered without settings."""
+"""The estimator of a case file, any registered kind, chosen by ``kind``; and those that are offered without settings."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ AnyEstimator = Annotated[Estimator, Registered(Estimator)]
 
 
 def offered_estimators() -> dict[str, Estimator]:
-    """Name -> every variant of every registered estimator, those first that need and tell least."""
+    """Name -> every variant of every registered estimator, those first that need and give least."""
     variants: dict[str, Estimator] = {}
     for cls in kinds(Estimator).values():
         variants |= cls.variants()
 
     def demand(name: str) -> tuple[bool, bool, bool, str]:
         one = variants[name]
-        return one.needs_reference, one.needs_response, one.tells_classes, name
+        return one.needs_reference, one.needs_response, one.gives_classes, name
 
     return {name: variants[name] for name in sorted(variants, key=demand)}

@@ -14,7 +14,7 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
-from tactsim.localization.evidence import Change, Found, nothing
+from tactsim.localization.evidence import Change, Explanation, nothing
 from tactsim.units import Length
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
@@ -47,7 +47,7 @@ class HypothesesEstimator(Estimator):
     """
 
     needs_response: ClassVar[bool] = True
-    tells_classes: ClassVar[bool] = True
+    gives_classes: ClassVar[bool] = True
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """Classes that are considered."""
@@ -95,8 +95,10 @@ class HypothesesEstimator(Estimator):
                 False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
             )
         change = Change(values, variance, self.contrast_spread)
-        found: dict[str, tuple[Found, Candidates]] = {name: self._explained(name, change, readings) for name in self.classes}
-        evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in found.items()}
+        explained: dict[str, tuple[Explanation, Candidates]] = {
+            name: self._explained(name, change, readings) for name in self.classes
+        }
+        evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in explained.items()}
         if noise > 0:
             evidence["none"] = self._prior("none") + nothing(values, noise)
         probabilities = self._probabilities(evidence)
@@ -106,11 +108,11 @@ class HypothesesEstimator(Estimator):
             return Estimate(
                 False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
             )
-        inclusions = _inclusions(*found[likeliest])
+        inclusions = _inclusions(*explained[likeliest])
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
         return Estimate(True, inclusions, reason, probability, probabilities)
 
-    def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Found, Candidates]:
+    def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Explanation, Candidates]:
         """How well a class explains the change, and its candidates."""
         assert readings.response is not None  # checked by estimate
         candidates, coarse = self._bodies(name, readings.response, readings.block_size)
@@ -151,21 +153,21 @@ def _steps(limits: tuple[float, float]) -> list[float]:
     return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
 
 
-def _inclusions(found: Found, candidates: Candidates) -> tuple[EstimatedInclusion, ...]:
+def _inclusions(explanation: Explanation, candidates: Candidates) -> tuple[EstimatedInclusion, ...]:
     """The bodies of a class, the one with the strongest signal first."""
     bodies = []
-    for numbers, contrasts, spreads in zip(found.bodies, found.contrasts, found.spreads, strict=True):
+    for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
         samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
-        mean, line = found.weights @ samples, None
+        mean, line = explanation.weights @ samples, None
         if candidates.kind == "tube":
-            best = int(numbers[found.weights.argmax()])
+            best = int(numbers[explanation.weights.argmax()])
             mean[:3] = candidates.centers[best]
             (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
             line = ((x0, y0, z0), (x1, y1, z1))
         away = samples - mean
-        covariance = (found.weights[:, None] * away).T @ away
-        covariance[4, 4] += found.weights @ spreads
-        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[found.weights.argmax()]]))
+        covariance = (explanation.weights[:, None] * away).T @ away
+        covariance[4, 4] += explanation.weights @ spreads
+        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
         x, y, z, radius, contrast = map(float, mean)
         body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, line=line)
         bodies.append((signal, body))

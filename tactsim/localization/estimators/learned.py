@@ -16,7 +16,7 @@ from tactsim.localization.region import GaussianRegion
 from tactsim.outside.input_path import InputPath
 
 LEAST_RADIUS = 0.1e-3
-"""Radius in m that an estimate is raised to: a network may tell one below zero."""
+"""Radius in m that an estimate is raised to: a network may give one below zero."""
 
 
 class LearnedEstimator(Estimator):

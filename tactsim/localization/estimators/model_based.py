@@ -91,8 +91,8 @@ class ModelBasedEstimator(Estimator):
         something = self._covariance(change, plain, readings.noise)
         if something[0, 0] == 0:
             return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0)
-        found = self._candidates(response, readings.block_size)
-        evidence, contrasts, spread = self._evidence(found.signals, change, something)
+        candidates = self._candidates(response, readings.block_size)
+        evidence, contrasts, spread = self._evidence(candidates.signals, change, something)
         total, weights = (
             scipy.special.logsumexp(evidence) - np.log(len(evidence)),
             np.exp(evidence - scipy.special.logsumexp(evidence)),
@@ -100,9 +100,9 @@ class ModelBasedEstimator(Estimator):
         probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
-        mean, covariance = _moments(np.column_stack([found.centers, found.radii, contrasts]), weights, spread)
+        mean, covariance = _moments(np.column_stack([candidates.centers, candidates.radii, contrasts]), weights, spread)
         shape = tuple(map(len, response.axes))
-        cells = np.bincount(found.cells, weights, int(np.prod(shape))).reshape(shape)
+        cells = np.bincount(candidates.cells, weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
         region = CellRegion(response.axes, cells)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
@@ -130,8 +130,8 @@ class ModelBasedEstimator(Estimator):
         grid = np.stack(np.meshgrid(*response.axes, indexing="ij"), axis=-1).reshape(-1, 3)
         room = np.minimum(grid, size - grid).min(axis=1)
         cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
-        signals = [response.values[k].reshape(len(grid), -1)[own] for k, own in zip(chosen, cells, strict=True)]
-        radii = np.repeat(response.radii[chosen], [len(own) for own in cells])
+        signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
+        radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])
         every = np.concatenate(cells)
         return Candidates(every, grid[every], radii, np.concatenate(signals))
 

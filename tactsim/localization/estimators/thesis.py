@@ -94,13 +94,13 @@ class ThesisEstimator(Estimator):
         return float(readings.noise * (2.0 if self.background == "reference" else np.sqrt(2.0)))
 
     def _weights(self, total: Array, base: float) -> Array:
-        """Share of each place (row, column) in the position found; they add up to 1."""
+        """Share of each place (row, column) in the estimated position; they add up to 1."""
         if self.lateral == "centroid":
-            found = np.maximum(total - base, 0.0)
+            weights = np.maximum(total - base, 0.0)
         else:
-            found = np.zeros_like(total)
+            weights = np.zeros_like(total)
             pairs = total[:-1] + total[1:] if len(total) > 1 else total
             row, column = np.unravel_index(int(pairs.argmax()), pairs.shape)
             rows = slice(int(row), int(row) + 2)
-            found[rows, column] = total[rows, column]
-        return found / found.sum()
+            weights[rows, column] = total[rows, column]
+        return weights / weights.sum()

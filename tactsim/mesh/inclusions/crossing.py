@@ -24,8 +24,8 @@ def crossing_pair(vertices: Array, triangles: Array) -> tuple[int, int] | None:
         for k in range(3):
             hit = _pierces(corners[first, k], corners[first, (k + 1) % 3], corners[second])
             if hit.any():
-                found = int(np.flatnonzero(hit)[0])
-                return int(first[found]), int(second[found])
+                pair = int(np.flatnonzero(hit)[0])
+                return int(first[pair]), int(second[pair])
     return None
 
 
@@ -33,7 +33,7 @@ def _near_pairs(corners: Array) -> Array:
     """Pairs (p, 2) of triangles whose bounding spheres meet, largest triangles first."""
     centres = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
-    tree, found, total = scipy.spatial.cKDTree(centres), [np.zeros((0, 2), np.int64)], 0
+    tree, pairs, total = scipy.spatial.cKDTree(centres), [np.zeros((0, 2), np.int64)], 0
     order = np.argsort(-radius)
     for start in range(0, len(order), 2000):
         chunk = order[start : start + 2000]
@@ -42,11 +42,11 @@ def _near_pairs(corners: Array) -> Array:
         second = np.concatenate([np.asarray(n, np.int64) for n in neighbours])
         smaller = (radius[second] < radius[first]) | ((radius[second] == radius[first]) & (second < first))
         meeting = np.linalg.norm(centres[first] - centres[second], axis=1) <= radius[first] + radius[second]
-        found.append(np.stack([first, second], axis=1)[smaller & meeting])
-        total += len(found[-1])
+        pairs.append(np.stack([first, second], axis=1)[smaller & meeting])
+        total += len(pairs[-1])
         if total > MOST_PAIRS:
             break
-    return np.concatenate(found)
+    return np.concatenate(pairs)
 
 
 def _pierces(start: Array, end: Array, triangles: Array) -> Array:

@@ -56,7 +56,7 @@ class Surface(Inclusion):
 
 
 def _file(path: str) -> tuple[OutsideFile, int]:
-    """The file of a surface, and the time in ns at which it was written, which tells whether it is the same still."""
+    """The file of a surface, and the time in ns at which it was written, by which a change is noticed."""
     file = opened(path, "surface")
     return file, file.path.stat().st_mtime_ns
 

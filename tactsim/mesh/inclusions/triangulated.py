@@ -62,8 +62,8 @@ class TriangulatedSolid(Solid):
         while len(waiting):
             count = min(count, len(self.faces))
             reach, candidates = self._tree.query(points[waiting], k=np.arange(1, count + 1))
-            found, which, distance, bary = _nearest(points[waiting], self.vertices[self.faces[candidates]])
-            near[waiting], weights[waiting] = found, bary
+            nearest, which, distance, bary = _nearest(points[waiting], self.vertices[self.faces[candidates]])
+            near[waiting], weights[waiting] = nearest, bary
             face[waiting] = candidates[np.arange(len(waiting)), which]
             decided = (reach[:, -1] - self._reach >= distance) | (count == len(self.faces))
             waiting, count = waiting[~decided], 4 * count

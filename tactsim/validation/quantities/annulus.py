@@ -102,9 +102,7 @@ def annulus_creep(
 
 @drawing
 def force_factor_errors(
-    title: Title,
-    formulas: Annotated[tuple[Approximation, ...], Field(min_length=1)],
-    largest_error: Positive[float] = 0.05,
+    title: Title, formulas: Annotated[tuple[Approximation, ...], Field(min_length=1)], largest_error: Positive[float] = 0.05
 ) -> Data:
     """The force factor above, the error of each formula in percent below, over the ratio of the radii.
 

@@ -90,11 +90,7 @@ def film_constant(
 
 @quantity(unit="ohm")
 def film_resistance(
-    *,
-    composite: FilmComposite = IDENTIFIED,
-    force: Force,
-    time: Time,
-    reading: Reading | Literal["history"] = "history",
+    *, composite: FilmComposite = IDENTIFIED, force: Force, time: Time, reading: Reading | Literal["history"] = "history"
 ) -> float:
     """Resistance in ohm of a film under a constant force, in a reading of eq. 2.3.1.
 

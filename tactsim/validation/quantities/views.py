@@ -9,14 +9,7 @@ from pydantic import Field
 
 from tactsim.errors import InputError
 from tactsim.interfaces import quantity
-from tactsim.localization.bands import (
-    GREY_LEVELS,
-    Form,
-    band_image,
-    band_intensities,
-    element_positions,
-    inserted_elements,
-)
+from tactsim.localization.bands import GREY_LEVELS, Form, band_image, band_intensities, element_positions, inserted_elements
 from tactsim.localization.section_image import lump_rows, section_image
 from tactsim.localization.views import SHAPE, Join, joined, pair_images, views
 from tactsim.units import NonNegative

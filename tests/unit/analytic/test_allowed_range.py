@@ -11,9 +11,9 @@ from tactsim.errors import InvalidQuantity
 
 @pytest.mark.parametrize("value", [0.0, 1.0, [0.0, 0.5], [], np.float64(0.3)])
 def test_values_inside_pass_as_arrays_of_floats(value):
-    found = checked("ratio", value, "[0, 1]")
-    assert found.dtype == float
-    np.testing.assert_array_equal(found, value)
+    values = checked("ratio", value, "[0, 1]")
+    assert values.dtype == float
+    np.testing.assert_array_equal(values, value)
 
 
 @pytest.mark.parametrize(

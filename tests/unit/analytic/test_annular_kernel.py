@@ -57,9 +57,9 @@ def test_logarithm_weights_against_quadrature(x):
 def test_the_waves_resolve_the_layer_and_their_own_product():
     layer = Layer(1.0)
     x, weights = wave_quadrature(80.0)
-    found = float(weights @ (layer.deficit(x) * j0(79.0 * x) * j0(80.0 * x)))
+    computed = float(weights @ (layer.deficit(x) * j0(79.0 * x) * j0(80.0 * x)))
     expected = quad(lambda x: float(layer.deficit(x)) * j0(79 * x) * j0(80 * x), 0, 24, limit=5000, epsabs=1e-13)[0]
-    assert found == pytest.approx(expected, abs=1e-12)
+    assert computed == pytest.approx(expected, abs=1e-12)
     coarse, coarse_weights = wave_quadrature(8.0)
     assert float(coarse_weights @ (layer.deficit(coarse) * j0(79.0 * coarse) * j0(80.0 * coarse))) != pytest.approx(
         expected, abs=1e-8

@@ -45,11 +45,11 @@ def test_the_interpolant_keeps_its_error():
     ],
 )
 def test_the_formulas_have_their_known_errors(formula, ratio, error, tolerance):
-    found = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
-    assert found == pytest.approx(error, abs=tolerance)
+    computed = float(force_factor(ratio, formula) / force_factor(ratio)) - 1
+    assert computed == pytest.approx(error, abs=tolerance)
 
 
-def test_the_formulas_are_told_apart():
+def test_the_formulas_are_distinguished():
     values = np.array([float(force_factor(0.8, formula)) for formula in FORMULAS])
     apart = np.abs(values[:, None] - values)[~np.eye(values.size, dtype=bool)]
     assert apart.min() > 1e-3

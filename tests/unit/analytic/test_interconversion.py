@@ -56,9 +56,9 @@ def transforms(kelvin: GeneralizedKelvin, maxwell: GeneralizedMaxwell, s: np.nda
     return compliance * (maxwell.equilibrium_modulus + (phase / (1 + phase)) @ maxwell.moduli)
 
 
-def assert_equal(found: np.ndarray | float, expected: np.ndarray | float, seed: int) -> None:
+def assert_equal(computed: np.ndarray | float, expected: np.ndarray | float, seed: int) -> None:
     """Refuse what differs by more than round-off, naming the model."""
-    np.testing.assert_allclose(found, expected, rtol=ROUND_OFF, err_msg=f"model of the seed {seed}")
+    np.testing.assert_allclose(computed, expected, rtol=ROUND_OFF, err_msg=f"model of the seed {seed}")
 
 
 def test_a_round_trip_keeps_all_curves():

@@ -69,7 +69,7 @@ def test_transfer_solves_the_plane_layer(layer):
     expected = [float(solved_transfer(layer, wave)) for wave in x]
     np.testing.assert_allclose(layer.transfer(x), expected, rtol=1e-9)  # condition of the four equations at x = 0.1
     other = Layer(1.0, layer.poisson_ratio, "slipping" if layer.base == "bonded" else "bonded")
-    assert not np.isclose(other.transfer(x), expected, rtol=1e-9).any(), "the other base is told from it"
+    assert not np.isclose(other.transfer(x), expected, rtol=1e-9).any(), "the other base is distinguished"
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=str)

@@ -27,9 +27,9 @@ def test_a_ramp_is_the_integral_of_the_modulus_on_uneven_times():
 def test_a_jump_relaxes_by_the_modulus_and_columns_are_alone():
     time = np.linspace(0, 10, 50)
     elastic = np.column_stack([np.full(50, 2.0), np.zeros(50)])
-    found = quasi_linear(time, elastic, MODULUS)
-    np.testing.assert_allclose(found[:, 0], 2 * MODULUS.relaxation(time) / 10, rtol=1e-12)
-    assert not found[:, 1].any()
+    computed = quasi_linear(time, elastic, MODULUS)
+    np.testing.assert_allclose(computed[:, 0], 2 * MODULUS.relaxation(time) / 10, rtol=1e-12)
+    assert not computed[:, 1].any()
 
 
 def test_a_curved_answer_converges_with_the_second_order():
@@ -54,13 +54,13 @@ def pressed(rate, modulus, samples=400):
 
 
 def test_an_elastic_probe_follows_its_curve_and_scales():
-    found = pressed(1e-3, GeneralizedMaxwell(1e4, [], []))
-    assert found.force[-1] == pytest.approx(1e4 * WIDTH * CHAPTER_5.force[-1], rel=1e-12)
-    assert pressed(3e-3, GeneralizedMaxwell(2e4, [], [])).force == pytest.approx(2 * found.force, rel=1e-12)
-    assert (np.diff(found.force) > 0).all()
-    assert (np.diff(found.contact_height) >= 0).all()
-    assert (found.switches[:, 0] > 0).any()
-    assert not found.switches[:, 1:].any()
+    computed = pressed(1e-3, GeneralizedMaxwell(1e4, [], []))
+    assert computed.force[-1] == pytest.approx(1e4 * WIDTH * CHAPTER_5.force[-1], rel=1e-12)
+    assert pressed(3e-3, GeneralizedMaxwell(2e4, [], [])).force == pytest.approx(2 * computed.force, rel=1e-12)
+    assert (np.diff(computed.force) > 0).all()
+    assert (np.diff(computed.contact_height) >= 0).all()
+    assert (computed.switches[:, 0] > 0).any()
+    assert not computed.switches[:, 1:].any()
 
 
 def test_force_at_a_depth_grows_with_the_rate_for_any_tissue_that_relaxes():
@@ -76,12 +76,12 @@ def test_force_at_a_depth_grows_with_the_rate_for_any_tissue_that_relaxes():
 def test_contact_opens_on_the_way_back():
     time = np.linspace(0, 2, 801)
     depth = np.interp(time, [0, 1, 2], [0, 5e-3, 0])
-    found = probe_forces(time, depth, curve=CHAPTER_5, modulus=GeneralizedMaxwell(1e3, [9e3], [0.5]), width=WIDTH)
-    assert found.force.min() == 0.0
-    opened = np.flatnonzero((found.force == 0) & (time > 1))
+    computed = probe_forces(time, depth, curve=CHAPTER_5, modulus=GeneralizedMaxwell(1e3, [9e3], [0.5]), width=WIDTH)
+    assert computed.force.min() == 0.0
+    opened = np.flatnonzero((computed.force == 0) & (time > 1))
     assert depth[opened[0]] > 0.1e-3, "before the probe is back"
-    assert not found.contact_height[opened].any()
-    assert not found.switches[opened].any()
+    assert not computed.contact_height[opened].any()
+    assert not computed.switches[opened].any()
 
 
 @pytest.mark.parametrize("depth", [-1e-4, 5.1e-3])

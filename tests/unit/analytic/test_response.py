@@ -147,7 +147,7 @@ def test_lags_are_exact_to_round_off_from_the_earliest_times(h):
         r = Decimal(lag)
         c = (cos - exponential(-ratio) + r * sin) / (1 + r * r)
         s = (sin - r * cos + r * exponential(-ratio)) / (1 + r * r)
-        found = wave_lags(*(np.array(x) for x in (h, angle, lag)))
+        computed = wave_lags(*(np.array(x) for x in (h, angle, lag)))
         size = min(1.0, h) * min(1.0, 1 / lag) if angle > 1 else 0.0  # zeros of waves are met to round-off of the wave
-        assert float(found[0]) == pytest.approx(float(c), rel=2e-14, abs=1e-14 * size)
-        assert float(found[1]) == pytest.approx(float(s), rel=2e-14, abs=1e-14 * size)
+        assert float(computed[0]) == pytest.approx(float(c), rel=2e-14, abs=1e-14 * size)
+        assert float(computed[1]) == pytest.approx(float(s), rel=2e-14, abs=1e-14 * size)

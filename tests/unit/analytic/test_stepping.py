@@ -31,12 +31,12 @@ def signal(count: int) -> tuple[np.ndarray, np.ndarray]:
 def test_steps_equal_the_response_to_the_same_samples(model, advance):
     times, values = signal(3000)
     constants, state = step_constants(model), rest_state(model)
-    found = [advance(constants, state, 0.0, values[0])]
-    found += [advance(constants, state, step, value) for step, value in zip(np.diff(times), values[1:], strict=True)]
+    computed = [advance(constants, state, 0.0, values[0])]
+    computed += [advance(constants, state, step, value) for step, value in zip(np.diff(times), values[1:], strict=True)]
     expected = response(model, sampled(times, values), times)
-    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(computed, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
     with pytest.raises(AssertionError):  # twin
-        np.testing.assert_allclose(found, response(model, sampled(times * (1 + 1e-9), values), times * (1 + 1e-9)), rtol=1e-12)
+        np.testing.assert_allclose(computed, response(model, sampled(times * (1 + 1e-9), values), times * (1 + 1e-9)), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("model", "advance"), STEPS)

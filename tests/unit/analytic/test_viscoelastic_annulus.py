@@ -23,8 +23,8 @@ def annulus(ratio=0.4, tissue=SOLID, **settings):
     return ViscoelasticAnnulus(RADIUS, ratio, tissue, **settings)
 
 
-def agree(found, expected):
-    np.testing.assert_allclose(found, expected, rtol=ROUND_OFF)
+def agree(computed, expected):
+    np.testing.assert_allclose(computed, expected, rtol=ROUND_OFF)
 
 
 def test_without_delay_it_is_the_elastic_annulus():
@@ -50,8 +50,8 @@ def test_force_undoes_displacement(times):
     t = np.linspace(0, 2, 4001)
     history = sampled(t, tissue.displacement(ramp(0.5, 1.0), t))
     expected = 0.5 * np.minimum(t, 1.0)
-    found = tissue.force(history, t)
-    error = np.abs(found - expected).max()
+    computed = tissue.force(history, t)
+    error = np.abs(computed - expected).max()
     # The moduli over a time step of 0.5 ms change by less than a percent; so does the largest force
     assert error < 0.01 * 0.5
     other = annulus(tissue=atrial_shear_compliance(times, "half_shear"))
@@ -103,10 +103,10 @@ def test_a_fluid_always_touches():
 
 def test_histories_with_harmonics_are_taken():
     t = np.linspace(2, 3, 5)
-    found = annulus().displacement(harmonic(-0.2, 1.0, start=2.0, mean=0.2), t)
+    computed = annulus().displacement(harmonic(-0.2, 1.0, start=2.0, mean=0.2), t)
     still = annulus().displacement(step(0.2), t)
-    assert found[0] == pytest.approx(still[0], rel=ROUND_OFF)
-    assert found[1] < still[1]
+    assert computed[0] == pytest.approx(still[0], rel=ROUND_OFF)
+    assert computed[1] < still[1]
 
 
 @pytest.mark.parametrize(

@@ -32,9 +32,9 @@ class Column:
     def forces(self, displacements):
         below, above = np.diff(displacements.reshape(3, 3)[ORDER], axis=0)
         first, second = (STIFFNESS * stretch + HARDENING * stretch**3 for stretch in (below, above))
-        found = np.empty((3, 3))
-        found[ORDER] = [-first, first - second, second]
-        return found.ravel()
+        forces_ = np.empty((3, 3))
+        forces_[ORDER] = [-first, first - second, second]
+        return forces_.ravel()
 
     def correction(self, displacements, forces, held, moved):
         below, above = np.diff(displacements.reshape(3, 3)[ORDER], axis=0)
@@ -59,14 +59,14 @@ def problem() -> dict[str, np.ndarray]:
 
 
 def test_reaction_is_that_of_two_springs_in_a_row(clamped, problem):
-    found = clamped.solve(problem, Column)
+    solution = clamped.solve(problem, Column)
     stretch = LEVELS[-1] / 2
     exact = STIFFNESS * stretch + HARDENING * stretch**3
-    np.testing.assert_allclose(found["forces"], [[0.0, 0.0, exact]], rtol=3 * SLACK)
+    np.testing.assert_allclose(solution["forces"], [[0.0, 0.0, exact]], rtol=3 * SLACK)
     with pytest.raises(AssertionError):
-        np.testing.assert_allclose(found["forces"], [[0.0, 0.0, exact * (1 + 9 * SLACK)]], rtol=3 * SLACK)
-    assert found["unknowns"] == 9
-    assert len(found["step_seconds"]) == len(found["iterations"]) == len(LEVELS)
+        np.testing.assert_allclose(solution["forces"], [[0.0, 0.0, exact * (1 + 9 * SLACK)]], rtol=3 * SLACK)
+    assert solution["unknowns"] == 9
+    assert len(solution["step_seconds"]) == len(solution["iterations"]) == len(LEVELS)
 
 
 def test_wrong_tangent_does_not_pass_for_a_solution(clamped, problem):

@@ -37,8 +37,8 @@ def outcome(runs: ModuleType, place: Path, text: str, limit: float = LIMIT) -> o
 
 
 def test_program_that_measures_is_read(runs, tmp_path):
-    found = outcome(runs, tmp_path, "import sys, numpy\nnumpy.savez(sys.argv[-1], unknowns=7)")
-    assert found["unknowns"] == 7
+    measured = outcome(runs, tmp_path, "import sys, numpy\nnumpy.savez(sys.argv[-1], unknowns=7)")
+    assert measured["unknowns"] == 7
 
 
 def test_absent_module_is_reported(runs, monkeypatch, tmp_path):

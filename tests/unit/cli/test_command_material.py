@@ -132,6 +132,6 @@ def test_what_cannot_be_answered(
     assert words in capsys.readouterr().err
 
 
-def test_a_case_without_material_is_told(case_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_case_without_material_is_reported(case_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["material", str(case_file)]) == 2
     assert "the case has no material" in capsys.readouterr().err

@@ -51,7 +51,7 @@ def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr() == ("", "")
 
 
-def test_progress_tells_every_accepted_step(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_reports_every_accepted_step(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--progress"]) == 0
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3

@@ -22,6 +22,6 @@ def test_the_schema_is_printed_or_written(pretended: None, tmp_path: Path, capsy
 
 def test_the_schema_of_sweeps_is_printed(pretended: None, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "--sweep"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told == sweep_json_schema()
-    assert told != case_json_schema()
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == sweep_json_schema()
+    assert printed != case_json_schema()

@@ -33,7 +33,7 @@ def test_the_main_figure_is_saved(folder: Path, tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == PNG
 
 
-def test_a_result_without_figure_is_told(
+def test_a_result_without_figure_is_reported(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(plotting, "figures_for", lambda result: {})
@@ -41,7 +41,7 @@ def test_a_result_without_figure_is_told(
     assert "a result of kind 'pretence' has no figure" in capsys.readouterr().err
 
 
-def test_what_is_no_result_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_no_result_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", str(tmp_path)]) == 5
     assert "holds no result.json" in capsys.readouterr().err
     assert main(["show", str(tmp_path / "missing")]) == 5

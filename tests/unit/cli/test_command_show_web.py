@@ -31,7 +31,7 @@ def page(*arguments: str) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_the_address_is_told_once_and_a_signal_ends_it_in_good_order(tmp_path: Path, number: signal.Signals) -> None:
+def test_the_address_is_reported_once_and_a_signal_ends_it_in_good_order(tmp_path: Path, number: signal.Signals) -> None:
     with page(str(grasp_folder(tmp_path / "a"))) as process:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
@@ -77,7 +77,7 @@ def test_another_address_is_warned_of(tmp_path: Path) -> None:
         (["--web", "--live", "tcp://127.0.0.1:{taken}"], 5, "cannot listen"),
     ],
 )
-def test_what_cannot_be_shown_is_told(
+def test_what_cannot_be_shown_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, words: str
 ) -> None:
     with socket.socket() as taken:

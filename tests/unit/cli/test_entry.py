@@ -26,7 +26,7 @@ def test_every_command_has_examples(command: str, capsys: pytest.CaptureFixture[
     assert f"tactsim {command}" in text.split("example")[1]
 
 
-def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_version_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"tactsim {__version__}\n"
 
@@ -43,7 +43,7 @@ def test_a_wrong_command_line_is_bad_input(arguments: list[str], capsys: pytest.
 
 
 @pytest.mark.parametrize("debug", [False, True])
-def test_a_defect_is_told_as_such(debug: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_defect_is_reported_as_such(debug: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     def broken(arguments: object) -> int:
         raise RuntimeError("wheel came off")
 

@@ -83,6 +83,6 @@ def test_fit_figure():
 
 @pytest.mark.parametrize(("size", "unit"), [(5.0, "Pa"), (5e3, "kPa"), (5e6, "MPa")])
 def test_the_unit_suits_the_size(size, unit):
-    found, factor = pressure_unit(np.array([size, -size, 0.9 * size]))
-    assert found == unit
+    chosen, factor = pressure_unit(np.array([size, -size, 0.9 * size]))
+    assert chosen == unit
     assert size * factor == pytest.approx(5.0)

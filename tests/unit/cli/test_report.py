@@ -30,7 +30,7 @@ def test_values_with_units(value: object, unit: str, text: str) -> None:
     assert format_values(Quantity(value, unit, "")) == text
 
 
-def test_the_last_line_tells_only_what_was_reached() -> None:
+def test_the_last_line_reports_only_what_was_reached() -> None:
     place = Path("results/x")
     assert last_line(RESULT, place, {}) == "threshold pressure 17.2 kPa; result results/x"
     assert last_line(RESULT, place, {"a.png": b""}).endswith("; figure results/x/figures/a.png")
@@ -41,7 +41,7 @@ def test_the_last_line_tells_only_what_was_reached() -> None:
     assert last_line(failed, place, {}).startswith("failed: stuck;")
 
 
-def test_an_empty_result_can_be_told() -> None:
+def test_an_empty_result_can_be_reported() -> None:
     text = result_report(Result("k", Status.INTERRUPTED, ""))
     assert text == "interrupted\n  0 accepted steps; 0 assumptions listed in result.json"
 
@@ -50,7 +50,7 @@ def test_a_step_is_one_line() -> None:
     record = StepRecord(12, 4, 2.1e-10, {"displacement": 6.2e-4, "share": 0.5})
     line = step_line(record, {"displacement": "m", "share": "1"})
     assert line == "step   12  displacement 620 µm  share 0.5  4 iterations, residual 2.1e-10"
-    assert "share 0.5" in step_line(record, {}), "without units every value is told, in SI"
+    assert "share 0.5" in step_line(record, {}), "without units every value is printed, in SI"
 
 
 def test_a_line_shows_the_first_values_that_the_units_name() -> None:

@@ -17,12 +17,12 @@ SPACING = 2e-5
 def profile(ring, spacing):
     """Points (n, 2) around the filleted rectangle of the section, at most ``spacing`` apart."""
     radius, low, high = ring.fillet, np.array([ring.inner_radius, 0.0]), np.array([ring.outer_radius, ring.height])
-    found = []
+    outline = []
     for k, (r, z) in enumerate([(high[0], low[1]), (high[0], high[1]), (low[0], high[1]), (low[0], low[1])]):
         centre = np.clip([r, z], low + radius, high - radius)
         angle = np.linspace(-np.pi / 2, 0, int(radius * np.pi / 2 / spacing) + 2) + k * np.pi / 2
-        found.append(centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-    corners = np.vstack(found)
+        outline.append(centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    corners = np.vstack(outline)
     after = np.roll(corners, -1, axis=0)
     return np.vstack(
         [

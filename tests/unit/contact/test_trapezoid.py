@@ -21,8 +21,8 @@ def distance(body, *points):
 def test_distances_to_face_side_corner_and_inside():
     along, across = np.array([math.sin(LEAN), math.cos(LEAN)]), np.array([math.cos(LEAN), -math.sin(LEAN)])
     beside = np.array([1.0, 0.0]) + 3 * along + 0.5 * across
-    found = distance(SHARP, (0, -1), (0.5, -0.25), (1 + 3e-1, -4e-1), beside, (0, 0.1), (0, 8.5))
-    np.testing.assert_allclose(found, [1, 0.25, 0.5, 0.5, -0.1, 0.5], rtol=1e-12)
+    computed = distance(SHARP, (0, -1), (0.5, -0.25), (1 + 3e-1, -4e-1), beside, (0, 0.1), (0, 8.5))
+    np.testing.assert_allclose(computed, [1, 0.25, 0.5, 0.5, -0.1, 0.5], rtol=1e-12)
     np.testing.assert_allclose(distance(SHARP, *(np.array([[-1, 1]]) * [beside, (1.3, -0.4)])), [0.5, 0.5], rtol=1e-12)
 
 

@@ -1,4 +1,4 @@
-"""The card of a data set: what it tells, and that the lines of code in it run."""
+"""The card of a data set: what it says, and that the lines of code in it run."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.
     monkeypatch.setitem(sys.modules, "torch.utils.data", loaders)
     parts = re.findall(r"```python\n(.*?)```", card, flags=re.DOTALL)
     assert len(parts) == 3
-    found: dict = {}
+    names: dict = {}
     for part in parts:
-        exec(part.replace("STORE", str(place)), found)  # noqa: S102  the card is ours
-    assert found["done"].sizes["sample"] == 24
-    assert found["train"].sizes["sample"] + found["test"].sizes["sample"] < 24
-    assert found["loader"][0].inputs == ("read_force",)
-    assert found["loader"][0].targets == ("inner_radius",)
-    assert len(found["samples"]) == found["train"].sizes["sample"]
+        exec(part.replace("STORE", str(place)), names)  # noqa: S102  the card is ours
+    assert names["done"].sizes["sample"] == 24
+    assert names["train"].sizes["sample"] + names["test"].sizes["sample"] < 24
+    assert names["loader"][0].inputs == ("read_force",)
+    assert names["loader"][0].targets == ("inner_radius",)
+    assert len(names["samples"]) == names["train"].sizes["sample"]
 
 
-def test_the_card_tells_what_the_store_holds(store: tuple[Path, str]) -> None:
+def test_the_card_reports_what_the_store_holds(store: tuple[Path, str]) -> None:
     place, card = store
     held = Store.open(place)
     for name, array in held.described.items():

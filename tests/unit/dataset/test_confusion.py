@@ -29,9 +29,9 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Forty grasps that close alike, every eighth without a lump."""
     place = made_store(tmp_path_factory.mktemp("made"), response())
     group = Store.open(place, writing=True).group
-    told = tuple(replace(truth, closing=CLOSING) for truth in truths(40))
+    closed = tuple(replace(truth, closing=CLOSING) for truth in truths(40))
     group["closing"][...] = np.full(40, CLOSING)
-    group["taxel_force"][...] = made_forces(told, response())[:, None].astype(group["taxel_force"].dtype)
+    group["taxel_force"][...] = made_forces(closed, response())[:, None].astype(group["taxel_force"].dtype)
     sum_up(place)
     return place
 
@@ -48,14 +48,14 @@ def test_the_command_counts_and_writes(
     out = tmp_path / "table"
     command = ["data", "confusion", str(store), "--reference", plain, "--split", "test", "--noise", QUIET, "--out", str(out)]
     assert main(command) == 0
-    told = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    counts = np.array(told["counts"])
-    assert counts.sum() == told["samples"] == 10
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    counts = np.array(report["counts"])
+    assert counts.sum() == report["samples"] == 10
     assert counts[0].sum() == 1  # sample 32
     assert counts[0, 0] == 1
     assert counts[1, 0] == 0  # no lump is missed
-    assert told["recalls"]["artery"] is None
-    assert told["share_right"] == pytest.approx(np.trace(counts) / 10)
+    assert report["recalls"]["artery"] is None
+    assert report["share_right"] == pytest.approx(np.trace(counts) / 10)
     assert (out / "confusion.png").read_bytes()[:4] == b"\x89PNG"
     assert "![confusion.png]" in (out / "report.md").read_text(encoding="utf-8")
     assert "| lump |" in capsys.readouterr().out
@@ -101,11 +101,11 @@ def test_no_reference_is_an_error(store: Path, capsys: pytest.CaptureFixture[str
 
 def test_a_table_in_words_has_a_row_for_every_class_that_occurs() -> None:
     table = ConfusionTable()
-    for true, told in (("lump", "lump"), ("lump", "none"), ("artery", "artery")):
-        table.add(true, told)
+    for true, estimated in (("lump", "lump"), ("lump", "none"), ("artery", "artery")):
+        table.add(true, estimated)
     content = record(table, 2, {"estimator": "hypotheses", "noise": 1e-3})
     text = as_text(content, {})
-    assert verdict(content) == "2 of 3 grasps told right"
+    assert verdict(content) == "2 of 3 grasps named right"
     assert "| lump | 1 | 1 | 0 | 0 | 0 | 50% |" in text
     assert "| none | " not in text.split("---")[-1]
     assert "2 samples belong to no class" in text

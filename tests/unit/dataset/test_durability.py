@@ -22,18 +22,18 @@ Synced = list[tuple[str, bytes]]
 @pytest.fixture
 def synced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Synced:
     """What is synced while a sweep runs."""
-    found: Synced = []
+    calls: Synced = []
 
     def recording(path: Path) -> None:
         held = "\n".join(sorted(place.name for place in path.iterdir())).encode() if path.is_dir() else path.read_bytes()
         if not path.is_relative_to(tmp_path / "s.zarr"):  # where it is made
             return
-        found.append((str(path.relative_to(tmp_path / "s.zarr")), held))
+        calls.append((str(path.relative_to(tmp_path / "s.zarr")), held))
         sync(path)
 
     monkeypatch.setattr(store_writing, "sync", recording)
     monkeypatch.setattr(journal, "sync", recording)
-    return found
+    return calls
 
 
 def not_durable(place: Path, synced: Synced) -> list[str]:

@@ -26,7 +26,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return small_store(tmp_path_factory.mktemp("kept"))
 
 
-def told(place: Path, **attributes: object) -> None:
+def rewritten(place: Path, **attributes: object) -> None:
     """Changes what a store says of itself; None takes a word back."""
     description = json.loads((place / "zarr.json").read_text(encoding="utf-8"))
     changed = description["attributes"] | attributes
@@ -55,18 +55,21 @@ SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
     "array": (bare_array, "Zarr of another origin"),
     "format 2": (format_two, "it is of Zarr format 2"),
     "future": (
-        lambda place: told(place, schema="tactsim/dataset/2", codes=["9.0"]),
+        lambda place: rewritten(place, schema="tactsim/dataset/2", codes=["9.0"]),
         "has the schema 'tactsim/dataset/2'; this tactsim reads 'tactsim/dataset/1'; use the version that wrote it: 9.0",
     ),
     "torn": (lambda place: (place / "zarr.json").write_text("{"), "zarr.json is damaged"),
     "no mapping": (lambda place: (place / "zarr.json").write_text("[1]"), "zarr.json is damaged"),
-    "silent": (lambda place: told(place, sweep=None, license=None), "zarr.json does not tell license, sweep; bring back a copy"),
+    "silent": (
+        lambda place: rewritten(place, sweep=None, license=None),
+        "zarr.json does not state license, sweep; bring back a copy",
+    ),
     "no status": (lambda place: shutil.rmtree(place / "status"), "it has no variable status"),
 }
 
 
 @pytest.mark.parametrize("kind", SPOILT)
-def test_what_is_no_data_set_is_told(kind: str, kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_no_data_set_is_reported(kind: str, kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     place = Path(shutil.copytree(kept, tmp_path / "s.zarr"))
     spoil, words = SPOILT[kind]
     assert main(["data", "info", str(place)]) == 0

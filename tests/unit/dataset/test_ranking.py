@@ -25,7 +25,7 @@ NOTHING = Truth(2, 1e-3)
 MOST = np.hypot(20e-3, 10e-3)
 
 
-def told(truth: Truth, center: tuple[float, float, float] | None, radius: float = 4e-3, spread: float = 1e-3) -> Outcome:
+def estimated(truth: Truth, center: tuple[float, float, float] | None, radius: float = 4e-3, spread: float = 1e-3) -> Outcome:
     """The outcome of an estimate with a ball there, or of none."""
     if center is None:
         return outcome(Estimate(False, (), "nothing"), truth)
@@ -34,32 +34,37 @@ def told(truth: Truth, center: tuple[float, float, float] | None, radius: float 
 
 
 def test_errors_of_one_estimate() -> None:
-    found = told(LUMP, (23e-3, 16e-3, 11e-3), radius=5e-3)
-    assert found.lateral == pytest.approx(5e-3)
-    assert found.depth == pytest.approx(-1e-3)
-    assert found.radius == pytest.approx(1e-3)
-    assert found.covered is False
-    assert told(LUMP, (21e-3, 20e-3, 12e-3)).covered is True
-    assert found.width == pytest.approx(2 * np.sqrt(6.2514) * 1e-3, rel=1e-4)
-    assert found.width != pytest.approx(2 * np.sqrt(4.6052) * 1e-3, rel=1e-2)  # that of two dimensions
+    judged = estimated(LUMP, (23e-3, 16e-3, 11e-3), radius=5e-3)
+    assert judged.lateral == pytest.approx(5e-3)
+    assert judged.depth == pytest.approx(-1e-3)
+    assert judged.radius == pytest.approx(1e-3)
+    assert judged.covered is False
+    assert estimated(LUMP, (21e-3, 20e-3, 12e-3)).covered is True
+    assert judged.width == pytest.approx(2 * np.sqrt(6.2514) * 1e-3, rel=1e-4)
+    assert judged.width != pytest.approx(2 * np.sqrt(4.6052) * 1e-3, rel=1e-2)  # that of two dimensions
 
 
 def test_hiding_does_not_pay() -> None:
-    assert penalty(told(LUMP, None), SIZE) == pytest.approx(MOST)
-    assert penalty(told(LUMP, (0.0, 0.0, 0.0)), SIZE) == pytest.approx(MOST)
-    assert penalty(told(NOTHING, None), SIZE) == 0
-    assert penalty(told(NOTHING, (20e-3, 20e-3, 10e-3)), SIZE) == pytest.approx(MOST)
-    honest = [told(LUMP, (24e-3, 20e-3, 12e-3)), told(LUMP, (26e-3, 20e-3, 12e-3))]
-    hiding = [told(LUMP, (20e-3, 20e-3, 12e-3)), told(LUMP, None)]
-    better, worse = (measures(found, SIZE) for found in (honest, hiding))
+    assert penalty(estimated(LUMP, None), SIZE) == pytest.approx(MOST)
+    assert penalty(estimated(LUMP, (0.0, 0.0, 0.0)), SIZE) == pytest.approx(MOST)
+    assert penalty(estimated(NOTHING, None), SIZE) == 0
+    assert penalty(estimated(NOTHING, (20e-3, 20e-3, 10e-3)), SIZE) == pytest.approx(MOST)
+    honest = [estimated(LUMP, (24e-3, 20e-3, 12e-3)), estimated(LUMP, (26e-3, 20e-3, 12e-3))]
+    hiding = [estimated(LUMP, (20e-3, 20e-3, 12e-3)), estimated(LUMP, None)]
+    better, worse = (measures(judged, SIZE) for judged in (honest, hiding))
     assert worse["lateral_error"]["median"]["value"] < better["lateral_error"]["median"]["value"]
     assert worse["score"]["value"] > better["score"]["value"]
     assert worse["lateral_error_with_misses"]["value"] == pytest.approx(10e-3)
 
 
 def test_rates_and_counts() -> None:
-    found = [told(LUMP, (20e-3, 20e-3, 12e-3)), told(LUMP, None), told(LUMP, (20e-3, 20e-3, 2e-3)), told(NOTHING, None)]
-    numbers = measures(found, SIZE)
+    judged = [
+        estimated(LUMP, (20e-3, 20e-3, 12e-3)),
+        estimated(LUMP, None),
+        estimated(LUMP, (20e-3, 20e-3, 2e-3)),
+        estimated(NOTHING, None),
+    ]
+    numbers = measures(judged, SIZE)
     assert (numbers["samples"], numbers["lumps"], numbers["without_lump"], numbers["found"]) == (4, 3, 1, 2)
     assert numbers["detection_rate"]["value"] == pytest.approx(2 / 3)
     assert numbers["false_alarm_rate"]["value"] == 0
@@ -67,8 +72,8 @@ def test_rates_and_counts() -> None:
     assert numbers["depth_error"]["quantile_90"]["value"] == pytest.approx(9e-3)
 
 
-def test_what_no_sample_tells_is_none() -> None:
-    numbers = measures([told(NOTHING, None)], SIZE)
+def test_what_no_sample_reports_is_none() -> None:
+    numbers = measures([estimated(NOTHING, None)], SIZE)
     assert numbers["detection_rate"] is None
     assert numbers["lateral_error"] is None
     assert numbers["coverage"] is None
@@ -86,19 +91,19 @@ def test_an_interval_holds_its_value_and_shrinks() -> None:
 
 
 def test_the_interval_of_a_rate_has_a_width_at_its_ends():
-    all_found = share([True] * 20)
-    assert all_found is not None
-    assert all_found["value"] == 1.0
+    all_detected = share([True] * 20)
+    assert all_detected is not None
+    assert all_detected["value"] == 1.0
     z = norm.ppf(0.975)
-    assert all_found["low"] == pytest.approx(20 / (20 + z**2), rel=1e-9)  # Wilson's by hand for 20 of 20
-    assert all_found["low"] != pytest.approx(1.0, abs=0.1), "the bootstrap's would have no width"
+    assert all_detected["low"] == pytest.approx(20 / (20 + z**2), rel=1e-9)  # Wilson's by hand for 20 of 20
+    assert all_detected["low"] != pytest.approx(1.0, abs=0.1), "the bootstrap's would have no width"
     assert share([]) is None
 
 
 def test_bins_hold_every_lump_once() -> None:
     samples = made_samples(24, response())
-    found = [told(truth, truth.center) for truth in samples.truths]
-    for parts in binned(found, SIZE).values():
+    judged = [estimated(truth, truth.center) for truth in samples.truths]
+    for parts in binned(judged, SIZE).values():
         assert sum(part["lumps"] for part in parts) == 21
         assert all(part["low"] <= part["high"] for part in parts)
 

@@ -56,10 +56,10 @@ def test_a_reference_at_the_wrong_closing_leaves_a_change(store: Path, plain: st
 
 def test_several_results_are_several_closings(tmp_path: Path) -> None:
     folders = [plain_result(tmp_path / f"plain{k}", np.array([c])) for k, c in enumerate(CLOSINGS[::-1])]
-    found = PlainGrasp.of_results(folders)
-    assert found.closings == pytest.approx([0.0, *CLOSINGS])
-    assert found.at(0.8e-3) == pytest.approx(plain_forces(np.array([0.8e-3]))[0])
-    assert found.at(0.8e-3) != pytest.approx(plain_forces(np.array([0.82e-3]))[0], rel=1e-3)
+    plain = PlainGrasp.of_results(folders)
+    assert plain.closings == pytest.approx([0.0, *CLOSINGS])
+    assert plain.at(0.8e-3) == pytest.approx(plain_forces(np.array([0.8e-3]))[0])
+    assert plain.at(0.8e-3) != pytest.approx(plain_forces(np.array([0.82e-3]))[0], rel=1e-3)
     with pytest.raises(InputError, match="two or more"):
         PlainGrasp.of_results(folders[:1])
     with pytest.raises(InputError, match="no reference"):

@@ -53,8 +53,8 @@ def test_labels_fill_what_a_recorder_declares(kind: str) -> None:
 
     experiment = experiment_kinds()[kind].example()
     declared = {variable.name: variable.sizes for variable in recorder.labels_of(experiment)}
-    found = {name: np.shape(value) for name, value in recorder.labels(experiment).items()}
-    assert found == declared
+    shapes = {name: np.shape(value) for name, value in recorder.labels(experiment).items()}
+    assert shapes == declared
     assert recorder.describe()
 
 
@@ -91,16 +91,16 @@ def grasp_result(steps: int) -> tuple[Grasp, Result]:
 def test_taxels_are_stored_at_even_times_whatever_the_steps(steps: int) -> None:
     experiment, result = grasp_result(steps)
     recorder = GraspRecorder(settings=SweepSettings(samples=1, times=5))
-    found = recorder.readings(experiment, result, np.random.default_rng(1))
-    np.testing.assert_allclose(found["time_s"], [0.2, 0.4, 0.6, 0.8, 1.0], rtol=1e-12)
-    expected = found["time_s"][:, None, None, None] * np.arange(9.0).reshape(3, 3) * np.array([1.0, 2.0])[:, None, None]
-    np.testing.assert_allclose(found["taxel_force"], expected, rtol=1e-12)  # linear histories are met to round-off
-    np.testing.assert_allclose(found["taxel_pressure"], expected / experiment.matrix.area, rtol=1e-12)
-    np.testing.assert_allclose(found["displacement"], 1e-3 * found["time_s"], rtol=1e-12)
-    assert found["gap_force"].tolist() == [0.25, 0.125]
-    assert found["outside_force"].tolist() == [0.5, 0.375]
+    readings = recorder.readings(experiment, result, np.random.default_rng(1))
+    np.testing.assert_allclose(readings["time_s"], [0.2, 0.4, 0.6, 0.8, 1.0], rtol=1e-12)
+    expected = readings["time_s"][:, None, None, None] * np.arange(9.0).reshape(3, 3) * np.array([1.0, 2.0])[:, None, None]
+    np.testing.assert_allclose(readings["taxel_force"], expected, rtol=1e-12)  # linear histories are met to round-off
+    np.testing.assert_allclose(readings["taxel_pressure"], expected / experiment.matrix.area, rtol=1e-12)
+    np.testing.assert_allclose(readings["displacement"], 1e-3 * readings["time_s"], rtol=1e-12)
+    assert readings["gap_force"].tolist() == [0.25, 0.125]
+    assert readings["outside_force"].tolist() == [0.5, 0.375]
     sizes = {variable.name: variable.sizes for variable in recorder.readings_of(experiment)}
-    assert {name: np.shape(value) for name, value in found.items()} == sizes
+    assert {name: np.shape(value) for name, value in readings.items()} == sizes
 
 
 def test_what_is_stored_is_that_at_the_end_and_not_before() -> None:

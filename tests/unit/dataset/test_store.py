@@ -53,11 +53,11 @@ def test_xarray_opens_it_without_our_code(whole: Path) -> None:
         "print(dict(data.sizes), data.force.attrs['units'], data.force.dims, float(data.force.max()), data.reason.values[0])"
     )
     command = [sys.executable, "-W", "error", "-c", program, str(whole)]
-    told = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
-    assert "'sample': 24" in told
-    assert "'time': 4" in told
-    assert "N ('sample', 'time')" in told
-    assert "end of the history" in told
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert "'sample': 24" in printed
+    assert "'time': 4" in printed
+    assert "N ('sample', 'time')" in printed
+    assert "end of the history" in printed
 
 
 def test_every_variable_has_a_unit_and_a_meaning(whole: Path) -> None:

@@ -152,7 +152,7 @@ def test_hdf5_holds_the_same(kept: Path, tmp_path: Path) -> None:
         assert file["failed/sample"].shape == (0,)
 
 
-def test_an_export_tells_what_failed(store: Path, tmp_path: Path) -> None:
+def test_an_export_reports_what_failed(store: Path, tmp_path: Path) -> None:
     (store / "README.md").write_text("# A small sweep — its card\n", encoding="utf-8")
     group = Store.open(store, writing=True).group
     group["status"][3], group["reason"][3] = FAILED, "ConvergenceError: it — would not"
@@ -228,9 +228,9 @@ def test_a_sweep_by_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "samples, 0 failed, " in err
     assert main(["sweep", case, "--out", place, "--samples", "6"]) == 5
     assert main(["data", "info", place]) == 0
-    told = capsys.readouterr().out
-    assert "A small sweep" in told
-    assert "voltage after the low pass, with noise" in told
+    printed = capsys.readouterr().out
+    assert "A small sweep" in printed
+    assert "voltage after the low pass, with noise" in printed
     assert Path(place, "figures", "spread.png").read_bytes().startswith(b"\x89PNG")
     card = Path(place, "README.md").read_text(encoding="utf-8")
     for part in (
@@ -255,7 +255,7 @@ def test_bad_options_are_refused(tmp_path: Path, options: list[str], words: str,
     assert not (tmp_path / "s.zarr").exists()
 
 
-def test_progress_tells_rate_time_left_and_reasons() -> None:
+def test_progress_reports_rate_time_left_and_reasons() -> None:
     tally = Tally(samples=100, before=10, begin=time.monotonic() - 10)
     assert tally.line() == "10 of 100 samples, 0 failed, 0 samples/h"
     tally.add(18, ["stopped at 3.5e-2 mm", "stopped at 7 mm"])

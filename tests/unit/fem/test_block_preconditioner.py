@@ -51,8 +51,8 @@ def test_it_solves_as_the_factor_does(bulk, contact):
     body, matrix, right = system((5, 5, 3), bulk_modulus=BULK[bulk], contact=contact)
     direct, iterative = direct_solver(), BlockPreconditioned(body)
     expected = solved(direct, matrix, right)
-    found = solved(iterative, matrix, right, 1e-11)
-    for exact, mine in zip(body.space.split(expected), body.space.split(found), strict=True):
+    computed = solved(iterative, matrix, right, 1e-11)
+    for exact, mine in zip(body.space.split(expected), body.space.split(computed), strict=True):
         # 1e-10 of the largest, the residual being asked to 1e-11
         np.testing.assert_allclose(mine, exact, rtol=0, atol=1e-10 * np.abs(exact).max())
     direct.close()

@@ -154,9 +154,9 @@ def test_an_old_factor_solves_what_changed_little_to_the_accuracy(kind, skew):
     solver = ReusedFactor(direct_solver(kind))
     for amount in (0.0, 1e-3, 3e-3):
         now = changed(matrix, amount, skew=skew if amount else 0.0)
-        found = solved(solver, now, right, 1e-8)
-        assert np.linalg.norm(now @ found - right) <= 2e-8 * np.linalg.norm(right)
-        assert_close(found, solved(direct_solver("pardiso"), now, right), 1e-4)  # accuracy times condition number
+        computed = solved(solver, now, right, 1e-8)
+        assert np.linalg.norm(now @ computed - right) <= 2e-8 * np.linalg.norm(right)
+        assert_close(computed, solved(direct_solver("pardiso"), now, right), 1e-4)  # accuracy times condition number
     assert solver.factorisations == 1
     assert solver.solutions > 3
 

@@ -68,7 +68,7 @@ def test_a_failed_step_is_cut_and_counted_and_the_path_goes_on():
     assert np.diff([0.0, *reached]).max() <= 0.2
 
 
-def test_giving_up_tells_how_far_it_came_and_keeps_the_history():
+def test_giving_up_reports_how_far_it_came_and_keeps_the_history():
     follower, accepted = PathFollower(Scalar(end=0.5), CONTROL), []
 
     def follow():

@@ -1,4 +1,4 @@
-"""Newton's method ends in an equilibrium or in an error that tells why."""
+"""Newton's method ends in an equilibrium or in an error that says why."""
 
 from __future__ import annotations
 

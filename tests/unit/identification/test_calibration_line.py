@@ -72,8 +72,8 @@ def test_it_is_least_squares_in_voltage():
         loaded = 1e3 * (1e-5 * slope * force + 1e-5 * intercept)
         return 5.0 * loaded / (1 + loaded)
 
-    found, covariance = curve_fit(model, FORCE, voltage, p0=(5, 0), xtol=1e-14, ftol=1e-14)
-    np.testing.assert_allclose([fit.slope, fit.intercept], 1e-5 * found, rtol=1e-6)
+    fitted, covariance = curve_fit(model, FORCE, voltage, p0=(5, 0), xtol=1e-14, ftol=1e-14)
+    np.testing.assert_allclose([fit.slope, fit.intercept], 1e-5 * fitted, rtol=1e-6)
     np.testing.assert_allclose(fit.covariance, 1e-10 * covariance, rtol=1e-4)
     assert fit.noise == pytest.approx(5e-3, rel=0.5)
     half = fit.band(np.array([0.0, 10.0]))

@@ -37,11 +37,11 @@ def test_compliance_is_that_of_the_model_and_the_vector_turns_back():
 
 def test_sensitivities_are_derivatives():
     p, step = constants().logarithms, 1e-6
-    found = part_sensitivities(p, FREQUENCIES)
+    computed = part_sensitivities(p, FREQUENCIES)
     for k in range(p.size):
         change = step * (np.arange(p.size) == k)
         slope = (compliance_parts(p + change, FREQUENCIES) - compliance_parts(p - change, FREQUENCIES)) / (2 * step)
-        np.testing.assert_allclose(found[..., k], slope, atol=1e-8 * np.abs(found).max())  # central differences
+        np.testing.assert_allclose(computed[..., k], slope, atol=1e-8 * np.abs(computed).max())  # central differences
 
 
 def test_objective_over_a_population_and_in_both_forms():
@@ -124,19 +124,19 @@ def test_bands(banded):
         banded(fit, FREQUENCIES, replicates=10)
 
 
-def test_what_the_data_do_not_tell_is_said():
-    told = determination(fit_least_squares(DATA))
-    assert told.relative_errors.shape == (17,)
-    assert (told.relative_errors <= np.log(10) * (1 + 1e-12)).all()
-    assert 3 <= told.determined_combinations <= 6
-    assert "do not tell" in told.statement()
-    assert "e_8" in told.statement()
+def test_what_the_data_do_not_determine_is_reported():
+    determined = determination(fit_least_squares(DATA))
+    assert determined.relative_errors.shape == (17,)
+    assert (determined.relative_errors <= np.log(10) * (1 + 1e-12)).all()
+    assert 3 <= determined.determined_combinations <= 6
+    assert "do not determine" in determined.statement()
+    assert "e_8" in determined.statement()
 
 
 def test_standard_errors_follow_from_the_sensitivities():
     fit = fit_least_squares(DATA)
-    told = determination(fit)
+    determined = determination(fit)
     slopes = part_sensitivities(fit.constants.logarithms, DATA.frequencies) / (0.02 * DATA.parts)[..., None]
     S = slopes.reshape(16, 17)
     expected = np.sqrt(np.diag(np.linalg.inv(S.T @ S + np.eye(17) / np.log(10) ** 2)))
-    np.testing.assert_allclose(told.relative_errors, expected, rtol=1e-8)  # condition of 3e5 of the sum
+    np.testing.assert_allclose(determined.relative_errors, expected, rtol=1e-8)  # condition of 3e5 of the sum

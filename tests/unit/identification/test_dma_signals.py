@@ -42,9 +42,9 @@ def test_exact_sines_give_the_modulus():
 def test_a_frequency_that_is_a_little_off_is_refined():
     signals = DmaSignals(**oscillation(frequency=6.0, noise=0.0) | {"frequency": 6.05})
     assert abs(complex_modulus(signals).modulus / MODULUS - 1) > 1e-4
-    found = complex_modulus(signals, refine=True)
-    assert found.frequency == pytest.approx(6.0, rel=1e-7)
-    assert abs(found.modulus / MODULUS - 1) < 1e-7  # of a frequency found to the root of round-off
+    computed = complex_modulus(signals, refine=True)
+    assert computed.frequency == pytest.approx(6.0, rel=1e-7)
+    assert abs(computed.modulus / MODULUS - 1) < 1e-7  # of a frequency found to the root of round-off
 
 
 def test_a_wrong_frequency_is_not_refined():
@@ -56,13 +56,13 @@ def test_a_wrong_frequency_is_not_refined():
 def test_noise_stays_within_its_standard_errors(of):
     scores = []
     for seed in range(200):
-        found = complex_modulus(DmaSignals(**oscillation(noise=0.1, seed=seed)))
+        computed = complex_modulus(DmaSignals(**oscillation(noise=0.1, seed=seed)))
         if of == "modulus":
-            difference = found.modulus - MODULUS
-            scores.append([difference.real / found.modulus_errors[0], difference.imag / found.modulus_errors[1]])
+            difference = computed.modulus - MODULUS
+            scores.append([difference.real / computed.modulus_errors[0], difference.imag / computed.modulus_errors[1]])
         else:
-            ratio = [(1 / found.modulus).real / (1 / MODULUS).real - 1, (1 / found.modulus).imag / (1 / MODULUS).imag - 1]
-            scores.append(np.array(ratio) / found.compliance_errors)
+            ratio = [(1 / computed.modulus).real / (1 / MODULUS).real - 1, (1 / computed.modulus).imag / (1 / MODULUS).imag - 1]
+            scores.append(np.array(ratio) / computed.compliance_errors)
     assert np.std(scores, axis=0) == pytest.approx([1, 1], abs=0.2)  # 200 trials: four standard errors of a standard deviation
     assert np.abs(np.mean(scores, axis=0)).max() < 0.3
 

@@ -42,7 +42,7 @@ def test_intervals_cover_the_coefficients():
 
 
 @pytest.mark.parametrize(
-    ("test", "told"),
+    ("test", "message"),
     [
         (CreepTest(2.0, TIMES[:5], TIMES[:5] + 1), "at least 6"),
         (CreepTest(0.0, TIMES, TIMES + 1), "> 0"),
@@ -51,8 +51,8 @@ def test_intervals_cover_the_coefficients():
         (CreepTest(2.0, TIMES, np.full(200, -0.01)), "compressive strain is positive"),
     ],
 )
-def test_bad_creep_is_refused(test, told):
-    with pytest.raises(InvalidQuantity, match=told):
+def test_bad_creep_is_refused(test, message):
+    with pytest.raises(InvalidQuantity, match=message):
         fit_creep(test, AREA)
 
 

@@ -82,9 +82,9 @@ def test_the_two_term_fits_of_the_errata_and_the_stable_sets_are_better(name, co
     """errata.md, Material stability: c01 and c20 alone, relative least squares over 0.6 to 1."""
     curve = curve_of(named_material(name).material, np.linspace(0.6, 1.0, 200)[:-1])
     design = unit_stresses(curve.stretch, ("c01", "c20")) / curve.nominal_stress[:, None]
-    found = np.linalg.lstsq(design, np.ones(199), rcond=None)[0]
-    error = design @ found - 1
-    assert found == pytest.approx(constants, rel=5e-3)  # three printed digits
+    fitted = np.linalg.lstsq(design, np.ones(199), rcond=None)[0]
+    error = design @ fitted - 1
+    assert fitted == pytest.approx(constants, rel=5e-3)  # three printed digits
     assert np.abs(error).max() == pytest.approx(largest, abs=0.006)
     assert np.sqrt(np.mean(error**2)) == pytest.approx(rms, abs=6e-4)
     better = named_material(name.replace("printed", "stable"))
@@ -141,7 +141,7 @@ def random_curve(seed: int) -> UniaxialCurve:
     return curve_of(material, stretch, 1 + 0.02 * generator.normal(size=50))
 
 
-def test_a_stable_fit_of_any_curve_is_found_or_the_reason_told():
+def test_a_stable_fit_of_any_curve_is_found_or_the_reason_reported():
     """Curves whose stress has the wrong sign are refused before; a strongly softening one has no stable material near it."""
     fitted = refused = 0
     for seed in range(40):
@@ -197,7 +197,7 @@ def test_the_free_fit_of_the_printed_curve_warns():
     assert not fit.stability.strongly_elliptic
 
 
-def test_what_cannot_be_fitted_is_told():
+def test_what_cannot_be_fitted_is_reported():
     curve = curve_of(NeoHookean(c10=3e3), np.array([0.7, 0.8, 0.9]))
     with pytest.raises(UnknownName, match="did you mean 'stable'"):
         fit_uniaxial(curve, "stabel")
@@ -224,5 +224,5 @@ def test_the_printed_formula_lacks_c11_and_turns_negative_in_tension():
 def test_the_printed_formula_is_right_without_c11():
     stretch = np.array([0.6, 0.9, 1.0, 1.5])
     material = MooneyRivlin2(c10=2.0, c01=1.0)
-    found = uniaxial_stress_as_printed(2.0, 1.0, stretch) / stretch
-    np.testing.assert_allclose(found, uniaxial_nominal_stress(material, stretch), rtol=1e-14, atol=1e-15)
+    computed = uniaxial_stress_as_printed(2.0, 1.0, stretch) / stretch
+    np.testing.assert_allclose(computed, uniaxial_nominal_stress(material, stretch), rtol=1e-14, atol=1e-15)

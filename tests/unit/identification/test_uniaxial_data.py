@@ -109,7 +109,7 @@ HEADER = "stretch,nominal_stress_kPa\n"
         (HEADER + "0.7,0\n0.8,0\n0.9,0\n", "tension positive, compression negative"),
     ],
 )
-def test_what_is_no_curve_is_told(read, text, words):
+def test_what_is_no_curve_is_reported(read, text, words):
     with pytest.raises(InvalidQuantity, match=words):
         read(text)
 

@@ -125,11 +125,11 @@ def drained(experiment: Experiment) -> tuple[list[StepRecord], object]:
     steps: list[StepRecord] = []
 
     def outer() -> Iterator[StepRecord]:
-        found.append((yield from run_within_another(experiment)))
+        findings.append((yield from run_within_another(experiment)))
 
-    found: list[object] = []
+    findings: list[object] = []
     steps.extend(outer())
-    return steps, found[0]
+    return steps, findings[0]
 
 
 def test_an_experiment_within_another(made: Callable[..., Experiment]) -> None:

@@ -1,4 +1,4 @@
-"""Candidates, evidence, and the estimator that tells one lump, two lumps, an artery and nothing apart."""
+"""Candidates, evidence, and the estimator that distinguishes one lump, two lumps, an artery and nothing."""
 
 import numpy as np
 import pytest
@@ -52,33 +52,33 @@ def balls(response, *centers, radius=4e-3, contrast=3.0):
 
 
 def tube(response, *, angle=0, height=12e-3, contrast=3.0):
-    found = tube_candidates(response, SIZE, [3e-3], gap=GAP, closed=False)
-    direction = (found.ends - found.begins)[:, :2]
+    candidates = tube_candidates(response, SIZE, [3e-3], gap=GAP, closed=False)
+    direction = (candidates.ends - candidates.begins)[:, :2]
     wanted = np.array([np.cos(angle), np.sin(angle)])
     along = np.abs(direction @ wanted) / np.linalg.norm(direction, axis=1) > 1 - 1e-9
-    off = np.linalg.norm(found.centers[:, :2] - 20e-3, axis=1) + np.abs(found.centers[:, 2] - height) + 1.0 * ~along
+    off = np.linalg.norm(candidates.centers[:, :2] - 20e-3, axis=1) + np.abs(candidates.centers[:, 2] - height) + 1.0 * ~along
     number = int(off.argmin())
-    return contrast * found.signals[number].reshape(2, 3, 3), found.centers[number], found.radii[number]
+    return contrast * candidates.signals[number].reshape(2, 3, 3), candidates.centers[number], candidates.radii[number]
 
 
 def test_a_tube_is_the_integral_of_a_constant_density_over_it():
     flat = block_response(lambda places: np.ones((1, 1, 1, len(places))))
-    found = tube_candidates(flat, SIZE, [3e-3], gap=GAP, closed=True)
-    middle = np.abs(found.centers[:, 2] - 10e-3).argmin()
-    inner = np.linalg.norm(found.centers[:, :2] - 20e-3, axis=1) < 5e-3
-    chosen = found.chosen(inner & (found.centers[:, 2] == found.centers[middle, 2]))
+    candidates = tube_candidates(flat, SIZE, [3e-3], gap=GAP, closed=True)
+    middle = np.abs(candidates.centers[:, 2] - 10e-3).argmin()
+    inner = np.linalg.norm(candidates.centers[:, :2] - 20e-3, axis=1) < 5e-3
+    chosen = candidates.chosen(inner & (candidates.centers[:, 2] == candidates.centers[middle, 2]))
     volumes = np.pi * chosen.radii**2 * np.linalg.norm(chosen.ends - chosen.begins, axis=1)
     # the ends lose up to 0.35 of the radius of the ball, and a cut tube gains as much at neither end
     assert chosen.signals[:, 0] == pytest.approx(volumes, rel=0.1)
     assert chosen.signals[:, 0] != pytest.approx(4 / np.pi * volumes, rel=0.1), "a tube is round"
 
 
-def test_overlapping_bodies_are_told():
+def test_overlapping_bodies_are_reported():
     response = block_response()
-    found = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
-    one = int(np.linalg.norm(found.centers - SIZE / 2, axis=1).argmin())
-    away = np.linalg.norm(found.centers - found.centers[one], axis=1)
-    np.testing.assert_array_equal(found.overlaps(one), away < 5e-3)
+    candidates = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
+    one = int(np.linalg.norm(candidates.centers - SIZE / 2, axis=1).argmin())
+    away = np.linalg.norm(candidates.centers - candidates.centers[one], axis=1)
+    np.testing.assert_array_equal(candidates.overlaps(one), away < 5e-3)
     tubes = tube_candidates(response, SIZE, [2.5e-3], gap=GAP, closed=False, spacing=4e-3)
     along = np.abs(tubes.begins[:, 1] - tubes.ends[:, 1]) < 1e-9
     level = tubes.begins[:, 2] == tubes.begins[0, 2]
@@ -90,57 +90,57 @@ def test_overlapping_bodies_are_told():
 
 
 def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
-    found = ball_candidates(response, SIZE, [3.5e-3], gap=GAP).chosen(np.array([100]))
+    candidates = ball_candidates(response, SIZE, [3.5e-3], gap=GAP).chosen(np.array([100]))
     values = 0.02 * np.random.default_rng(3).standard_normal(18)
     change = Change(values, 4e-4, 2.0)
-    covariance = 4e-4 * np.eye(18) + 4.0 * np.outer(found.signals[0], found.signals[0])
+    covariance = 4e-4 * np.eye(18) + 4.0 * np.outer(candidates.signals[0], candidates.signals[0])
     exact = -(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2
-    assert change.single(found).evidence == pytest.approx(exact, rel=1e-10)
-    assert change.single(found).evidence != pytest.approx(nothing(values, 4e-4), rel=1e-10)
+    assert change.single(candidates).evidence == pytest.approx(exact, rel=1e-10)
+    assert change.single(candidates).evidence != pytest.approx(nothing(values, 4e-4), rel=1e-10)
 
 
 def test_the_evidence_of_pairs_is_their_mean_over_all(response):
-    found = ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3)
+    candidates = ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3)
     values = balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)).ravel()
     change = Change(values, 2.5e-3, 5.0)
     exact = []
-    for i in range(len(found)):
-        pairs = found.signals[i][:, None] * found.signals[i] + 2.5e-3 / 25 * np.eye(18)
+    for i in range(len(candidates)):
+        pairs = candidates.signals[i][:, None] * candidates.signals[i] + 2.5e-3 / 25 * np.eye(18)
         base = 25 * pairs
-        for j in np.flatnonzero(~found.overlaps(i)):
-            covariance = base + 25 * np.outer(found.signals[j], found.signals[j])
+        for j in np.flatnonzero(~candidates.overlaps(i)):
+            covariance = base + 25 * np.outer(candidates.signals[j], candidates.signals[j])
             exact.append(-(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2)
     largest = max(exact)
-    mean = largest + np.log(np.exp(np.array(exact) - largest).sum() / len(found) ** 2)
-    sampled = [change.double(found, found, np.random.default_rng(seed)).evidence for seed in range(4)]
+    mean = largest + np.log(np.exp(np.array(exact) - largest).sum() / len(candidates) ** 2)
+    sampled = [change.double(candidates, candidates, np.random.default_rng(seed)).evidence for seed in range(4)]
     assert np.mean(sampled) == pytest.approx(mean, abs=0.2)  # scatter of 32 draws
     assert np.mean(sampled) != pytest.approx(mean + np.log(2), abs=0.2)
 
 
 @pytest.mark.parametrize("name", ["none", "lump", "two_lumps", "artery"])
-def test_classes_are_told_apart(response, name):
+def test_classes_are_distinguished(response, name):
     changes = {
         "none": np.zeros((2, 3, 3)),
         "lump": balls(response, (15e-3, 25e-3, 11e-3)),
         "two_lumps": balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)),
         "artery": tube(response, angle=np.pi / 6)[0],
     }
-    found = ESTIMATOR.estimate(readings(response, changes[name]))
-    assert estimated_class(found) == name
-    assert found.classes[name] > 0.5
-    assert sum(found.classes.values()) == pytest.approx(1.0)
-    assert found.probability == pytest.approx(1 - found.classes["none"], abs=1e-9)
-    assert len(found.inclusions) == {"none": 0, "lump": 1, "two_lumps": 2, "artery": 1}[name]
+    estimate = ESTIMATOR.estimate(readings(response, changes[name]))
+    assert estimated_class(estimate) == name
+    assert estimate.classes[name] > 0.5
+    assert sum(estimate.classes.values()) == pytest.approx(1.0)
+    assert estimate.probability == pytest.approx(1 - estimate.classes["none"], abs=1e-9)
+    assert len(estimate.inclusions) == {"none": 0, "lump": 1, "two_lumps": 2, "artery": 1}[name]
     wrong = ESTIMATOR.model_copy(update={"classes": ("lump",)}).estimate(readings(response, changes["two_lumps"]))
     assert estimated_class(wrong) == "lump"
 
 
 def test_two_lumps_lie_where_they_are(response):
     places = np.array([(11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)])
-    found = ESTIMATOR.estimate(readings(response, balls(response, *places)))
-    centers = np.array([one.center for one in found.inclusions])
+    estimate = ESTIMATOR.estimate(readings(response, balls(response, *places)))
+    centers = np.array([one.center for one in estimate.inclusions])
     order = np.argsort(centers[:, 0])
-    for center, body, place in zip(centers[order], np.array(found.inclusions)[order], places, strict=True):
+    for center, body, place in zip(centers[order], np.array(estimate.inclusions)[order], places, strict=True):
         reach = 3 * np.sqrt(np.diag(body.covariance)[:3]) + 1.5e-3
         assert np.all(np.abs(center - place) < reach)
         assert not np.all(np.abs(center - (places.sum(axis=0) - place)) < reach)
@@ -149,13 +149,13 @@ def test_two_lumps_lie_where_they_are(response):
 @pytest.mark.parametrize("contrast", [3.0, -1.2])
 def test_a_tube_has_its_line_and_sign(response, contrast):
     change, center, radius = tube(response, angle=np.pi / 2, contrast=contrast)
-    found = ESTIMATOR.estimate(readings(response, change, noise=5e-4)).inclusions[0]
-    assert found.kind == "tube"
-    assert np.sign(found.contrast) == np.sign(contrast)
-    line = np.array(found.line)
+    strongest = ESTIMATOR.estimate(readings(response, change, noise=5e-4)).inclusions[0]
+    assert strongest.kind == "tube"
+    assert np.sign(strongest.contrast) == np.sign(contrast)
+    line = np.array(strongest.line)
     assert abs(line[0, 0] - line[1, 0]) < 1e-9
-    assert abs(found.center[0] - center[0]) < 1.5e-3
-    assert abs(found.radius - radius) < 2e-3
+    assert abs(strongest.center[0] - center[0]) < 1.5e-3
+    assert abs(strongest.radius - radius) < 2e-3
 
 
 def test_the_same_seed_gives_the_same_estimate(response):
@@ -177,9 +177,9 @@ def test_reference_and_response_are_needed(response):
 
 
 def test_readings_equal_to_the_reference_without_noise_hold_nothing(response):
-    found = ESTIMATOR.estimate(readings(response, np.zeros((2, 3, 3)), noise=0.0))
-    assert not found.present
-    assert found.classes == dict.fromkeys(CLASSES, 0.0) | {"none": 1.0}
+    estimate = ESTIMATOR.estimate(readings(response, np.zeros((2, 3, 3)), noise=0.0))
+    assert not estimate.present
+    assert estimate.classes == dict.fromkeys(CLASSES, 0.0) | {"none": 1.0}
 
 
 def test_classes_by_shapes_and_by_estimates():
@@ -193,8 +193,8 @@ def test_classes_by_shapes_and_by_estimates():
 def test_the_table_counts():
     table = ConfusionTable()
     assert table.share_right is None
-    for true, found in (("lump", "lump"), ("lump", "two_lumps"), ("none", "none")):
-        table.add(true, found)
+    for true, estimated in (("lump", "lump"), ("lump", "two_lumps"), ("none", "none")):
+        table.add(true, estimated)
     assert table.counts[1, 1:3].tolist() == [1, 1]
     assert table.share_right == pytest.approx(2 / 3)
     assert table.recalls == [1.0, 0.5, None, None, None]

@@ -33,9 +33,9 @@ def weights(bias=5.0):
     )
 
 
-def kept(folder, found):
+def kept(folder, written):
     path = folder / "weights.npz"
-    path.write_bytes(found.content())
+    path.write_bytes(written.content())
     return path
 
 
@@ -46,15 +46,15 @@ def readings(layout=LAYOUT, size=SIZE):
 
 
 def test_weights_are_read_as_they_were_written(tmp_path):
-    path, told = kept(tmp_path, weights()), readings()
-    found = read_weights(path)
-    features = inputs(told.difference[None], told.reference[None], NOISE)[0]
-    for one, other in zip(found.place(features), weights().place(features), strict=True):
+    path, given = kept(tmp_path, weights()), readings()
+    loaded = read_weights(path)
+    features = inputs(given.difference[None], given.reference[None], NOISE)[0]
+    for one, other in zip(loaded.place(features), weights().place(features), strict=True):
         assert np.array_equal(one, other)
-    estimate = LearnedEstimator.checked(path).estimate(told)
+    estimate = LearnedEstimator.checked(path).estimate(given)
     assert estimate.present
     assert estimate.inclusions[0].region.contains(np.array(estimate.inclusions[0].center))
-    assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(told).present
+    assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(given).present
 
 
 def test_inputs_do_not_know_the_size_of_the_change_but_for_one():
@@ -106,9 +106,9 @@ def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
     monkeypatch.setattr(training, "HIDDEN", (32,))
     monkeypatch.setattr(training, "COPIES", 1)
     table = response()
-    found = training.trained(made_samples(48, table, seed=2), table)
+    trained = training.trained(made_samples(48, table, seed=2), table)
     judged = made_samples(40, table, seed=5)
-    numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, found)), judged, None), SIZE)
+    numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, trained)), judged, None), SIZE)
     guess = np.median([np.hypot(*(np.array(t.center)[:2] - 20e-3)) for t in judged.truths if t.present])
     assert numbers["detection_rate"]["value"] > 0.8
     assert numbers["lateral_error_with_misses"]["value"] < 0.5 * guess

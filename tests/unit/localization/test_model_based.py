@@ -51,9 +51,9 @@ def readings(response, center, radius, contrast, *, seed=1, noise=NOISE):
 def test_a_linear_density_gives_its_middle_times_the_volume():
     places, volumes = quadrature()
     density = np.stack([np.ones(len(places)), 1 + 20 * places[:, 0]]).reshape(2, 1, 1, -1)
-    found = LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=1e-3)
+    response = LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=1e-3)
     center = np.array([[21.5e-3, 18.5e-3, 9.5e-3]])
-    signal = found.signal(center, np.array([5e-3]))[0, :, 0, 0]
+    signal = response.signal(center, np.array([5e-3]))[0, :, 0, 0]
     volume = 4 / 3 * np.pi * 5e-3**3
     assert signal == pytest.approx([volume, volume * (1 + 20 * 21.5e-3)], rel=1e-3)
     assert signal != pytest.approx([volume, volume * (1 + 20 * 20e-3)], rel=1e-3), "the density at the middle of the block"
@@ -73,22 +73,22 @@ def test_a_lump_is_found_within_its_uncertainty(response, center, contrast):
     estimate = ModelBasedEstimator(model_error=0.01, **SURE).estimate(readings(response, center, 4e-3, contrast))
     assert estimate.present
     assert estimate.probability > 0.999
-    found = estimate.inclusions[0]
-    deviations = np.sqrt(np.diag(found.covariance))
-    assert np.all(np.abs(np.array(found.center) - center) < 3 * deviations[:3] + 0.5e-3)
-    assert np.sign(found.contrast) == np.sign(contrast)
-    assert abs(found.center[0] - (center[0] + 6e-3)) > 3 * deviations[0] + 0.5e-3
-    assert any(found.region.contains(np.array(center) + away, 0.99) for away in BESIDE)
-    assert not found.region.contains(np.array(center) + np.array([6e-3, 0, 0]), 0.99)
+    strongest = estimate.inclusions[0]
+    deviations = np.sqrt(np.diag(strongest.covariance))
+    assert np.all(np.abs(np.array(strongest.center) - center) < 3 * deviations[:3] + 0.5e-3)
+    assert np.sign(strongest.contrast) == np.sign(contrast)
+    assert abs(strongest.center[0] - (center[0] + 6e-3)) > 3 * deviations[0] + 0.5e-3
+    assert any(strongest.region.contains(np.array(center) + away, 0.99) for away in BESIDE)
+    assert not strongest.region.contains(np.array(center) + np.array([6e-3, 0, 0]), 0.99)
 
 
 def test_more_noise_widens_the_region(response):
     widths = []
     for noise in (1e-4, 2e-3):
-        found = ModelBasedEstimator(model_error=0.0, **SURE).estimate(
+        estimate = ModelBasedEstimator(model_error=0.0, **SURE).estimate(
             readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 2.0, noise=noise)
         )
-        widths.append(np.linalg.det(found.inclusions[0].covariance[:3, :3]) ** (1 / 6))
+        widths.append(np.linalg.det(estimate.inclusions[0].covariance[:3, :3]) ** (1 / 6))
     assert widths[1] > widths[0]
 
 
@@ -99,10 +99,10 @@ def test_plain_tissue_has_nothing_in_it(response):
 
 
 def test_an_uncertain_reference_widens_the_region_and_hides_what_it_could_explain(response):
-    told = readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 4.0)
-    sure, unsure = (ModelBasedEstimator(background_error=error, background_scale=0.0).estimate(told) for error in (0.0, 0.005))
+    given = readings(response, (20e-3, 20e-3, 12e-3), 4e-3, 4.0)
+    sure, unsure = (ModelBasedEstimator(background_error=error, background_scale=0.0).estimate(given) for error in (0.0, 0.005))
     assert unsure.inclusions[0].region.sizes()[0] > sure.inclusions[0].region.sizes()[0]
-    scaled = Readings(1.05 * told.reference, LAYOUT, SIZE, reference=told.reference, noise=NOISE, response=response)
+    scaled = Readings(1.05 * given.reference, LAYOUT, SIZE, reference=given.reference, noise=NOISE, response=response)
     assert not ModelBasedEstimator(background_scale=0.05, background_error=0.001).estimate(scaled).present
     assert ModelBasedEstimator(**SURE).estimate(scaled).present
 

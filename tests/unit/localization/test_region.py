@@ -49,17 +49,17 @@ def test_a_sure_region_is_one_cell():
 
 @pytest.mark.parametrize("away", [0, 1, 2])
 def test_shadows_of_cells_and_ellipsoid_have_the_same_extent(away):
-    exact, found = (region.shadow(away) for region in (GaussianRegion(MEAN, COVARIANCE), cells()))
-    assert len(exact) == len(found) == 1
-    for line in (*exact, *found):
+    exact, computed = (region.shadow(away) for region in (GaussianRegion(MEAN, COVARIANCE), cells()))
+    assert len(exact) == len(computed) == 1
+    for line in (*exact, *computed):
         np.testing.assert_allclose(line[0], line[-1], atol=1e-12)  # closed
     widths = np.ptp(exact[0], axis=0)
     across = [k for k in range(3) if k != away]
     np.testing.assert_allclose(widths, 2 * np.sqrt(chi2.ppf(0.9, 3)) * np.sqrt(np.diag(COVARIANCE))[across], rtol=1e-2)
-    np.testing.assert_allclose(np.ptp(found[0], axis=0), widths, atol=1.01e-3)  # cells of 1 mm
-    np.testing.assert_allclose(found[0].mean(axis=0), MEAN[across], atol=0.5e-3)
+    np.testing.assert_allclose(np.ptp(computed[0], axis=0), widths, atol=1.01e-3)  # cells of 1 mm
+    np.testing.assert_allclose(computed[0].mean(axis=0), MEAN[across], atol=0.5e-3)
     alone = 2 * np.sqrt(chi2.ppf(0.9, 1)) * np.sqrt(np.diag(COVARIANCE))[across]
-    assert not np.allclose(np.ptp(found[0], axis=0), alone, atol=1.01e-3), "the interval of each coordinate alone"
+    assert not np.allclose(np.ptp(computed[0], axis=0), alone, atol=1.01e-3), "the interval of each coordinate alone"
 
 
 def test_the_shadow_of_a_region_at_the_rim_of_the_grid_is_closed():

@@ -21,29 +21,29 @@ def by_equation(upper, lower, rows, row):
 def test_corrected_by_hand():
     # two columns, M = 5. Column 1: U = 3, L = 1, r = 1 + 4 x 1/4 = 2: 3, 4, then 4 to 1 in three steps: 3, 2, 1
     # Column 2: U = 2, L = 2, r = 3: 2, 3, 4, 3, 2
-    found = section_image(np.array([3.0, 2.0]), np.array([1.0, 2.0]), (5, 2))
-    np.testing.assert_allclose(found, np.array([[3, 4, 3, 2, 1], [2, 3, 4, 3, 2]]).T)
+    image = section_image(np.array([3.0, 2.0]), np.array([1.0, 2.0]), (5, 2))
+    np.testing.assert_allclose(image, np.array([[3, 4, 3, 2, 1], [2, 3, 4, 3, 2]]).T)
 
 
 def test_as_printed_by_hand():
     # U = 1, L = 3, M = 4: r = 4 x 1/4 = 1, the first line divides by zero at its single row, the second: 4 + (i - 1)(3 - 4)/3
-    found = section_image(np.array([1.0]), np.array([3.0]), (4, 1), "as_printed")
-    np.testing.assert_allclose(found[:, 0], [4, 4 - 1 / 3, 4 - 2 / 3, 3])
+    image = section_image(np.array([1.0]), np.array([3.0]), (4, 1), "as_printed")
+    np.testing.assert_allclose(image[:, 0], [4, 4 - 1 / 3, 4 - 2 / 3, 3])
     # U = 3, L = 1, M = 5: r = 3.75: 3 + (i - 1) x 1/2.75 up to row 3, then 4 + (i - 3.75)(1 - 4)/1.25
-    found = section_image(np.array([3.0]), np.array([1.0]), (5, 1), "as_printed")
-    np.testing.assert_allclose(found[:, 0], [3, 3 + 1 / 2.75, 3 + 2 / 2.75, 3.4, 1])
+    image = section_image(np.array([3.0]), np.array([1.0]), (5, 1), "as_printed")
+    np.testing.assert_allclose(image[:, 0], [3, 3 + 1 / 2.75, 3 + 2 / 2.75, 3.4, 1])
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_form_without_division_is_equation_2_7(seed):
     generator = np.random.default_rng(seed)
     upper, lower = generator.uniform(0.1, 2.0, (2, 9))
-    found = section_image(upper, lower, (23, 9))
+    image = section_image(upper, lower, (23, 9))
     rows = lump_rows(upper, lower, 23)
     wanted = np.array([by_equation(*column, 23, row) for *column, row in zip(upper, lower, rows, strict=True)]).T
-    np.testing.assert_allclose(found, wanted, rtol=1e-12)
+    np.testing.assert_allclose(image, wanted, rtol=1e-12)
     wrong = np.array([by_equation(*column, 23, row * 1.01) for *column, row in zip(upper, lower, rows, strict=True)]).T
-    assert np.abs(wrong / found - 1).max() > 1e-3
+    assert np.abs(wrong / image - 1).max() > 1e-3
 
 
 def test_a_lump_near_the_upper_jaw_is_shown_near_the_top_only_if_corrected():
@@ -68,12 +68,12 @@ def test_rows_where_the_printed_equations_divide_by_zero():
 @pytest.mark.parametrize("form", ["corrected", "as_printed"])
 def test_every_size_is_finite_and_between_nothing_and_the_sum(shape, form):
     upper, lower = np.array([1.0, 0.0, 2.0, 0.3]), np.array([0.5, 0.0, 0.0, 3.0])
-    found = section_image(upper, lower, shape, form)
-    assert found.shape == shape
-    assert np.isfinite(found).all()
+    image = section_image(upper, lower, shape, form)
+    assert image.shape == shape
+    assert np.isfinite(image).all()
     if form == "corrected":
-        assert found.min() >= -1e-12
-        assert found.max() <= 3.3 + 1e-12
+        assert image.min() >= -1e-12
+        assert image.max() <= 3.3 + 1e-12
 
 
 def test_bad_arrays_are_refused():

@@ -40,28 +40,28 @@ def test_place_and_depth_by_hand():
     # a/(a + b) = 0.1/0.4 from the upper jaw: z = 0.75 x 20 mm
     forces = PLAIN.copy()
     forces[:, 0:2, 2] += np.array([[0.3], [0.1]])
-    found = REFERENCE.estimate(readings(forces))
-    np.testing.assert_allclose(center(found), [30, 15, 15])
+    estimate = REFERENCE.estimate(readings(forces))
+    np.testing.assert_allclose(center(estimate), [30, 15, 15])
     np.testing.assert_allclose(
         center(ThesisEstimator(background="reference", lateral="peak").estimate(readings(forces))), [30, 15, 15]
     )
     printed = ThesisEstimator(background="reference", form="as_printed").estimate(readings(forces))
     np.testing.assert_allclose(center(printed), [30, 15, 5])
-    assert found.inclusions[0].radius is None
-    assert "400 mN more than the reference" in found.reason
+    assert estimate.inclusions[0].radius is None
+    assert "400 mN more than the reference" in estimate.reason
 
 
 def test_a_ball_of_finite_elements_is_found_within_a_millimetre():
-    found = center(REFERENCE.estimate(readings(PLAIN + BALL)))
-    assert np.abs(found - [28, 14, 12]).max() < 1.0
+    located = center(REFERENCE.estimate(readings(PLAIN + BALL)))
+    assert np.abs(located - [28, 14, 12]).max() < 1.0
     shifted = center(REFERENCE.estimate(readings(np.roll(PLAIN + BALL, 1, axis=2))))
     assert np.abs(shifted - [28, 14, 12]).max() > 5.0
 
 
 def test_what_is_softer_than_the_tissue_is_found_as_well():
-    found = REFERENCE.estimate(readings(PLAIN - 0.3 * BALL))
-    np.testing.assert_allclose(center(found), center(REFERENCE.estimate(readings(PLAIN + 0.3 * BALL))))
-    assert "less than the reference" in found.reason
+    estimate = REFERENCE.estimate(readings(PLAIN - 0.3 * BALL))
+    np.testing.assert_allclose(center(estimate), center(REFERENCE.estimate(readings(PLAIN + 0.3 * BALL))))
+    assert "less than the reference" in estimate.reason
 
 
 def test_nothing_there_is_an_answer():
@@ -69,10 +69,10 @@ def test_nothing_there_is_an_answer():
     for change, there in ((0.0, False), (7.9e-3, False), (8.1e-3, True)):
         forces = PLAIN.copy()
         forces[0, 1, 1] += change
-        found = REFERENCE.estimate(readings(forces))
-        assert found.present is there
-        assert bool(found.inclusions) is there
-        assert ("nothing there" in found.reason) is not there
+        estimate = REFERENCE.estimate(readings(forces))
+        assert estimate.present is there
+        assert bool(estimate.inclusions) is there
+        assert ("nothing there" in estimate.reason) is not there
 
 
 def test_false_alarms_of_noise_are_as_rare_as_the_threshold_says():
@@ -94,9 +94,9 @@ def test_without_a_reference_only_what_sticks_out_counts():
     assert not even.present
     forces = PLAIN.copy()
     forces[0, 2, 0] += 0.1
-    found = ThesisEstimator().estimate(readings(forces, reference=None))
-    np.testing.assert_allclose(center(found)[:2], [10, 30])
-    assert 10 < center(found)[2] < 13, "the ratio of bare forces barely leaves the middle"
+    estimate = ThesisEstimator().estimate(readings(forces, reference=None))
+    np.testing.assert_allclose(center(estimate)[:2], [10, 30])
+    assert 10 < center(estimate)[2] < 13, "the ratio of bare forces barely leaves the middle"
     with pytest.raises(InputError, match="needs readings of the tissue without a lump"):
         REFERENCE.estimate(readings(PLAIN, reference=None))
 
@@ -107,15 +107,15 @@ def test_a_dead_taxel_is_never_zero():
     assert REFERENCE.estimate(readings(np.where(valid, PLAIN, 0.0))).present, "as zero it would look like something soft"
     assert not REFERENCE.estimate(readings(np.where(valid, PLAIN, np.nan), valid=valid)).present
     dead = np.where(valid, PLAIN + BALL, np.nan)
-    found = center(REFERENCE.estimate(readings(dead, valid=valid)))
-    assert np.hypot(*(found - [28, 14, 12])[:2]) < 3.0
+    located = center(REFERENCE.estimate(readings(dead, valid=valid)))
+    assert np.hypot(*(located - [28, 14, 12])[:2]) < 3.0
     with pytest.raises(InvalidQuantity, match="U1,3"):
         readings(dead)
 
 
 def test_matrices_off_the_middle_of_the_block():
-    found = REFERENCE.estimate(readings(PLAIN + BALL, middle=np.array([22e-3, 17e-3])))
-    np.testing.assert_allclose(center(found), center(REFERENCE.estimate(readings(PLAIN + BALL))) + np.array([2, -3, 0]))
+    estimate = REFERENCE.estimate(readings(PLAIN + BALL, middle=np.array([22e-3, 17e-3])))
+    np.testing.assert_allclose(center(estimate), center(REFERENCE.estimate(readings(PLAIN + BALL))) + np.array([2, -3, 0]))
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_every_estimator_answers_and_comes_back_from_its_text(kind):
     assert type(estimator).model_validate_json(estimator.model_dump_json()) == estimator
     if estimator.needs_response or kind == "learned":  # these need the response of the tissue or weights: tests of their own
         return
-    found = estimator.estimate(readings(PLAIN + BALL))
-    assert found.present
-    assert found.reason
-    assert np.isfinite(found.inclusions[0].center).all()
+    estimate = estimator.estimate(readings(PLAIN + BALL))
+    assert estimate.present
+    assert estimate.reason
+    assert np.isfinite(estimate.inclusions[0].center).all()

@@ -23,21 +23,21 @@ BALL = np.array(
 def test_what_each_view_adds_up_by_hand():
     # rows from the front: U = [[1, 2], [3, 4], [5, 6]], L = 10 U
     upper = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
-    found = views(np.array([upper, 10 * upper]), (7, 5))
-    np.testing.assert_allclose(found.front[0, [0, -1]], [9, 12])  # 1 + 3 + 5 and 2 + 4 + 6
-    np.testing.assert_allclose(found.front[-1, [0, -1]], [90, 120])
-    np.testing.assert_allclose(found.left[0, [0, 2, -1]], [11, 7, 3])  # row 3 (the back) at the left
-    np.testing.assert_allclose(found.top[0, [0, -1]], [55, 66])  # row 3 at the top, U + L
-    np.testing.assert_allclose(found.top[3, [0, -1]], [33, 44])
-    np.testing.assert_allclose(found.top[-1, [0, -1]], [11, 22])
+    pictures = views(np.array([upper, 10 * upper]), (7, 5))
+    np.testing.assert_allclose(pictures.front[0, [0, -1]], [9, 12])  # 1 + 3 + 5 and 2 + 4 + 6
+    np.testing.assert_allclose(pictures.front[-1, [0, -1]], [90, 120])
+    np.testing.assert_allclose(pictures.left[0, [0, 2, -1]], [11, 7, 3])  # row 3 (the back) at the left
+    np.testing.assert_allclose(pictures.top[0, [0, -1]], [55, 66])  # row 3 at the top, U + L
+    np.testing.assert_allclose(pictures.top[3, [0, -1]], [33, 44])
+    np.testing.assert_allclose(pictures.top[-1, [0, -1]], [11, 22])
 
 
 def test_front_view_is_the_section_between_the_sums_of_the_columns():
     forces = np.random.default_rng(3).uniform(0, 1, (2, 4, 6))
     for form in ("corrected", "as_printed"):
-        found = views(forces, (60, 100), form=form)
-        np.testing.assert_allclose(found.front, section_image(*forces.sum(axis=1), (60, 100), form), atol=1e-12)
-        np.testing.assert_allclose(found.left, section_image(*forces.sum(axis=2)[:, ::-1], (60, 100), form), atol=1e-12)
+        pictures = views(forces, (60, 100), form=form)
+        np.testing.assert_allclose(pictures.front, section_image(*forces.sum(axis=1), (60, 100), form), atol=1e-12)
+        np.testing.assert_allclose(pictures.left, section_image(*forces.sum(axis=2)[:, ::-1], (60, 100), form), atol=1e-12)
 
 
 @pytest.mark.parametrize("rows", [2, 3, 8])
@@ -57,8 +57,8 @@ def test_the_top_view_is_the_joined_pictures_of_the_pairs(rows):
 def test_every_matrix_and_size_has_finite_views(matrix, shape):
     forces = np.random.default_rng(1).uniform(0, 1, (2, *matrix))
     for given in (forces, 0 * forces, -forces):
-        found = views(given, shape)
-        for image in (found.front, found.left, found.top):
+        pictures = views(given, shape)
+        for image in (pictures.front, pictures.left, pictures.top):
             assert image.shape == shape
             assert np.isfinite(image).all()
             assert image.min() >= 0
@@ -68,18 +68,18 @@ def test_every_matrix_and_size_has_finite_views(matrix, shape):
 
 
 def test_without_signal_everything_is_black():
-    found = views(np.zeros((2, 3, 3)))
-    assert max(image.max() for image in (found.front, found.left, found.top)) == 0
+    pictures = views(np.zeros((2, 3, 3)))
+    assert max(image.max() for image in (pictures.front, pictures.left, pictures.top)) == 0
 
 
 def test_a_ball_of_finite_elements_is_shown_where_it_lies():
-    found = views(BALL, (61, 101))
-    row, column = np.unravel_index(found.front.argmax(), found.front.shape)
+    pictures = views(BALL, (61, 101))
+    row, column = np.unravel_index(pictures.front.argmax(), pictures.front.shape)
     assert 10e-3 + 20e-3 * column / 100 == pytest.approx(28e-3, abs=2.5e-3)
     assert 20e-3 * (1 - row / 60) == pytest.approx(12e-3, abs=2.5e-3)
-    row, column = np.unravel_index(found.top.argmax(), found.top.shape)
+    row, column = np.unravel_index(pictures.top.argmax(), pictures.top.shape)
     assert 30e-3 - 20e-3 * row / 60 == pytest.approx(14e-3, abs=2.5e-3)
-    row, column = np.unravel_index(found.left.argmax(), found.left.shape)
+    row, column = np.unravel_index(pictures.left.argmax(), pictures.left.shape)
     assert 30e-3 - 20e-3 * column / 100 == pytest.approx(14e-3, abs=5e-3)
     printed = views(BALL, (61, 101), form="as_printed")
     row, _ = np.unravel_index(printed.front.argmax(), printed.front.shape)
@@ -87,10 +87,10 @@ def test_a_ball_of_finite_elements_is_shown_where_it_lies():
 
 
 def test_the_volume_has_both_jaws_as_its_ends_and_its_maximum_at_the_ball():
-    found = volume(BALL, (21, 21, 21))
-    np.testing.assert_allclose(found[0, [0, -1]][:, [0, -1]], BALL[0][[0, -1]][:, [0, -1]])
-    np.testing.assert_allclose(found[-1, [0, -1]][:, [0, -1]], BALL[1][[0, -1]][:, [0, -1]])
-    depth, _, across = np.unravel_index(found.argmax(), found.shape)
+    voxels = volume(BALL, (21, 21, 21))
+    np.testing.assert_allclose(voxels[0, [0, -1]][:, [0, -1]], BALL[0][[0, -1]][:, [0, -1]])
+    np.testing.assert_allclose(voxels[-1, [0, -1]][:, [0, -1]], BALL[1][[0, -1]][:, [0, -1]])
+    depth, _, across = np.unravel_index(voxels.argmax(), voxels.shape)
     assert 0.2 < depth / 20 < 0.5
     assert across == 20
 
@@ -102,8 +102,8 @@ def test_invalid_taxels_lie_between_their_neighbours():
     broken = np.where(valid, forces, np.nan)
     np.testing.assert_allclose(checked_readings(broken, valid), forces)  # mean of 1, 3, 5, 7 is 4
     valid[0, 1, 2] = False  # a at the middle, b right: 4 a = 1 + 3 + 7 + b, 3 b = 2 + 8 + a: a = 43/11, b = 51/11
-    found = checked_readings(np.where(valid, forces, 1e9), valid)
-    np.testing.assert_allclose(found[0, 1], [3, 43 / 11, 51 / 11])
+    readings = checked_readings(np.where(valid, forces, 1e9), valid)
+    np.testing.assert_allclose(readings[0, 1], [3, 43 / 11, 51 / 11])
     assert np.isfinite(views(broken, valid=valid).front).all()
     np.testing.assert_allclose(views(broken, valid=np.isfinite(broken)).top, views(forces).top)
 

@@ -36,9 +36,9 @@ def test_a_kind_is_read_with_its_constants():
 
 def test_a_set_takes_another_bulk_modulus():
     plain = named_material("icf_stable").material
-    found = read({"set": "icf_stable", "bulk_modulus": "1 MPa"})
-    assert found.bulk_modulus == 1e6
-    assert found.model_copy(update={"bulk_modulus": None}) == plain
+    material = read({"set": "icf_stable", "bulk_modulus": "1 MPa"})
+    assert material.bulk_modulus == 1e6
+    assert material.model_copy(update={"bulk_modulus": None}) == plain
     assert read({"set": "icf_stable", "bulk_modulus": None}) == plain
 
 
@@ -74,7 +74,7 @@ def test_a_material_passes_as_it_is():
         ({"kind": "polynomial", "coefficients": {"c100": "3 kPa"}}, "c100"),
     ],
 )
-def test_what_is_no_material_is_told(value, words):
+def test_what_is_no_material_is_reported(value, words):
     with pytest.raises(ValidationError, match=words):
         read(value)
 

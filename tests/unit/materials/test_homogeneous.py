@@ -41,10 +41,10 @@ def closed_form(path: str, stretch: np.ndarray, c10: float, c01: float) -> np.nd
 
 @pytest.mark.parametrize("path", sorted(PATHS))
 def test_two_parameter_closed_forms(path):
-    found = nominal_stress(MooneyRivlin2(c10=1.0, c01=0.25), path, STRETCH)
-    np.testing.assert_allclose(found, closed_form(path, STRETCH, 1.0, 0.25), rtol=1e-13, atol=1e-15)
+    computed = nominal_stress(MooneyRivlin2(c10=1.0, c01=0.25), path, STRETCH)
+    np.testing.assert_allclose(computed, closed_form(path, STRETCH, 1.0, 0.25), rtol=1e-13, atol=1e-15)
     with pytest.raises(AssertionError):
-        np.testing.assert_allclose(found, closed_form(path, STRETCH, 1.0, 0.25 * (1 + 1e-11)), rtol=1e-13, atol=1e-15)
+        np.testing.assert_allclose(computed, closed_form(path, STRETCH, 1.0, 0.25 * (1 + 1e-11)), rtol=1e-13, atol=1e-15)
 
 
 @pytest.mark.parametrize("path", sorted(PATHS))

@@ -13,7 +13,7 @@ from tactsim.relaxation import Relaxation
 
 
 @pytest.mark.parametrize("name", sorted(LIBRARY))
-def test_a_shipped_set_tells_its_source_note_and_errors(name):
+def test_a_shipped_set_reports_its_source_note_and_errors(name):
     entry = named_material(name)
     text = material_report(name, entry.material)
     assert text.startswith(f"{name} ({entry.material.kind})\n")
@@ -56,7 +56,7 @@ def test_incompressible_is_said():
     assert "infinite (exactly incompressible)" in material_report("mine", NeoHookean(c10=3e3))
 
 
-def test_relaxation_is_told_with_its_times():
+def test_relaxation_is_reported_with_its_times():
     relaxing = NeoHookean(c10=1000.0, relaxation=Relaxation(fractions=(0.25,), times=(2.0,)))
     text = material_report("mine", relaxing)
     assert "shear G at once    2 kPa" in text

@@ -80,7 +80,7 @@ def test_the_conditions_are_those_of_the_acoustic_form(first, second, seed):
 
 
 def test_both_verdicts_occur_and_another_condition_is_seen():
-    """Twin: Drucker's condition is another one, and is told apart by the same states."""
+    """Twin: Drucker's condition is another one, and is distinguished by the same states."""
     generator = np.random.default_rng(21)
     truth, elliptic, drucker = [], [], []
     for seed in range(120):
@@ -166,8 +166,8 @@ def test_volume_and_rotation_do_not_matter_and_an_inverted_point_is_not_elliptic
 @settings(derandomize=True, max_examples=100, deadline=None)
 @given(arrays.arrays(float, (3, 3), elements=st.floats(-3, 3)))
 def test_principal_stretches_are_the_singular_values(F):
-    found, expected = principal_stretches(F[:, :, None])[:, 0], np.linalg.svd(F, compute_uv=False)
-    assert np.abs(found**2 - expected**2).max() <= 1e-7 * expected[0] ** 2 + 1e-15  # arc cosine at its end: root of round-off
+    computed, expected = principal_stretches(F[:, :, None])[:, 0], np.linalg.svd(F, compute_uv=False)
+    assert np.abs(computed**2 - expected**2).max() <= 1e-7 * expected[0] ** 2 + 1e-15  # arc cosine at its end: root of round-off
 
 
 def test_separate_principal_stretches_are_found_to_round_off():
@@ -200,8 +200,8 @@ def test_drucker_is_the_curvature_by_the_logarithmic_strains():
             corners = energy(strain + a + b) - energy(strain + a - b) - energy(strain - a + b) + energy(strain - a - b)
             hessian[i, j] = corners / (4 * step**2)
         smallest = np.linalg.eigvalsh(hessian)[0]
-        found = float(drucker_margin(material, np.exp(plane @ strain)))
-        assert found == pytest.approx(smallest, abs=1e-5 * np.abs(hessian).max())  # truncation 1e-8, round-off 1e-16 / 1e-8
+        computed = float(drucker_margin(material, np.exp(plane @ strain)))
+        assert computed == pytest.approx(smallest, abs=1e-5 * np.abs(hessian).max())  # truncation 1e-8, round-off 1e-16 / 1e-8
 
 
 def test_drucker_of_a_neo_hookean_material_at_rest_is_twice_the_shear_modulus():
@@ -226,9 +226,9 @@ def test_sampled_directions_judge_like_the_exact_conditions(kind):
     material = kinds(Material)[kind].example()
     logarithm = np.random.default_rng(5).normal(scale=0.5, size=(3, 300))
     stretches = np.exp(logarithm - logarithm.mean(axis=0))
-    exact, found = ellipticity_margin(material, stretches), sampled_ellipticity_margin(material, diagonal(stretches))
-    assert not (found[exact > 0] <= 0).any()
-    assert ((found > 0) != (exact > 0)).mean() < 0.03
+    exact, computed = ellipticity_margin(material, stretches), sampled_ellipticity_margin(material, diagonal(stretches))
+    assert not (computed[exact > 0] <= 0).any()
+    assert ((computed > 0) != (exact > 0)).mean() < 0.03
     np.testing.assert_allclose(
         sampled_drucker_margin(material, stretches),
         drucker_margin(material, stretches),

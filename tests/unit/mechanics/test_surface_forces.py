@@ -51,13 +51,13 @@ def pressed(places, traction):
 )
 def test_uniform_pressure_reads_itself(cells, layout):
     places = sheet(40e-3, cells)
-    found = taxel_forces(layout, places, pressed(places, [1.0, -2.0, 3e3]), POINTS)
+    forces = taxel_forces(layout, places, pressed(places, [1.0, -2.0, 3e3]), POINTS)
     expected = np.array([1.0, -2.0, 3e3]) * layout.area
-    np.testing.assert_allclose(found.taxels, np.broadcast_to(expected[:, None, None], found.taxels.shape), rtol=1e-10)
+    np.testing.assert_allclose(forces.taxels, np.broadcast_to(expected[:, None, None], forces.taxels.shape), rtol=1e-10)
     width, depth = layout.extent()
     matrix = width * depth - layout.rows * layout.columns * layout.area
-    np.testing.assert_allclose(found.gaps, np.array([1.0, -2.0, 3e3]) * matrix, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(found.total, np.array([1.0, -2.0, 3e3]) * 1.6e-3, rtol=1e-12)
+    np.testing.assert_allclose(forces.gaps, np.array([1.0, -2.0, 3e3]) * matrix, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(forces.total, np.array([1.0, -2.0, 3e3]) * 1.6e-3, rtol=1e-12)
 
 
 def test_a_linear_pressure_has_its_moment():
@@ -66,9 +66,9 @@ def test_a_linear_pressure_has_its_moment():
     forces = np.zeros((3, *at.shape[:2]))
     forces[2] = (1e3 + 1e5 * at[..., 0]) * (2 * areas(places))[:, None] * W
     layout = TaxelLayout()
-    found = taxel_forces(layout, places, forces, POINTS).taxels[2]
+    moments = taxel_forces(layout, places, forces, POINTS).taxels[2]
     expected = (1e3 + 1e5 * layout.borders("x").mean(axis=1)) * layout.area
-    np.testing.assert_allclose(found, np.broadcast_to(expected, (3, 3)), rtol=1e-10, atol=1e-15)
+    np.testing.assert_allclose(moments, np.broadcast_to(expected, (3, 3)), rtol=1e-10, atol=1e-15)
 
 
 def test_curved_facets_lose_nothing_and_converge():
@@ -81,8 +81,8 @@ def test_curved_facets_lose_nothing_and_converge():
 def test_tissue_that_covers_half_a_taxel_and_none():
     layout = TaxelLayout(rows=1, columns=2, pitch=10e-3, size=8e-3)
     places = sheet(10e-3, 3) + np.array([5e-3, 0.0])
-    found = taxel_forces(layout, places, pressed(places, [0.0, 0.0, 1.0]), POINTS)
-    assert found.taxels[2, 0] == pytest.approx([0.0, 8e-3**2], abs=1e-15)
+    forces = taxel_forces(layout, places, pressed(places, [0.0, 0.0, 1.0]), POINTS)
+    assert forces.taxels[2, 0] == pytest.approx([0.0, 8e-3**2], abs=1e-15)
     shifted = taxel_forces(layout, places + np.array([4e-3, 0.0]), pressed(places, [0.0, 0.0, 1.0]), POINTS)
     assert shifted.taxels[2, 0] == pytest.approx([0.0, 5e-3 * 8e-3], abs=1e-15)
 
@@ -90,9 +90,9 @@ def test_tissue_that_covers_half_a_taxel_and_none():
 def test_row_one_is_at_the_front_and_column_one_at_the_left():
     layout = TaxelLayout()
     places = sheet(4e-3, 1) + np.array([-10e-3, 10e-3])
-    found = taxel_forces(layout, places, pressed(places, [0.0, 0.0, 1.0]), POINTS).taxels[2]
-    assert np.unravel_index(found.argmax(), (3, 3)) == (2, 0)
-    assert np.count_nonzero(found) == 1
+    forces = taxel_forces(layout, places, pressed(places, [0.0, 0.0, 1.0]), POINTS).taxels[2]
+    assert np.unravel_index(forces.argmax(), (3, 3)) == (2, 0)
+    assert np.count_nonzero(forces) == 1
 
 
 def test_impossible_layouts_and_points_are_refused():

@@ -105,7 +105,7 @@ def test_a_size_that_is_not_positive_is_refused(size):
         section_mesh(RADIUS, HEIGHTS, size)
 
 
-def test_rings_that_the_elements_cannot_tell_apart_are_refused():
+def test_rings_that_the_elements_cannot_distinguish_are_refused():
     with pytest.raises(InputError, match="too coarse"):
         section_mesh(RADIUS, HEIGHTS, lambda points: np.full(len(points), 5e-3), rings=(1.5e-3, 1.51e-3))
 

@@ -264,15 +264,15 @@ def mirrored(mesh, extent, axis):
     places = (mesh.nodes[mesh.elements[:, :4]] * 1e9).round().astype(np.int64)
     image = places.copy()
     image[..., axis] = round(extent * 1e9) - image[..., axis]
-    return [{tuple(map(tuple, sorted(element.tolist()))) for element in found} for found in (places, image)]
+    return [{tuple(map(tuple, sorted(element.tolist()))) for element in corners} for corners in (places, image)]
 
 
 def test_layers_around_a_centred_lump_are_their_own_mirror_image():
     centred = Sphere(center=tuple(side / 2 for side in SIZE), radius=4e-3)
     mesh = morphed_block(SIZE, centred).mesh
     for axis in range(3):
-        found, image = mirrored(mesh, SIZE[axis], axis)
-        assert found == image
+        elements, image = mirrored(mesh, SIZE[axis], axis)
+        assert elements == image
     split = structured_block(SIZE, (4, 4, 2)).mesh
-    found, image = mirrored(split, SIZE[0], 0)
-    assert found != image
+    elements, image = mirrored(split, SIZE[0], 0)
+    assert elements != image

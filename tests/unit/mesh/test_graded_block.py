@@ -21,13 +21,13 @@ COARSE = BlockMeshSettings(size=6e-3, inclusion_size=5e-3, edge_size=1.6e-3, gro
 
 def mirrored(mesh, axis):
     """Whether the corners and the centres of the elements are their own mirror image."""
-    found = True
+    same = True
     for points in (mesh.nodes, mesh.nodes[mesh.elements].mean(axis=1)):
         image = points.copy()
         image[:, axis] = SIZE[axis] - image[:, axis]
         places = [np.round(p * 1e9).astype(np.int64) for p in (points, image)]
-        found &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
-    return found
+        same &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
+    return same
 
 
 def random_lumps(count):

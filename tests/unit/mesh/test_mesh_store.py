@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
@@ -14,7 +15,7 @@ from tactsim.errors import InvalidQuantity, StorageError
 from tactsim.mesh import mesh_store
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
-from tactsim.mesh.manifest import MANIFEST, ManifestEntry, add_entry
+from tactsim.mesh.manifest import MANIFEST, entries
 from tactsim.mesh.mesh_store import cache_folder, content_hash, stored_block_mesh, write_block_mesh
 from tactsim.mesh.structured_block import morphed_block
 from tactsim.mesh.tetrahedra import mesh_key
@@ -97,9 +98,9 @@ def test_a_damaged_entry_is_made_again(damage, mesher, tmp_path):
 
 def test_writers_at_the_same_time_end_with_one_mesh(mesher, tmp_path):
     with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda _: stored(tmp_path), range(4)))
-    assert len({one.content for one in found}) == 1
-    assert stored(tmp_path).content == found[0].content
+        meshes = list(pool.map(lambda _: stored(tmp_path), range(4)))
+    assert len({one.content for one in meshes}) == 1
+    assert stored(tmp_path).content == meshes[0].content
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".npz"]
 
 
@@ -112,15 +113,17 @@ def ship(folder, block, **changes):
     folder.mkdir(exist_ok=True)
     write_block_mesh(block, folder / "lump.npz")
     entry = {"name": "lump", "file": "lump.npz", "key": block.key, "content": content_hash(block.mesh)}
-    add_entry(folder, ManifestEntry(**{**entry, "source": "made for a test: 'quoted'", "licence": "MIT", **changes}))
+    entry |= {"source": "made for a test: 'quoted'", "licence": "MIT"} | changes
+    listed = [*(known.model_dump() for known in entries(folder)), entry]
+    (folder / MANIFEST).write_text(json.dumps(listed), encoding="utf-8")
 
 
 def test_a_shipped_mesh_comes_first_and_a_wrong_one_is_refused(mesher, tmp_path):
     folder, made = tmp_path / "meshes", stored(tmp_path)
     ship(folder, made.block, key="0" * 16)
     ship(folder, made.block)
-    found = stored(tmp_path)
-    assert (found.origin, found.content, mesher.calls) == ("shipped", made.content, 1)
+    shipped = stored(tmp_path)
+    assert (shipped.origin, shipped.content, mesher.calls) == ("shipped", made.content, 1)
     (folder / "lump.npz").write_bytes(b"damaged")
     with pytest.raises(StorageError, match=r"lump\.npz"):
         stored(tmp_path)

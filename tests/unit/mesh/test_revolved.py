@@ -88,8 +88,8 @@ def test_planes_of_symmetry_are_exact():
 def test_facets_of_the_top_come_from_its_edges():
     edges = facets_where(SECTION, on_plane(1, 0.0))
     sweep = swept(SECTION, *HALF)
-    found = sweep.facets_from(edges)
-    assert {tuple(facet) for facet in np.sort(found, axis=1)} == {
+    facets = sweep.facets_from(edges)
+    assert {tuple(facet) for facet in np.sort(facets, axis=1)} == {
         tuple(facet) for facet in np.sort(facets_where(sweep.mesh, on_plane(2, 0.0)), axis=1)
     }
 

@@ -41,17 +41,17 @@ def alone(corners, simplices, size):
 def test_edges_of_a_split_grid_get_two_tetrahedra_and_the_mesh_stays_whole():
     corners, simplices, labels, walls = split_grid()
     assert alone(corners, simplices, SIZE) == 10, "of twenty: the case is one that the function must mend"
-    found, finer, kept, around = without_wedges(corners, simplices, labels, walls)
-    assert alone(found, finer, SIZE) == 0
-    np.testing.assert_array_equal(found[: len(corners)], corners)
-    assert (volumes(found, finer) > 0).all()
-    assert volumes(found, finer).sum() == pytest.approx(SIZE.prod(), rel=1e-12)
+    moved, finer, kept, around = without_wedges(corners, simplices, labels, walls)
+    assert alone(moved, finer, SIZE) == 0
+    np.testing.assert_array_equal(moved[: len(corners)], corners)
+    assert (volumes(moved, finer) > 0).all()
+    assert volumes(moved, finer).sum() == pytest.approx(SIZE.prod(), rel=1e-12)
     assert len(kept) == len(finer)
     facets, counts = np.unique(np.sort(finer[:, SIDES].reshape(-1, 3), axis=1), axis=0, return_counts=True)
     assert set(counts.tolist()) == {1, 2}, "neighbours share whole sides"
     assert {tuple(t) for t in facets[counts == 1].tolist()} == {tuple(t) for t in around.triangles.tolist()}
     for number, (_, axis, end) in enumerate(FACES):
-        on_face = found[around.triangles[around.patch == number]]
+        on_face = moved[around.triangles[around.patch == number]]
         np.testing.assert_allclose(on_face[..., axis], end * SIZE[axis], atol=1e-12)
         area = np.linalg.norm(np.cross(on_face[:, 1] - on_face[:, 0], on_face[:, 2] - on_face[:, 0]), axis=1).sum() / 2
         assert area == pytest.approx(SIZE.prod() / SIZE[axis])

@@ -22,9 +22,9 @@ def npz(**arrays: Any) -> bytes:
 
 def test_arrays_come_back() -> None:
     arrays = {"a": np.arange(6.0).reshape(2, 3), "words": np.array(["x", "yz"]), "none": np.zeros((0, 3))}
-    found = read_arrays(npz(**arrays), "file")
-    assert found.keys() == arrays.keys()
-    assert all(np.array_equal(found[name], array) for name, array in arrays.items())
+    loaded = read_arrays(npz(**arrays), "file")
+    assert loaded.keys() == arrays.keys()
+    assert all(np.array_equal(loaded[name], array) for name, array in arrays.items())
 
 
 def test_more_than_is_expected_is_refused_before_it_is_unpacked() -> None:
@@ -49,7 +49,7 @@ def test_objects_are_refused() -> None:
         read_arrays(npz(a=np.array([{"x": 1}], dtype=object)), "file")
 
 
-def test_damage_is_told() -> None:
+def test_damage_is_reported() -> None:
     content = npz(a=np.arange(100.0), b=np.arange(3))
     for cut in range(0, len(content) - 1, 7):
         with pytest.raises(StorageError, match="file is damaged"):

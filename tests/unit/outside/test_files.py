@@ -59,7 +59,7 @@ def test_a_file_has_a_largest_size() -> None:
         file.read()
 
 
-def test_other_bytes_than_text_are_told() -> None:
+def test_other_bytes_than_text_are_reported() -> None:
     Path("a").write_bytes(b"ok\xff")
     with pytest.raises(Unreadable, match="byte 0xff at 2 is not UTF-8 text; save it as UTF-8"):
         opened("a", "table").text()

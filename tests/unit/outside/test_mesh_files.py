@@ -36,16 +36,16 @@ def mesh(tmp_path: Path) -> Path:
 
 def test_warnings_of_the_reader_are_warnings_here(mesh: Path) -> None:
     with pytest.warns(MeshFileWarning, match=r"cut\.msh: \$Elements not closed by \$EndElements") as caught:
-        found = read_mesh_file(opened(mesh, "mesh"))
+        loaded = read_mesh_file(opened(mesh, "mesh"))
     assert len(caught) == 1
-    assert [kind for kind, _ in found.cells] == ["triangle"]
+    assert [kind for kind, _ in loaded.cells] == ["triangle"]
 
 
 @pytest.mark.filterwarnings("default::tactsim.outside.mesh_files.MeshFileWarning")
-def test_they_are_told_as_those_of_the_library(mesh: Path) -> None:
-    with collected_warnings() as said:
+def test_they_are_reported_as_those_of_the_library(mesh: Path) -> None:
+    with collected_warnings() as collected:
         read_mesh_file(opened(mesh, "mesh"))
-    assert [line.split(":")[0] for line in said.lines()] == ["meshio"]
+    assert [line.split(":")[0] for line in collected.lines()] == ["meshio"]
 
 
 def test_a_whole_file_is_read_without_a_word(mesh: Path) -> None:

@@ -32,7 +32,7 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> object:
     return made
 
 
-def test_a_child_that_ends_tells_how(module) -> None:
+def test_a_child_that_ends_reports_how(module) -> None:
     done = run_child(module("import sys\nprint('a\\x1b[31m', sys.argv[1:])\nsys.exit(3)"), ["b"], time_limit=30)
     assert (done.code, done.ending, done.out_of_time) == (3, "exit code 3", False)
     assert done.last_line == "a\\x1b[31m ['b']"
@@ -53,7 +53,7 @@ def test_a_child_that_takes_too_much_memory_is_refused_it(module) -> None:
 
 def test_a_child_that_talks_without_end_fills_no_memory(module) -> None:
     done = run_child(module("for k in range(300000): print('x' * 99)\nprint('end')"), [], time_limit=60)
-    assert len(done.said) <= processes.LAST_WORDS
+    assert len(done.error_output) <= processes.LAST_WORDS
     assert done.last_line == "end"
 
 
@@ -82,7 +82,7 @@ def test_a_child_ends_with_its_parent(tmp_path: Path) -> None:
     pytest.fail("the child outlived its parent")
 
 
-def test_a_worker_answers_and_its_end_is_told(module) -> None:
+def test_a_worker_answers_and_its_end_is_reported(module) -> None:
     worker = Worker(
         module(
             "import sys\nfrom multiprocessing.connection import Connection\nc = Connection(int(sys.argv[1]))\n"

@@ -38,7 +38,7 @@ def test_a_result_comes_back_as_it_was() -> None:
     assert again == replace(result, quantities=plain, frames=())
 
 
-def test_a_scene_that_is_not_that_of_the_kind_is_told_when_it_is_asked_for() -> None:
+def test_a_scene_that_is_not_that_of_the_kind_is_reported_when_it_is_asked_for() -> None:
     register(PretendedScene)
     result = pretended_result(Status.CONVERGED, "done", RECORDS)
     content = json.loads(document_text(result, "x"))
@@ -106,7 +106,7 @@ def test_numpy_values_are_written_as_numbers() -> None:
         ('{"schema_version": 2, "case_id": "x", "kind": "k", "status": "fine"}', "is damaged: status"),
     ],
 )
-def test_what_is_no_result_is_told(text: str, words: str) -> None:
+def test_what_is_no_result_is_reported(text: str, words: str) -> None:
     with pytest.raises(StorageError, match=r"^place/result\.json") as caught:
         parse_document(text, "place/result.json")
     assert words in str(caught.value)

@@ -67,7 +67,7 @@ def test_no_frames_no_files(tmp_path: Path) -> None:
     assert read_fields(tmp_path) == ()
 
 
-def test_a_damaged_file_is_told(tmp_path: Path) -> None:
+def test_a_damaged_file_is_reported(tmp_path: Path) -> None:
     write_fields(FRAMES, tmp_path)
     content = (tmp_path / "fields_0001.vtu").read_bytes()
     for length in (*range(0, len(content) - 1, len(content) // 9), len(content) - 20):  # every tenth byte: see the fuzzed files

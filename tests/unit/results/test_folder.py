@@ -163,7 +163,7 @@ def test_what_a_dead_run_left_is_tidied(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "a\0b", "file/out"])
-def test_impossible_places_are_told(tmp_path: Path, name: str) -> None:
+def test_impossible_places_are_reported(tmp_path: Path, name: str) -> None:
     (tmp_path / "file").write_text("x", encoding="utf-8")
     with pytest.raises(StorageError, match="cannot write"):
         publish(tmp_path / name)

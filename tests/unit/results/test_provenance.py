@@ -10,7 +10,7 @@ from tactsim.experiments.threshold.catheter_tip import CatheterTip
 from tactsim.results.provenance import provenance
 
 
-def test_versions_code_case_and_seeds_are_told() -> None:
+def test_versions_code_case_and_seeds_are_reported() -> None:
     given = {"case_file": "/home/someone/case.yaml", "overrides": ["a=/tmp/y.stl"], "seeds": {"readout.seed": 3}}
     content = provenance({"title": "x"}, "abc", **given)
     assert content["versions"]["tactsim"] == __version__
@@ -21,7 +21,7 @@ def test_versions_code_case_and_seeds_are_told() -> None:
     assert (content["case_file"], content["overrides"]) == ("case.yaml", ["a=y.stl"])
 
 
-def test_no_folder_user_or_host_is_told() -> None:
+def test_no_folder_user_or_host_is_reported() -> None:
     case = {"mesh": "/home/someone/part.stl", "other": [r"C:\Users\someone\part.stl"], "relative": "meshes/part.stl"}
     content = provenance(case, "abc")
     assert content["case"] == {"mesh": "part.stl", "other": ["part.stl"], "relative": "meshes/part.stl"}

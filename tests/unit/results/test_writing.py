@@ -70,7 +70,7 @@ def test_a_figure_stays_in_its_folder(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == []
 
 
-def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_what_cannot_be_read_is_reported(tmp_path: Path) -> None:
     place = write_result(RESULT, tmp_path / "out", case_id="x", provenance={})
     for content in ("{", "[]", "[" * 100_000):
         (place / "provenance.json").write_text(content, encoding="utf-8")

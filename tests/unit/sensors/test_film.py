@@ -99,9 +99,9 @@ def test_streaming_equals_the_whole_record():
     state, parts, back_state, back = None, [], None, []
     for begin, end in ((0, 1), (1, 7), (7, 250), (250, 500)):
         part, state = film.advance(state, times[begin:end], force[begin:end])
-        found, back_state = film.retreat(back_state, times[begin:end], part)
+        forces, back_state = film.retreat(back_state, times[begin:end], part)
         parts.append(part)
-        back.append(found)
+        back.append(forces)
     np.testing.assert_array_equal(np.concatenate(parts), whole)
     np.testing.assert_allclose(np.concatenate(back), force, rtol=1e-10)
 
@@ -136,10 +136,10 @@ def test_a_smaller_film_is_strained_by_its_pressure():
 
 
 def test_the_identified_resistances_are_those_of_the_line():
-    found = identify_film(named_composite("lingstat_literal"), (THESIS_LINE.slope, THESIS_LINE.intercept))
+    identified = identify_film(named_composite("lingstat_literal"), (THESIS_LINE.slope, THESIS_LINE.intercept))
     shipped = named_composite("lingstat_identified")
-    assert shipped.initial_resistance == pytest.approx(found.initial_resistance, rel=1e-4)
-    assert shipped.contact_resistance == pytest.approx(found.contact_resistance, rel=1e-4)
+    assert shipped.initial_resistance == pytest.approx(identified.initial_resistance, rel=1e-4)
+    assert shipped.contact_resistance == pytest.approx(identified.contact_resistance, rel=1e-4)
     assert shipped.initial_resistance != pytest.approx(
         identify_film(shipped, (THESIS_LINE.slope, THESIS_LINE.intercept), forces=(0.5, 8.0)).initial_resistance, rel=0.05
     )
@@ -152,7 +152,7 @@ def test_varying_coefficients_in_2_1_14_do_not_give_2_3_1():
 
 
 @pytest.mark.parametrize(
-    ("times", "forces", "told"),
+    ("times", "forces", "message"),
     [
         ([0, 1], [1, -0.1], "force -0.1 N of sample 1"),
         ([0, 1], [1, 101.0], "allowed: 0 to 100 N"),
@@ -164,8 +164,8 @@ def test_varying_coefficients_in_2_1_14_do_not_give_2_3_1():
         ([0, 1], [1, 1, 1], "one for each of 2 times"),
     ],
 )
-def test_bad_histories_are_refused(times, forces, told):
-    with pytest.raises(InvalidQuantity, match=told):
+def test_bad_histories_are_refused(times, forces, message):
+    with pytest.raises(InvalidQuantity, match=message):
         Film().conductance(times, forces)
 
 

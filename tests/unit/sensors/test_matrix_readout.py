@@ -44,7 +44,7 @@ def test_channels_differ_by_the_seed_of_their_scatter():
     assert np.ptp(PLAIN.read(TIMES, np.full((2, 2, 3, 3), 0.3), AREA).voltage[-1]) == 0
 
 
-def test_a_pull_reads_as_no_force_and_is_told():
+def test_a_pull_reads_as_no_force_and_is_reported():
     pulled = FORCES.copy()
     pulled[-1, 0, 0, 0] = -1e-3
     reading = PLAIN.read(TIMES, pulled, AREA)

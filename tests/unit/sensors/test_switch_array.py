@@ -38,9 +38,9 @@ def test_a_clean_touch_is_right_to_one_sample():
     (touch,) = read_switches(array, *touch_signals()).touches
     assert touch.complete(array)
     expected = 0.1 + array.heights / RATE
-    found = np.array([closing.time for closing in touch.closings])
+    times = np.array([closing.time for closing in touch.closings])
     assert touch.start - 0.1 == pytest.approx(STEP, abs=0.01 * STEP)
-    assert ((found > expected) & (found <= expected + 1.001 * STEP)).all()
+    assert ((times > expected) & (times <= expected + 1.001 * STEP)).all()
     assert np.abs(touch.intervals() - 1.0).max() <= 1.001 * STEP
     forces = np.array([closing.force for closing in touch.closings])
     assert (np.abs(forces - STIFFNESS * array.heights) <= 1.001 * STIFFNESS * RATE * STEP).all()
@@ -87,10 +87,10 @@ def test_false_switches_come_as_often_as_the_noise_predicts(times):
     samples, noise = 100_000, 1e-3
     generator = np.random.default_rng(3)
     signals = generator.normal(0, noise, (samples, 5))
-    found = rising(signals, times * noise, np.full(5, np.inf)).mean(axis=0)
+    counted = rising(signals, times * noise, np.full(5, np.inf)).mean(axis=0)
 
     def holds(predicted):
-        return ((found > predicted / 2) & (found < 2 * predicted)).all()
+        return ((counted > predicted / 2) & (counted < 2 * predicted)).all()
 
     assert holds(false_switching_rate(times))
     assert not holds(false_switching_rate(times + 0.5))
@@ -106,9 +106,9 @@ def test_false_switches_of_the_algorithm_and_none_at_eight():
         array = SwitchArray(touch_threshold=0.5, switch_threshold=times * noise, fall=0.1)
         touches = read_switches(array, time, force, switches).touches
         assert len(touches) == count
-        found = sum(len(touch.closings) for touch in touches)
+        counted = sum(len(touch.closings) for touch in touches)
         predicted = 5 * count * (1 - (1 - false_switching_rate(times)) ** (period - 1))
-        assert (found == 0) if few else (predicted / 2 < found < 2 * predicted)
+        assert (counted == 0) if few else (predicted / 2 < counted < 2 * predicted)
 
 
 def test_the_rate_is_that_of_two_gaussian_samples():
@@ -146,7 +146,7 @@ def test_a_switch_that_first_presses_on_the_way_back_is_not_recorded():
     assert [closing.switch for closing in touch.closings] == [1, 2, 3, 4]
     assert touch.mean_rate(array) is None
     (wide,) = read_switches(SwitchArray(fall=0.2), time, force, switches).touches
-    assert len(wide.closings) == 5, "a fall that is never reached tells nothing"
+    assert len(wide.closings) == 5, "a fall that is never reached shows nothing"
 
 
 def test_a_pause_and_a_second_push_are_one_touch():

@@ -21,11 +21,11 @@ TRIGGER = ThresholdTrigger(np.array(0.0), np.array(0.2))
 
 
 def test_the_first_sample_beyond_the_level_captures_the_large_sensor():
-    found = reported_threshold(TRIGGER.captured(LARGE, SMALL), TIMES, area=2.0, touch=0.25)
-    assert (found.index, found.time, found.force, found.pressure) == (3, 0.3, 3.0, 1.5)
-    assert found.triggered
-    assert found.valid
-    assert not found.false
+    threshold = reported_threshold(TRIGGER.captured(LARGE, SMALL), TIMES, area=2.0, touch=0.25)
+    assert (threshold.index, threshold.time, threshold.force, threshold.pressure) == (3, 0.3, 3.0, 1.5)
+    assert threshold.triggered
+    assert threshold.valid
+    assert not threshold.false
     early = reported_threshold(TRIGGER.captured(LARGE, SMALL), TIMES, area=2.0, touch=0.35)
     assert early.false
     assert not early.valid
@@ -34,10 +34,10 @@ def test_the_first_sample_beyond_the_level_captures_the_large_sensor():
 def test_a_level_that_is_only_reached_does_not_trigger():
     state = ThresholdTrigger(np.array(0.0), np.array(0.4)).captured(LARGE, SMALL)
     assert state.index == UNTRIGGERED
-    found = reported_threshold(state, TIMES, area=1.0, touch=0.0)
-    assert not found.triggered
-    assert not found.valid
-    assert found.force == 0
+    threshold = reported_threshold(state, TIMES, area=1.0, touch=0.0)
+    assert not threshold.triggered
+    assert not threshold.valid
+    assert threshold.force == 0
 
 
 def test_saturation_counts_up_to_the_capture_and_not_after():
@@ -78,9 +78,9 @@ def false_alarms(multiple, level_of):
 
 
 def test_false_triggers_come_at_the_rate_that_the_multiple_predicts():
-    found, predicted = false_alarms(3.0, 3.0)
+    rate, predicted = false_alarms(3.0, 3.0)
     tolerance = 4 * np.sqrt(predicted * (1 - predicted) / 4000)  # four standard deviations of a binomial count
-    assert abs(found - predicted) < tolerance
+    assert abs(rate - predicted) < tolerance
     twin, _ = false_alarms(3.0, 3.4)
     assert abs(twin - predicted) > 3 * tolerance
     assert false_alarms(8.0, 8.0)[0] == 0

@@ -86,14 +86,14 @@ def test_digits_are_cut_toward_zero() -> None:
 def test_the_two_odd_coefficients_come_out_of_cut_parts() -> None:
     """Eq. 4.7.2: 0.06 is six times 0.01, and -5.46 is -341.61 + 336.15."""
     for name, exact, cut in (("slow", 0.0985, 0.06), ("static_rest", -5.449, -5.46)):
-        found = [1e6 * dynamic_coefficient(name, truncated_parts=t) for t in (False, True)]
-        assert found == pytest.approx([exact, cut], abs=5e-4)  # given to four digits
-        assert found[0] != pytest.approx(cut, abs=5e-4)
+        computed = [1e6 * dynamic_coefficient(name, truncated_parts=t) for t in (False, True)]
+        assert computed == pytest.approx([exact, cut], abs=5e-4)  # given to four digits
+        assert computed[0] != pytest.approx(cut, abs=5e-4)
 
 
 def test_the_exponents_as_written_are_sums_of_printed_numbers() -> None:
-    found = [dynamic_exponent(name, as_written=True) for name in ("both", "first", "second")]
-    assert found == pytest.approx([7.07, 7.07 - 4.29, 7.07 - 2.77], rel=1e-12)  # round-off
+    computed = [dynamic_exponent(name, as_written=True) for name in ("both", "first", "second")]
+    assert computed == pytest.approx([7.07, 7.07 - 4.29, 7.07 - 2.77], rel=1e-12)  # round-off
 
 
 def test_touching_is_when_the_rise_is_the_recess() -> None:

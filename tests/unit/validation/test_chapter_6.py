@@ -76,7 +76,7 @@ def change(studies: Inputs, runs: Sequence[str], which: Any, **others: Any) -> f
     return taxel_change(studies, "s", which, tuple(runs), **others)
 
 
-def test_the_least_and_the_greatest_change_tell_a_sign() -> None:
+def test_the_least_and_the_greatest_change_have_a_sign() -> None:
     rising = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.7), d=middle(2.7))
     turning = inputs(a=middle(1.0), b=middle(1.5), c=middle(1.4), d=middle(2.7))
     assert change(rising, "abcd", "least along") == pytest.approx(0.2, rel=1e-12)  # round-off
@@ -96,10 +96,10 @@ def test_what_the_meshes_differ_by_is_taken_off() -> None:
     assert change(studies, "ab", "least from base", bases=plain) == pytest.approx(0.2, rel=1e-12)
 
 
-def test_the_jaws_are_told_apart() -> None:
+def test_the_jaws_are_distinguished() -> None:
     studies = Inputs(studies={"s": (grasp("a", middle(2.0), middle(2.5)), grasp("b", middle(4.0), middle(3.0)))})
-    found = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
-    assert found == [2.0, 0.5, 1.5]
+    computed = [change(studies, "ab", "least along", side=side) for side in ("upper", "lower", "upper less lower")]
+    assert computed == [2.0, 0.5, 1.5]
 
 
 def test_a_change_is_read_at_the_closing_asked_for() -> None:
@@ -113,23 +113,23 @@ def test_a_change_is_read_at_the_closing_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("runs", "which", "bases", "said"),
+    ("runs", "which", "bases", "message"),
     [
         ("ab", "least along", "abc", "3 bases for 2 runs"),
         ("a", "least from base", "", "no base"),
         ("a", "least along", "", "one run"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, said: str) -> None:
-    with pytest.raises(InvalidQuantity, match=said):
+def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, message: str) -> None:
+    with pytest.raises(InvalidQuantity, match=message):
         change(Inputs(), runs, which, bases=tuple(bases))
     row = next(row for row in TABLE_6_6.rows if getattr(row.evaluate, "kind", "") == "taxel_change")
     call = {"kind": "taxel_change", "study": "s", "runs": tuple(runs), "change": which, "bases": tuple(bases)}
-    with pytest.raises(ValidationError, match=said):
+    with pytest.raises(ValidationError, match=message):
         type(row).model_validate({**row.model_dump(), "evaluate": call})
 
 
-def test_what_did_not_converge_or_is_not_there_is_told() -> None:
+def test_what_did_not_converge_or_is_not_there_is_reported() -> None:
     failed = Inputs(studies={"s": (grasp("a", middle(1.0)), grasp("b", middle(2.0), status="failed"))})
     with pytest.raises(InputError, match="s, b did not converge: end"):
         change(failed, "ab", "least along")
@@ -141,23 +141,23 @@ def test_what_did_not_converge_or_is_not_there_is_told() -> None:
 
 
 @pytest.mark.parametrize(("mirror", "place"), [("left_right", (1, 2)), ("front_back", (2, 1)), ("upper_lower", (1, 1))])
-def test_only_the_broken_symmetry_is_told(mirror: str, place: tuple[int, int]) -> None:
+def test_only_the_broken_symmetry_is_reported(mirror: str, place: tuple[int, int]) -> None:
     even, bent = middle(2.0), middle(2.0)
     bent[-1][place] += 0.1
     studies = Inputs(studies={"s": (grasp("even", even), grasp("bent", even, bent))})
     for name in ("left_right", "front_back", "upper_lower"):
         assert taxel_asymmetry(studies, "s", "even", name) == 0  # type: ignore[arg-type]
-        found = taxel_asymmetry(studies, "s", "bent", name)  # type: ignore[arg-type]
-        assert (found > 0) == (name in (mirror, "upper_lower"))
+        computed = taxel_asymmetry(studies, "s", "bent", name)  # type: ignore[arg-type]
+        assert (computed > 0) == (name in (mirror, "upper_lower"))
     largest = bent[-1].max()
     assert taxel_asymmetry(studies, "s", "bent", mirror) == pytest.approx(0.1 / largest, rel=1e-12)  # type: ignore[arg-type]
 
 
 def test_a_taxel_reads_less_than_each_of_the_others() -> None:
     row = np.array([[[0.5, 0.9, 0.7]]])
-    found = inputs(a=row, b=row[..., ::-1])
-    assert taxel_contrast(found, "s", "a", taxel=(1, 1), others=((1, 2), (1, 3))) == pytest.approx(-0.2, rel=1e-12)
-    assert taxel_contrast(found, "s", "b", taxel=(1, 1), others=((1, 2), (1, 3))) > 0
+    simulated = inputs(a=row, b=row[..., ::-1])
+    assert taxel_contrast(simulated, "s", "a", taxel=(1, 1), others=((1, 2), (1, 3))) == pytest.approx(-0.2, rel=1e-12)
+    assert taxel_contrast(simulated, "s", "b", taxel=(1, 1), others=((1, 2), (1, 3))) > 0
 
 
 def test_the_change_of_a_pulse_leaves_out_what_came_before() -> None:
@@ -188,7 +188,7 @@ def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("state", "said"),
+    ("state", "message"),
     [
         ("state: {above: 1 N/m, below: 2 N/m, finding: both}", "either above or below"),
         ("state: {finding: neither}", "either above or below"),
@@ -196,8 +196,8 @@ def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
         ("state: {above: 100 N, finding: wrong}", "wrong dimension"),
     ],
 )
-def test_a_bad_limit_is_told(tmp_path: Path, state: str, said: str) -> None:
-    with pytest.raises(CaseError, match=said):
+def test_a_bad_limit_is_reported(tmp_path: Path, state: str, message: str) -> None:
+    with pytest.raises(CaseError, match=message):
         finding(tmp_path, state)
 
 
@@ -223,9 +223,11 @@ def check(rows: Sequence[Row], runner: StudyRunner) -> None:
         for study in TABLE_6_6.studies
         if (kept := tuple(run for run in study.runs if run.id in needed))
     ]
-    found = Inputs(folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"])
-    assert [row.id for row in rows if not compare_row(row, found).held] == []
-    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), found).held] == []
+    simulated = Inputs(
+        folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"]
+    )
+    assert [row.id for row in rows if not compare_row(row, simulated).held] == []
+    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), simulated).held] == []
 
 
 def test_the_row_of_one_short_simulation_holds(tmp_path: Path) -> None:

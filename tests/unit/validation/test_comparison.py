@@ -1,4 +1,4 @@
-"""Rows keep their recorded state or are told to have left it."""
+"""Rows keep their recorded state or are reported to have left it."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ def test_recorded_states_hold(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "left", "said"),
+    ("old", "new", "left", "message"),
     [
         ("125 N/m", "125.4 N/m", 0, "LEFT: was reproduced"),
         ("250 N/m", "240 N/m", 1, "LEFT: outside by 0.5208, was 0.5"),
         ("250 N/m", "125 N/m", 1, "LEFT: outside by 1, was 0.5"),
     ],
 )
-def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, said: str) -> None:
+def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, message: str) -> None:
     rows = outcomes(tmp_path, TABLE.replace(old, new))
     assert [row.held for row in rows] == [k != left for k in range(3)]
-    assert rows[left].state == said
+    assert rows[left].state == message
 
 
 def test_after_an_erratum(tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def run(name: str, pressure: float | None) -> RunOutcome:
     quantities = {} if pressure is None else {"threshold_pressure": pressure}
     status = "failed" if pressure is None else "converged"
     return RunOutcome(
-        id=name, case_id=name, status=status, reason="told", quantities=quantities, history={}, disc_share=0.75, seconds=1
+        id=name, case_id=name, status=status, reason="stopped", quantities=quantities, history={}, disc_share=0.75, seconds=1
     )
 
 
@@ -97,5 +97,5 @@ def test_a_run_that_fails_or_is_absent_lets_its_rows_leave(tmp_path: Path) -> No
     table = load_tables(write_tables(tmp_path, BRACKET.replace("PRINTED", "500 Pa"))).tables["small"]
     rows = compare("small", table, tmp_path, {"icf": (run("a", 20e3), run("b", None))}).rows
     assert [row.held for row in rows] == [True, False, False]
-    assert "told" in rows[2].reason
+    assert "stopped" in rows[2].reason
     assert not any(row.held for row in compare("small", table, tmp_path, {}).rows)

@@ -43,11 +43,11 @@ def run(runner: StudyRunner) -> dict[str, dict[str, tuple[RunOutcome, ...]]]:
 
 
 def test_equal_cases_run_once_and_what_ended_is_kept(tmp_path: Path, computed: list[str]) -> None:
-    found = run(StudyRunner(cache=tmp_path))
-    assert [outcome.id for outcome in found["one"]["icf"]] == ["default", "stick"]
-    assert found["one"] == found["two"]
+    outcomes = run(StudyRunner(cache=tmp_path))
+    assert [outcome.id for outcome in outcomes["one"]["icf"]] == ["default", "stick"]
+    assert outcomes["one"] == outcomes["two"]
     assert computed == [load_case(CASES / STUDY.case, STUDY.overrides(one)).case_id for one in STUDY.runs]
-    assert run(StudyRunner(cache=tmp_path)) == found
+    assert run(StudyRunner(cache=tmp_path)) == outcomes
     assert computed[2:] == [computed[1]], "only the interrupted run is computed again"
     run(StudyRunner(cache=tmp_path, fresh=True))
     assert computed[3:] == computed[:2]

@@ -30,7 +30,7 @@ def test_the_value_of_a_shape_and_an_elastomer():
     assert value(1, 2) == 17.5
 
 
-def test_what_is_not_there_is_told():
+def test_what_is_not_there_is_reported():
     with pytest.raises(InputError, match="no elastomer 3 with a shape 2"):
         value(elastomer=3)
     with pytest.raises(UnknownName, match="did you mean 'predicted_reading'"):

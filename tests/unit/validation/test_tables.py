@@ -21,7 +21,7 @@ def test_a_table_is_read_in_si(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("125 N/m", "125 N", r"small.yaml:6: rows.0: '125 N' has the wrong dimension"),
         ("125 N/m", "125", r"small.yaml:6: rows.0: 125 has no unit"),
@@ -36,20 +36,20 @@ def test_a_table_is_read_in_si(tmp_path: Path) -> None:
         ("title: A small table", "title: [", "not valid YAML"),
     ],
 )
-def test_a_fault_is_told_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_a_fault_is_reported_with_its_place(tmp_path: Path, old: str, new: str, message: str) -> None:
     assert old in TABLE
     with pytest.raises(CaseError) as caught:
         load_tables(write_tables(tmp_path, TABLE.replace(old, new, 1)))
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert "small.yaml:" in str(caught.value)
 
 
-def test_an_unknown_table_is_told(tmp_path: Path) -> None:
+def test_an_unknown_table_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UnknownName, match=r"did you mean 'small'"):
         load_tables(write_tables(tmp_path), ["smal"])
 
 
-def test_a_missing_manifest_is_told(tmp_path: Path) -> None:
+def test_a_missing_manifest_is_reported(tmp_path: Path) -> None:
     with pytest.raises(StorageError, match=r"manifest\.yaml"):
         load_tables(tmp_path)
 

@@ -59,12 +59,8 @@ def annulus_design_figure(result: Result) -> Figure:
         bar.set_label("constant force with which the tissue touches, in N")
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
-        entitle(figure, _title(result))
+        entitle(figure, result.title or "Annular sensor: where the tissue touches")
     return figure
-
-
-def _title(result: Result) -> str:
-    return result.title or "Annular sensor: where the tissue touches"
 
 
 def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:

@@ -39,10 +39,10 @@ class FilmTestFigures(ResultFigures):
             return {"film_test.png": lambda: png(capacitive_test_figure(result))}
         if result.scene is None or (coefficients := result.scene_as(FilmTestScene).coefficients) is None:
             return {}
-        found: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result, coefficients))}
+        drawings: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result, coefficients))}
         if len(result.quantities["times"].value) > 1:
-            found["film_surface.png"] = lambda: png(film_surface_figure(result))
-        return found
+            drawings["film_surface.png"] = lambda: png(film_surface_figure(result))
+        return drawings
 
 
 def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]) -> Figure:

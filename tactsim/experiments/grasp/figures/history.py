@@ -31,12 +31,12 @@ def has_history(result: Result) -> bool:
 
 def panels(result: Result) -> list[str]:
     """What there is to draw over time, from above."""
-    found = ["forces"]
+    names = ["forces"]
     if _lumens(result):
-        found.append("lumen")
+        names.append("lumen")
     if "taxel_force_upper_history" in result.quantities:
-        found.append("taxels")
-    return found
+        names.append("taxels")
+    return names
 
 
 def draw_histories(axes: Sequence[Axes], result: Result) -> None:

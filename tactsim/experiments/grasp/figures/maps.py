@@ -78,7 +78,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float,
             "ha": "center",
             "color": "k" if brightness > BRIGHT else "w",
             "zorder": 4,
-            "path_effects": [_rim(colours(shade))],
+            "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
         axis.text(x, y, f"{factor * pressure:#.3g}".rstrip("."), va="bottom", fontsize=large, fontweight="bold", **style)
@@ -103,11 +103,6 @@ def _extent(grasp: LoadedTaxels, side: str) -> tuple[Array, Array]:
     half = np.array([grasp.scene.jaws[side].width, grasp.scene.jaws[side].depth]) / 2
     middle = grasp.scene.place(side)[:2]
     return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.scene.size[:2], middle + half)
-
-
-def _rim(colour: tuple[float, float, float, float]) -> withStroke:
-    """A rim around letters in the colour of their cell, so that no line runs through them."""
-    return withStroke(linewidth=2.2, foreground=colour)
 
 
 def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, shadows: tuple[Array, Array, Array] | None) -> None:

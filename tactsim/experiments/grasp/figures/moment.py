@@ -42,12 +42,12 @@ def shown_moment(result: Result) -> Result:
 
 def _quantities(result: Result, step: int, closing: float) -> dict[str, Quantity]:
     area = result.scene_as(SimulatedGrasp).matrix.area
-    found = {"displacement": replace(result.quantities["displacement"], value=closing)}
+    quantities = {"displacement": replace(result.quantities["displacement"], value=closing)}
     for side in JAWS:
         force = result.quantities[f"taxel_force_{side}_history"].array[step]
-        found[f"taxel_force_{side}"] = replace(result.quantities[f"taxel_force_{side}"], value=force.tolist())
-        found[f"taxel_pressure_{side}"] = replace(result.quantities[f"taxel_pressure_{side}"], value=(force / area).tolist())
-    return found
+        quantities[f"taxel_force_{side}"] = replace(result.quantities[f"taxel_force_{side}"], value=force.tolist())
+        quantities[f"taxel_pressure_{side}"] = replace(result.quantities[f"taxel_pressure_{side}"], value=(force / area).tolist())
+    return quantities
 
 
 def _moved(result: Result, closing: float) -> SimulatedGrasp:

@@ -56,16 +56,21 @@ def view_figure(result: Result) -> Figure:
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)
-        _tell(axes[1], result)
-        factor, unit = scale_of(grasp.largest_pressure, "Pa")
-        norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-        bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
-        bar.set_label(f"mean pressure on the taxel in {unit}: colour and length of its bar on the back of the jaw")
-        bar.outline.set_linewidth(0.5)
+        _write_captions(axes[1], result)
+        pressure_bar(figure, axes, grasp, "pressure", "its bar on the back of the jaw")
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
         title = result.title or "Grasp"
         entitle(figure, f"{title}: {ending(result)}{status}")
     return figure
+
+
+def pressure_bar(figure: Figure, axes: Any, grasp: LoadedTaxels, meaning: str, bars: str) -> None:
+    """The colours of the bars on the taxels; ``meaning`` is what their colour and the length of ``bars`` show."""
+    factor, unit = scale_of(grasp.largest_pressure, "Pa")
+    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+    bar.set_label(f"mean {meaning} on the taxel in {unit}: colour and length of {bars}")
+    bar.outline.set_linewidth(0.5)
 
 
 def scene(frame: FieldFrame, grasp: LoadedTaxels) -> list[Surface]:
@@ -106,9 +111,9 @@ def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
     return [Surface(plate, _BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
 
 
-def _placed(grasp: LoadedTaxels, side: str, own: Array) -> Array:
+def _placed(grasp: LoadedTaxels, side: str, points: Array) -> Array:
     """Points (n, 3) in the jaw's own axes, in those of the block."""
-    return own @ grasp.scene.jaws[side].rotation.T + grasp.scene.place(side)
+    return points @ grasp.scene.jaws[side].rotation.T + grasp.scene.place(side)
 
 
 def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float]) -> Camera:
@@ -141,12 +146,12 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
     axis.text(0.0, -0.03, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
     for side in JAWS:
         jaw, sign = grasp.scene.jaws[side], 1.0 if side == "upper" else -1.0
-        own = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
-        x, y = camera.project(_placed(grasp, side, own[None]))[0]
+        plate_corner = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
+        x, y = camera.project(_placed(grasp, side, plate_corner[None]))[0]
         axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
 
 
-def _tell(axis: Axes, result: Result) -> None:
+def _write_captions(axis: Axes, result: Result) -> None:
     """The names of the inclusions in their colour."""
     named = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
     if named:

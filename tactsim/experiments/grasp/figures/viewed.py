@@ -42,7 +42,7 @@ class ViewedGrasp:
     radii : (n,) of estimated radii in m, NaN where there is none
     lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
     regions : by the axis of the view, closed lines (m, 2) in mm around where the estimated centres lie with a probability of 90 %
-    findings : lines of text on what was found
+    findings : lines of text on the estimates
     """
 
     scene: GraspScene

@@ -77,10 +77,10 @@ def views_figure(grasp: ViewedGrasp, title: str, shown: Shown = "force") -> Figu
     The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
-    found, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
-    front = View(found.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
-    left = View(found.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
-    top = View(found.top, 2, 0, 1, len(JAWS), "Top view: {} of both jaws")
+    pressures, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
+    front = View(pressures.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
+    left = View(pressures.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
+    top = View(pressures.top, 2, 0, 1, len(JAWS), "Top view: {} of both jaws")
     x, y, z = 1e3 * grasp.scene.size
     with styled():
         figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
@@ -191,7 +191,7 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
 
 
 def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
-    """What the lines mean, and what was found."""
+    """What the lines mean, and the estimates."""
     axis.axis("off")
     added = "sums" if shown == "force" else "means"
     handles: list[Any] = [

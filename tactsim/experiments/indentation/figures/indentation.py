@@ -33,7 +33,8 @@ class IndentationFigures(ResultFigures):
 
 def indentation_figure(result: Result) -> Figure:
     """Section (if the result has fields) and force-displacement curve of an indentation."""
-    return section_beside(result, draw_curve, _title(result))
+    title = result.title or f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}"
+    return section_beside(result, draw_curve, title)
 
 
 def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:
@@ -48,10 +49,6 @@ def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: 
         entitle(figure, title)
         mark_failure(figure, result, after(result))
     return figure
-
-
-def _title(result: Result) -> str:
-    return result.title or f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}"
 
 
 def after(result: Result) -> str:

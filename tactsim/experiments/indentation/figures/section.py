@@ -50,14 +50,14 @@ class Section:
 
     def edges(self) -> tuple[Array, Array]:
         """Every edge once (k, 3), and whether it bounds the body or parts two regions."""
-        found = self.elements[:, _EDGES].reshape(-1, 3)
+        edges = self.elements[:, _EDGES].reshape(-1, 3)
         regions = self.frame.cell_data.get("region [1]", np.zeros(len(self.elements)))
         owners = np.repeat(np.asarray(regions).ravel(), 3)
-        _, first, group, count = np.unique(found[:, 1], return_index=True, return_inverse=True, return_counts=True)
+        _, first, group, count = np.unique(edges[:, 1], return_index=True, return_inverse=True, return_counts=True)
         spread = np.zeros(len(first), bool)
         np.logical_or.at(spread, group, owners != owners[first][group])
-        on_axis = np.abs(self.frame.points[found[first, 1], 0]) < 1e-12
-        return found[first], ((count == 1) & ~on_axis) | spread
+        on_axis = np.abs(self.frame.points[edges[first, 1], 0]) < 1e-12
+        return edges[first], ((count == 1) & ~on_axis) | spread
 
 
 def pressure_scale(section: Section, pressure: Array, seen: Array) -> tuple[tuple[float, float], float, str]:

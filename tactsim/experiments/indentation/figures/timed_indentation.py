@@ -16,7 +16,7 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
-FOUND_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
+COMPUTED_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
 DECADES = 1e3
 """Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
 
@@ -63,7 +63,7 @@ def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> Non
     name, words, unit = what
     time, values = result.history("time"), result.history(name)
     factor, prefixed = scale_of(float(np.abs(values).max()), unit)
-    axis.plot(time, factor * values, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1, label="finite elements")
+    axis.plot(time, factor * values, ".-", color=COMPUTED_COLOUR, markersize=4, linewidth=1, label="finite elements")
     other = "closed_form_force" if name == "reaction_force" else "closed_form_displacement"
     if other in result.steps[-1].values:
         axis.plot(time, factor * result.history(other), "--", color=CLOSED_COLOUR, label="closed form")
@@ -80,7 +80,7 @@ def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> Non
 
 def _draw_difference(axis: Axes, result: Result) -> None:
     time, difference = result.history("time"), 100 * result.history("closed_form_difference")
-    axis.plot(time, difference, ".-", color=FOUND_COLOUR, markersize=4, linewidth=1)
+    axis.plot(time, difference, ".-", color=COMPUTED_COLOUR, markersize=4, linewidth=1)
     axis.axhline(0.0, color="0.5", linewidth=0.7)
     widest = max(1.2 * float(np.nanmax(np.abs(difference))), 1e-6)
     axis.set_ylim(-widest, widest)

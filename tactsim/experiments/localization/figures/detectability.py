@@ -64,8 +64,8 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
             "fillstyle": FILLS[ratio % len(FILLS)],
         }
         axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=3.5, **style)
-    found = 1e3 * radii[np.isfinite(radii)]
-    top = 1.15 * float(found.max()) if found.size else 1.0
+    finite = 1e3 * radii[np.isfinite(radii)]
+    top = 1.15 * float(finite.max()) if finite.size else 1.0
     axis.fill_between([0.0, top, top], [0.0, top, top], top, color=NEVER, linewidth=0)
     axis.set(xlim=(0.0, float(depths.max()) * 1.04), ylim=(0.0, top), xlabel="depth of the centre below the upper jaw in mm")
     axis.grid(alpha=0.25, linewidth=0.6)

@@ -1,4 +1,4 @@
-"""What the figures of a localization show: the grasp that was read, with the estimated inclusions and what was found."""
+"""What the figures of a localization show: the grasp that was read, with the estimated inclusions in bodies and words."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ NO_LINE = [[np.nan] * 3] * 2
 def localized(result: Result) -> ViewedGrasp:
     """The grasp that was read, with the estimates."""
     grasp, scene = viewed(result), result.scene_as(LocalizedGrasp)
-    centers = np.array([found.center for found in scene.estimates], dtype=float).reshape(-1, 3)
+    centers = np.array([estimate.center for estimate in scene.estimates], dtype=float).reshape(-1, 3)
     return replace(
         grasp,
         valid=grasp.valid if scene.valid is None else np.array(scene.valid),
         estimates=centers,
-        radii=np.array([np.nan if found.radius is None else found.radius for found in scene.estimates], dtype=float),
-        lines=np.array([found.line or NO_LINE for found in scene.estimates], dtype=float).reshape(-1, 2, 3),
+        radii=np.array([np.nan if estimate.radius is None else estimate.radius for estimate in scene.estimates], dtype=float),
+        lines=np.array([estimate.line or NO_LINE for estimate in scene.estimates], dtype=float).reshape(-1, 2, 3),
         regions={
-            away: [1e3 * np.array(line) for found in scene.estimates for line in (found.region or {}).get(view, ())]
+            away: [1e3 * np.array(line) for estimate in scene.estimates for line in (estimate.region or {}).get(view, ())]
             for view, away in AWAY.items()
         },
         findings=_findings(centers, result) if "present" in result.quantities else grasp.findings,
@@ -34,17 +34,17 @@ def localized(result: Result) -> ViewedGrasp:
 
 
 def _findings(centers: Array, result: Result) -> tuple[str, ...]:
-    """What was found in words, of estimates centred at ``centers`` (n, 3) in m."""
+    """The result in words, of estimates centred at ``centers`` (n, 3) in m."""
     quantities = result.quantities
     if not quantities["present"].value:
         return ("Nothing there.",)
     places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in centers]
-    told = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
-    told += [f"Estimated at {place}" for place in places]
+    lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
-        told.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+        lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        told.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
-    return tuple(told)
+        lines.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+    return tuple(lines)

@@ -7,21 +7,18 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import Patch
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
-from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
+from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces, pressure_bar
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
+from tactsim.plotting.canvas import entitle, new_figure, styled
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result
 
@@ -37,7 +34,7 @@ _SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3
 
 
 def space_figure(result: Result) -> Figure:
-    """What is truly there beside what was found, in the undeformed tissue, seen from the front, right and above."""
+    """True beside estimated inclusions, in the undeformed tissue, seen from the front, right and above."""
     shown = localized(result)
     grasp = _grasp(shown)
     outside = [_tissue(shown.scene.size), *(surface for side in JAWS for surface in jaw_surfaces(grasp, side))]
@@ -64,11 +61,7 @@ def _title(result: Result) -> str:
 
 
 def _scale(figure: Figure, axes: Any, grasp: LoadedTaxels, shown: ViewedGrasp) -> None:
-    factor, unit = scale_of(grasp.largest_pressure, "Pa")
-    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
-    bar.set_label(f"mean {shown.meaning.replace('force', 'pressure')} on the taxel in {unit}: colour and length of its bar")
-    bar.outline.set_linewidth(0.5)
+    pressure_bar(figure, axes, grasp, shown.meaning.replace("force", "pressure"), "its bar")
     handles = [Patch(color=TRUE_COLOUR, label="true"), Patch(color=ESTIMATE_COLOUR, label="estimated")]
     figure.legend(handles=handles, loc="lower right", ncols=2, fontsize=8.5)
 

@@ -1,4 +1,4 @@
-"""The tip of a catheter over its tissues, each sensor coloured by the hardness it found, and the hardest one marked."""
+"""The tip of a catheter over its tissues, each sensor coloured by the hardness it reports, and the hardest one marked."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ def catheter_tip_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(11.0, 4.9)
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
-        found = KILOPASCALS * result.history("reported_pressure")
-        largest = float(np.nanmax(found)) if np.isfinite(found).any() else 1.0
+        pressures = KILOPASCALS * result.history("reported_pressure")
+        largest = float(np.nanmax(pressures)) if np.isfinite(pressures).any() else 1.0
         colours = ScalarMappable(Normalize(0.0, largest), "viridis")
         _draw_surface(left, result)
-        _draw_sensors(left, result, found, colours)
+        _draw_sensors(left, result, pressures, colours)
         bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)
         bar.set_label("reported threshold pressure in kPa")
-        _draw_thresholds(right, result, found)
+        _draw_thresholds(right, result, pressures)
         title = result.title or "Threshold sensors around the tip of a catheter"
         entitle(figure, f"{title}\n{_answer(result)}")
         mark_failure(figure, result)
@@ -56,7 +56,7 @@ def catheter_tip_figure(result: Result) -> Figure:
 
 
 def _answer(result: Result) -> str:
-    """What was found, in words."""
+    """The hardest sensor in words."""
     quantities = result.quantities
     if "hardest_sensor" not in quantities:
         return "no sensor found a threshold"
@@ -88,12 +88,12 @@ def _draw_surface(axis: Axes, result: Result) -> None:
     axis.legend(handles=handles, loc="lower left", fontsize=8, frameon=True, framealpha=0.9)
 
 
-def _draw_sensors(axis: Axes, result: Result, found: Array, colours: ScalarMappable) -> None:
+def _draw_sensors(axis: Axes, result: Result, pressures: Array, colours: ScalarMappable) -> None:
     """Rings coloured by the reported pressure; grey without one; the hardest outlined."""
     scene = result.scene_as(CatheterTipScene)
     outer, inner = MILLIMETRES * scene.ring.outer_radius, MILLIMETRES * scene.ring.inner_radius
     hardest = result.quantities["hardest_sensor"].value if "hardest_sensor" in result.quantities else 0
-    for number, (step, pressure, state) in enumerate(zip(result.steps, found, scene.state, strict=True), 1):
+    for number, (step, pressure, state) in enumerate(zip(result.steps, pressures, scene.state, strict=True), 1):
         x, y = (MILLIMETRES * step.values[name] for name in "xy")
         known = np.isfinite(pressure)
         colour = colours.to_rgba(pressure) if known else "0.75"
@@ -122,13 +122,13 @@ def _name_hardest(axis: Axes, result: Result, hardest: int) -> None:
     axis.text(x, y, "hardest", ha=side, va=level, color=HARDEST_COLOUR, fontweight="bold", bbox=box, zorder=7)
 
 
-def _draw_thresholds(axis: Axes, result: Result, found: Array) -> None:
+def _draw_thresholds(axis: Axes, result: Result, pressures: Array) -> None:
     """Reported and true thresholds of every sensor, those over two tissues named."""
     angle = np.degrees(result.history("angle"))
     deviation = KILOPASCALS * result.history("reported_deviation")
     true = KILOPASCALS * result.history("threshold_pressure")
     bars = np.nan_to_num(deviation)
-    axis.errorbar(angle, found, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
+    axis.errorbar(angle, pressures, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
     axis.plot(angle, true, "_", color=TRUE_COLOUR, markersize=16, markeredgewidth=1.8, label="true threshold")
     straddling = np.array(result.scene_as(CatheterTipScene).straddles)[: len(angle)]
     if straddling.any():
@@ -136,10 +136,10 @@ def _draw_thresholds(axis: Axes, result: Result, found: Array) -> None:
     if "hardest_sensor" in result.quantities:
         best = result.quantities["hardest_sensor"].value - 1
         ring: dict[str, Any] = {"markersize": 13, "fillstyle": "none", "markeredgewidth": 2}
-        axis.plot(angle[best], found[best], "o", color=HARDEST_COLOUR, label="hardest", **ring)
+        axis.plot(angle[best], pressures[best], "o", color=HARDEST_COLOUR, label="hardest", **ring)
     axis.set(xlabel="angle of the sensor around the tip in degrees", ylabel="threshold pressure in kPa", ylim=(0, None))
     axis.set_xticks(angle)
     axis.set_xticklabels([f"{value:.0f}" for value in angle], rotation=45 if len(angle) > 12 else 0)
-    axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, found + bars))))
+    axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, pressures + bars))))
     axis.legend(fontsize=8, loc="upper right", ncols=2)
     despined(axis)

@@ -47,12 +47,12 @@ class ThresholdTrialFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``threshold_errors.png`` and ``threshold_signals.png``, as far as there is something to draw."""
-        found: dict[str, Drawing] = {}
+        drawings: dict[str, Drawing] = {}
         if "force_error" in result.quantities:
-            found["threshold_errors.png"] = lambda: png(threshold_error_figure(result))
+            drawings["threshold_errors.png"] = lambda: png(threshold_error_figure(result))
         if result.steps:
-            found["threshold_signals.png"] = lambda: png(threshold_signal_figure(result))
-        return found
+            drawings["threshold_signals.png"] = lambda: png(threshold_signal_figure(result))
+        return drawings
 
 
 def threshold_error_figure(result: Result) -> Figure:

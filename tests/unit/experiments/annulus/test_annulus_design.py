@@ -40,37 +40,37 @@ def thesis():
 
 def test_the_map_is_that_of_the_formula(thesis):
     """eps0 = p D / (4 ro kappa) as in eq. 4.6.4, with the exact kappa and rise."""
-    found = values(thesis)
+    quantities = values(thesis)
     compliance = table_4_1("viscosities").creep([0.5, 5.0])
     ratio = np.array([0.1, 0.5])
     displacement = np.array([1.0, 3.0])[:, None] * compliance / (4 * 3e-3 * force_factor(ratio))[:, None, None]
     rise = rise_factor(ratio)[:, None, None] * displacement
-    np.testing.assert_allclose(found["displacement"], displacement, rtol=1e-12)  # round-off
-    np.testing.assert_allclose(found["rise"], rise, rtol=1e-12)
-    np.testing.assert_allclose(found["force_to_touch"][1, 1], 0.7e-3 / rise[1, 0], rtol=1e-12)
-    assert found["touches"].shape == (2, 3, 2, 2)
-    assert (found["touches"] == (rise[:, None] >= np.array(GIVEN["recesses"])[:, None, None])).all()
+    np.testing.assert_allclose(quantities["displacement"], displacement, rtol=1e-12)  # round-off
+    np.testing.assert_allclose(quantities["rise"], rise, rtol=1e-12)
+    np.testing.assert_allclose(quantities["force_to_touch"][1, 1], 0.7e-3 / rise[1, 0], rtol=1e-12)
+    assert quantities["touches"].shape == (2, 3, 2, 2)
+    assert (quantities["touches"] == (rise[:, None] >= np.array(GIVEN["recesses"])[:, None, None])).all()
     printed = 1.0 * compliance / (4 * 3e-3 * force_factor(ratio, "thesis_4_2_21"))[:, None]
     with pytest.raises(AssertionError):
-        np.testing.assert_allclose(found["displacement"][:, 0], printed, rtol=1e-12)
+        np.testing.assert_allclose(quantities["displacement"][:, 0], printed, rtol=1e-12)
 
 
 def test_the_design_point_of_the_thesis_does_not_touch(thesis):
     """Errata E10: eps0 = 1.925 mm is beyond 0.7 mm, but the tissue rises by 0.08 mm only."""
-    found = values(thesis)
-    assert found["point_displacement_printed"] == pytest.approx(1.925e-3, abs=5e-7)
-    assert found["point_touches_printed"] == 1
-    assert found["point_rise"] == pytest.approx(0.078e-3, abs=5e-7)
-    assert found["point_touches"] == 0
-    assert found["point_force_to_touch"] > 3
+    quantities = values(thesis)
+    assert quantities["point_displacement_printed"] == pytest.approx(1.925e-3, abs=5e-7)
+    assert quantities["point_touches_printed"] == 1
+    assert quantities["point_rise"] == pytest.approx(0.078e-3, abs=5e-7)
+    assert quantities["point_touches"] == 0
+    assert quantities["point_force_to_touch"] > 3
     assert "does not touch" in thesis.reason
     with pytest.raises(AssertionError):
-        assert found["point_rise"] == pytest.approx(0.08e-3, abs=5e-7)
+        assert quantities["point_rise"] == pytest.approx(0.08e-3, abs=5e-7)
 
 
 def test_a_sensor_touches_from_its_force_and_time_on(thesis):
-    found = values(thesis)
-    force, moment, touches = found["force_to_touch"], found["time_to_touch"], found["touches"]
+    quantities = values(thesis)
+    force, moment, touches = quantities["force_to_touch"], quantities["time_to_touch"], quantities["touches"]
     by_force = np.array(GIVEN["forces"])[:, None] >= force[:, :, None]
     by_time = np.array(GIVEN["times"]) >= np.nan_to_num(moment, nan=np.inf)[..., None]
     assert (by_force == touches).all()
@@ -90,9 +90,9 @@ def test_a_sensor_that_is_never_touched_has_no_time():
     assert result_of(parse_document(document, "result.json")).quantities["time_to_touch"].value[0][1][0] is None
 
 
-def test_small_displacements_are_told_apart(thesis):
-    found = values(thesis)
-    assert (found["outside_small_displacement"] == (found["displacement"] / 3e-3 > 0.1)).all()
+def test_small_displacements_are_distinguished(thesis):
+    quantities = values(thesis)
+    assert (quantities["outside_small_displacement"] == (quantities["displacement"] / 3e-3 > 0.1)).all()
     assert len(thesis.warnings) == 2
     stiff = run(recesses=(1e-6, 2e-6), forces=(0.001, 0.002))
     assert stiff.warnings == ()
@@ -111,11 +111,11 @@ def test_a_thin_layer_rises_more_for_its_displacement():
 
 
 def test_history_and_progress():
-    told = []
-    result = design().run(told.append)
+    steps = []
+    result = design().run(steps.append)
     assert result.status is Status.CONVERGED
-    assert [step.values["recess"] for step in told] == [*GIVEN["recesses"]] * 2
-    assert {name for step in told for name in step.values} == set(AnnulusDesign.history_units)
+    assert [step.values["recess"] for step in steps] == [*GIVEN["recesses"]] * 2
+    assert {name for step in steps for name in step.values} == set(AnnulusDesign.history_units)
 
 
 def test_an_interrupted_run_keeps_its_rows():
@@ -129,7 +129,7 @@ def test_an_interrupted_run_keeps_its_rows():
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         ({"ratios": (0.5, 0.1)}, "ratios must increase"),
         ({"forces": (1.0, 3.5)}, "beyond the largest one of 3 N"),
@@ -139,8 +139,8 @@ def test_an_interrupted_run_keeps_its_rows():
         ({"tissue": {"times": "seconds"}}, "viscosities"),
     ],
 )
-def test_what_makes_no_design_is_refused(changes, said):
-    with pytest.raises(ValidationError, match=said):
+def test_what_makes_no_design_is_refused(changes, message):
+    with pytest.raises(ValidationError, match=message):
         design(**changes)
 
 

@@ -51,7 +51,7 @@ def test_force_gives_the_displacement_back():
     np.testing.assert_allclose(column(second, "displacement"), expected, atol=1e-3 * 1e-5, err_msg="chords of 2000 samples")
 
 
-def test_a_pull_and_a_deep_displacement_are_told_and_drawn():
+def test_a_pull_and_a_deep_displacement_are_reported_and_drawn():
     result = ClosedForm.example().run()
     assert result.status == "converged"
     assert any("outer radius" in warning for warning in result.warnings)

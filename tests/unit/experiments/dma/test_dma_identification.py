@@ -26,9 +26,9 @@ QUICK = {"population": 40, "generations": 30}
 @pytest.fixture(scope="module")
 def result():
     steps = []
-    found = DmaIdentification(**QUICK).run(steps.append)
-    assert tuple(steps) == found.steps
-    return found
+    outcome = DmaIdentification(**QUICK).run(steps.append)
+    assert tuple(steps) == outcome.steps
+    return outcome
 
 
 def test_constants_errors_and_the_statement_are_reported(result):
@@ -61,9 +61,9 @@ def test_figure(result):
     drawings = figures_for(result)
     assert list(drawings) == ["dma_identification.png"]
     assert drawings["dma_identification.png"]().startswith(b"\x89PNG")
-    told = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
+    text_ = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
     for words in ("elastic compliance", "95 % band, simultaneous", "genetic algorithm", "combinations of the 17 constants"):
-        assert words in told
+        assert words in text_
 
 
 def test_the_same_seeds_give_the_same_result(result):
@@ -77,11 +77,11 @@ def test_data_from_a_file_with_unknown_noise(tmp_path):
     rows = np.column_stack([data.frequencies, data.modulus.real, data.modulus.imag])
     header = "frequency [Hz], storage modulus [Pa], loss modulus [Pa]"
     np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.17g")
-    found = DmaIdentification(data=MeasuredDma(path=str(path)), methods=("least_squares",), replicates=100).run()
-    assert found.status is Status.CONVERGED
-    assert 0.008 < found.quantities["relative_noise"].value < 0.035
-    assert "least_squares_curve_error" not in found.quantities
-    assert not any("synthetic" in assumption for assumption in found.assumptions)
+    outcome = DmaIdentification(data=MeasuredDma(path=str(path)), methods=("least_squares",), replicates=100).run()
+    assert outcome.status is Status.CONVERGED
+    assert 0.008 < outcome.quantities["relative_noise"].value < 0.035
+    assert "least_squares_curve_error" not in outcome.quantities
+    assert not any("synthetic" in assumption for assumption in outcome.assumptions)
     with pytest.raises(StorageError):
         DmaIdentification(data=MeasuredDma(path=str(tmp_path / "none.csv"))).run()
 
@@ -94,11 +94,11 @@ def test_the_fits_made_before_a_stop_are_kept(monkeypatch, error, status):
         raise error
 
     monkeypatch.setattr(dma_identification, "fit_genetic", stopped)
-    found = DmaIdentification(**QUICK).run()
-    assert found.status is status
-    assert "moduli" in found.quantities
-    assert "genetic_moduli" not in found.quantities
-    assert str(status).upper() in " ".join(t.get_text() for t in dma_identification_figure(found).findobj(Text))
+    outcome = DmaIdentification(**QUICK).run()
+    assert outcome.status is status
+    assert "moduli" in outcome.quantities
+    assert "genetic_moduli" not in outcome.quantities
+    assert str(status).upper() in " ".join(t.get_text() for t in dma_identification_figure(outcome).findobj(Text))
     nothing = DmaIdentification(methods=("genetic",), **QUICK).run()
     assert nothing.status is status
     assert nothing.steps == ()

@@ -34,23 +34,23 @@ def hard():
 
 
 def test_tissue_and_spring_balance_at_the_reading(hard):
-    found = values(hard)
+    quantities = values(hard)
     assert hard.status == "converged"
-    spring = 0.203 + 0.00908 * found["reading"]
-    assert found["spring_force"] == pytest.approx(spring, rel=1e-4)  # depth located to 1e-5 of the travel
-    assert found["spring_force"] != pytest.approx(spring - 0.203, rel=1e-4), "the spring is preloaded"
-    assert found["depth"] == pytest.approx(2.5e-3 * (1 - found["reading"] / 100), rel=1e-12)
-    assert found["bottoms_out"] == 0
+    spring = 0.203 + 0.00908 * quantities["reading"]
+    assert quantities["spring_force"] == pytest.approx(spring, rel=1e-4)  # depth located to 1e-5 of the travel
+    assert quantities["spring_force"] != pytest.approx(spring - 0.203, rel=1e-4), "the spring is preloaded"
+    assert quantities["depth"] == pytest.approx(2.5e-3 * (1 - quantities["reading"] / 100), rel=1e-12)
+    assert quantities["bottoms_out"] == 0
     assert hard.steps[-1].values["displacement"] == pytest.approx(2.5e-3)
     assert {name for step in hard.steps for name in step.values} <= set(hard.units)
 
 
 def test_the_interval_is_that_of_another_spring(hard):
-    found = values(hard)
+    quantities = values(hard)
     stronger = values(measured(scale={"force_at_zero": 0.203 + 0.00908}))
-    assert stronger["reading"] == pytest.approx(found["reading_low"], abs=0.05)  # a tenth of the interval: its curvature
-    assert stronger["reading"] != pytest.approx(found["reading"], abs=0.05)
-    assert found["reading_low"] < found["reading"] < found["reading_high"]
+    assert stronger["reading"] == pytest.approx(quantities["reading_low"], abs=0.05)  # a tenth of the interval: its curvature
+    assert stronger["reading"] != pytest.approx(quantities["reading"], abs=0.05)
+    assert quantities["reading_low"] < quantities["reading"] < quantities["reading_high"]
 
 
 def test_the_run_ends_at_the_reading(hard):
@@ -119,7 +119,8 @@ def test_a_narrow_specimen_is_warned_of():
         raise KeyboardInterrupt
 
     assert any(
-        "edge of the specimen is 8 mm away" in told for told in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
+        "edge of the specimen is 8 mm away" in warning
+        for warning in measured(specimen={"radius": 8e-3}, progress=interrupt).warnings
     )
 
 

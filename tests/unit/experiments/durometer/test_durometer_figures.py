@@ -25,31 +25,31 @@ def made_up(**quantities):
     )
     pressed = {"body": Sphere(radius=1e-3), "starting_height": 0.0, "recess": None, "solver": SOLVER}
     scene = DurometerScene(**pressed, scale=DurometerScale(), youngs_modulus=1e4)
-    told = {name: Quantity(value, "1", "") for name, value in quantities.items()}
-    return Result("durometer", Status.CONVERGED, "because", told, steps=steps, title="A title", scene=scene)
+    reported = {name: Quantity(value, "1", "") for name, value in quantities.items()}
+    return Result("durometer", Status.CONVERGED, "because", reported, steps=steps, title="A title", scene=scene)
 
 
 def texts(figure):
     return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
-def test_the_reading_is_told_with_its_interval():
-    told = texts(durometer_figure(made_up(**READ)))
+def test_the_reading_is_reported_with_its_interval():
+    written = texts(durometer_figure(made_up(**READ)))
     for words in ("A title", "63.0", "(62.9 to 63.2)", "spring", "Hertz", "reading", "depth of the indentor in mm"):
-        assert words in told
-    assert "bottoms out" not in told
-    assert "FAILED" not in told
+        assert words in written
+    assert "bottoms out" not in written
+    assert "FAILED" not in written
 
 
-def test_off_the_scale_is_told():
+def test_off_the_scale_is_reported():
     assert "bottoms out: below 0" in texts(durometer_figure(made_up(reading=0.0)))
     assert "no reading" in texts(durometer_figure(made_up()))
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    told = texts(durometer_figure(replace(made_up(), status=status)))
-    assert f"{status.upper()} after a displacement of 2.5 mm: because" in told
+    written = texts(durometer_figure(replace(made_up(), status=status)))
+    assert f"{status.upper()} after a displacement of 2.5 mm: because" in written
 
 
 def test_png_by_name_and_nothing_without_steps():

@@ -1,4 +1,4 @@
-"""The figure of a ranking: markers where the numbers are, ties told, and a run that did not end well."""
+"""The figure of a ranking: markers where the numbers are, ties named, and a run that did not end well."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def texts(figure):
 
 
 def test_elastomers_shapes_and_ties_are_named():
-    told = texts(elastomer_ranking_figure(made_up()))
+    written = texts(elastomer_ranking_figure(made_up()))
     for words in (*(one.name for one in TABLE_3_3), "B1-A stable", "durometer", "hand", "sensor", "3 tied", "5 tied"):
-        assert words in told
-    assert "FAILED" not in told
+        assert words in written
+    assert "FAILED" not in written
 
 
 def test_markers_and_ranks_stand_where_the_numbers_are():

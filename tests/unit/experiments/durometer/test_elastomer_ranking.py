@@ -45,12 +45,12 @@ def quantities(made):
 
 def test_modulus_and_reading_by_hand():
     """Pressure over the ratio; by Hertz a reading of 36 means 135 kPa."""
-    found = quantities(report(finding()))
+    numbers = quantities(report(finding()))
     expected = [one.threshold_pressure / 2 for one in TABLE_3_3]
-    np.testing.assert_allclose(found["modulus_of_threshold"][0], expected, rtol=1e-14)  # round-off
-    assert found["modulus_of_reading"][0][3] == pytest.approx(135e3, abs=500)
-    assert found["modulus_ratio"][0][3] == pytest.approx(135e3 / 11.15e3, rel=0.004)
-    assert found["modulus_ratio"][0][3] != pytest.approx(135e3 / 22.3e3, rel=0.004), "the modulus, not the threshold"
+    np.testing.assert_allclose(numbers["modulus_of_threshold"][0], expected, rtol=1e-14)  # round-off
+    assert numbers["modulus_of_reading"][0][3] == pytest.approx(135e3, abs=500)
+    assert numbers["modulus_ratio"][0][3] == pytest.approx(135e3 / 11.15e3, rel=0.004)
+    assert numbers["modulus_ratio"][0][3] != pytest.approx(135e3 / 22.3e3, rel=0.004), "the modulus, not the threshold"
 
 
 def test_a_prediction_that_is_right_leaves_no_difference():
@@ -58,9 +58,9 @@ def test_a_prediction_that_is_right_leaves_no_difference():
     moduli = [finding().curve.modulus(one.durometer, SCALE) for one in TABLE_3_3]
     pairs = zip(TABLE_3_3, moduli, strict=True)
     agreeing = tuple(one.model_copy(update={"threshold_pressure": 2 * modulus}) for one, modulus in pairs)
-    found = quantities(report(finding(), elastomers=agreeing))
-    np.testing.assert_allclose(found["reading_difference"], 0, atol=1e-9)
-    assert found["spearman_predicted_durometer"] == [pytest.approx(1, abs=1e-12)]
+    numbers = quantities(report(finding(), elastomers=agreeing))
+    np.testing.assert_allclose(numbers["reading_difference"], 0, atol=1e-9)
+    assert numbers["spearman_predicted_durometer"] == [pytest.approx(1, abs=1e-12)]
     wrong = quantities(report(finding(2.02), elastomers=agreeing))
     with pytest.raises(AssertionError):
         np.testing.assert_allclose(wrong["reading_difference"], 0, atol=1e-9)
@@ -83,7 +83,7 @@ def test_readings_off_the_scale_share_a_rank():
         assert "is not finite" not in document_text(ElastomerRanking.example().run(), "0" * 16)
 
 
-def test_a_curve_that_was_cut_short_is_told():
+def test_a_curve_that_was_cut_short_is_reported():
     findings = report(finding(end=1e-3)).findings(())
     assert "predicted_reading" not in findings.steps[-1].values
     assert "modulus_of_reading" not in findings.steps[-1].values
@@ -93,30 +93,30 @@ def test_a_curve_that_was_cut_short_is_told():
 def test_the_atrium():
     made = report(finding())
     made.add_atrium(25.0, (0.01, 1.0), 0)
-    found = quantities(made)
-    assert found["atrium_modulus_by_hertz"] == pytest.approx(86.4e3, abs=100)  # 0.43 N at 1.875 mm by hand
-    assert found["atrium_table_modulus"][-1] == pytest.approx(1e6 / 1708.08, rel=1e-5)  # errata E7, 1/MPa to two decimals
-    assert found["atrium_table_modulus"][0] == pytest.approx(56.45258219e6, rel=1e-9)
-    assert found["atrium_reading_relaxed"] == 0
-    assert found["atrium_reading_instantaneous"] > 98
-    assert 1e-3 < found["atrium_time"] < 1e-2
+    numbers = quantities(made)
+    assert numbers["atrium_modulus_by_hertz"] == pytest.approx(86.4e3, abs=100)  # 0.43 N at 1.875 mm by hand
+    assert numbers["atrium_table_modulus"][-1] == pytest.approx(1e6 / 1708.08, rel=1e-5)  # errata E7, 1/MPa to two decimals
+    assert numbers["atrium_table_modulus"][0] == pytest.approx(56.45258219e6, rel=1e-9)
+    assert numbers["atrium_reading_relaxed"] == 0
+    assert numbers["atrium_reading_instantaneous"] > 98
+    assert 1e-3 < numbers["atrium_time"] < 1e-2
 
 
 @pytest.fixture(scope="module")
 def ranked():
-    told = []
+    steps = []
     made = ElastomerRanking(
         shapes=STABLE_SHAPES[2:], sensor=SENSOR, durometer={"mesh": {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}}
     )
-    return made.run(told.append), told
+    return made.run(steps.append), steps
 
 
 def test_the_whole_run(ranked):
-    result, told = ranked
+    result, steps = ranked
     assert result.status == "converged"
-    assert list(result.steps) == told
-    assert len(told) == 7
-    assert {name for step in told for name in step.values} == set(ElastomerRanking.history_units)
+    assert list(result.steps) == steps
+    assert len(steps) == 7
+    assert {name for step in steps for name in step.values} == set(ElastomerRanking.history_units)
     moduli = result.quantities["modulus_of_threshold"].value[0]
     pressure = result.quantities["own_threshold_pressure"].value[0]
     assert moduli[0] / 10e3 == pytest.approx(89.8e3 / pressure, rel=1e-12)
@@ -137,11 +137,11 @@ def test_the_threshold_scales_with_the_modulus():
 def test_the_threshold_scales_for_every_shape(shape):
     """As above, for the sensor as shipped."""
     terms = {name: 2 * value for name, value in shape.material.model_dump(include={"c10", "c01", "c11"}).items()}
-    found = [
+    computed = [
         SensorTest().of(Shape(name="a", material=material)).run().quantities["threshold_pressure"].value
         for material in (shape.material, MooneyRivlin3(**terms))
     ]
-    assert found[1] == pytest.approx(2 * found[0], rel=1e-6)
+    assert computed[1] == pytest.approx(2 * computed[0], rel=1e-6)
 
 
 def test_a_threshold_that_is_not_reached_is_a_failure():
@@ -154,7 +154,7 @@ def test_a_threshold_that_is_not_reached_is_a_failure():
     assert result.steps == ()
 
 
-def test_an_interruption_is_told(monkeypatch):
+def test_an_interruption_is_reported(monkeypatch):
     def stop(self, shape):
         raise KeyboardInterrupt
 
@@ -163,7 +163,7 @@ def test_an_interruption_is_told(monkeypatch):
     assert (result.status, result.steps, result.quantities) == ("interrupted", (), {})
 
 
-def test_a_solver_that_gives_up_is_told(monkeypatch):
+def test_a_solver_that_gives_up_is_reported(monkeypatch):
     def give_up(self, shape):
         raise Unfinished("no")
 

@@ -1,4 +1,4 @@
-"""The force-depth curve: Hertz's own curve reads what Hertz reads; its ends are told."""
+"""The force-depth curve: Hertz's own curve reads what Hertz reads; its ends are reported."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def values(result):
 
 
 def quiet(record):
-    """Nothing to tell."""
+    """No progress."""
 
 
 def test_a_film_test_reports_2_3_1_at_its_forces_and_times():
@@ -36,7 +36,7 @@ def test_a_film_test_reports_2_3_1_at_its_forces_and_times():
     assert values(result)["reading_resistance"] == pytest.approx(expected[1], rel=1e-9)
 
 
-def test_a_force_beyond_the_creep_tests_is_told():
+def test_a_force_beyond_the_creep_tests_is_reported():
     assert "measured up to 8 N" in FilmTest(forces=(1.0, 5.0, 20.0)).run(quiet).warnings[0]
 
 
@@ -56,14 +56,14 @@ def test_a_film_test_refuses_lists_out_of_order(forces, times):
 
 
 def test_creep_of_the_thesis_comes_back_within_its_intervals():
-    found = values(FilmCreep.example().run(quiet))
+    quantities = values(FilmCreep.example().run(quiet))
     for name, slope, intercept in (
         ("instantaneous", 60900, 651200),
         ("delayed", 449900, 397700),
         ("viscosity", 1208200, 2892800),
     ):
-        assert abs(found[f"{name}_slope"] - slope) < 2 * found[f"{name}_slope_half_width"]
-        assert abs(found[f"{name}_intercept"] - intercept) < 2 * found[f"{name}_intercept_half_width"]
+        assert abs(quantities[f"{name}_slope"] - slope) < 2 * quantities[f"{name}_slope_half_width"]
+        assert abs(quantities[f"{name}_intercept"] - intercept) < 2 * quantities[f"{name}_intercept_half_width"]
 
 
 def test_creep_that_has_no_creep_in_it_fails(tmp_path):
@@ -77,11 +77,11 @@ def test_creep_that_has_no_creep_in_it_fails(tmp_path):
 
 def test_without_noise_the_model_finds_the_force_within_one_step_of_the_converter():
     for force in (Chirp(kind="chirp", duration=5.0), Square(kind="square", duration=3.0)):
-        found = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0)).run(quiet))
-        assert found["inversion_steps"] < 1
+        quantities = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0)).run(quiet))
+        assert quantities["inversion_steps"] < 1
     coarse = {"low": 0.0, "high": 5.0, "bits": 10}
-    found = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0, converter=coarse)).run(quiet))
-    assert found["inversion_steps"] < 1
+    quantities = values(SensorResponse(force=force, chain=SignalChain(sampling_rate=200.0, converter=coarse)).run(quiet))
+    assert quantities["inversion_steps"] < 1
 
 
 def test_noise_takes_the_model_further_than_one_step():
@@ -97,7 +97,7 @@ def test_the_same_seed_gives_the_same_readings():
     assert read[0] != read[2]
 
 
-def test_saturated_samples_are_flagged_and_told():
+def test_saturated_samples_are_flagged_and_reported():
     chain = SignalChain(sampling_rate=200.0, converter={"low": 0.0, "high": 0.3, "bits": 12})
     result = SensorResponse(force=Square(kind="square", duration=2.0), chain=chain).run(quiet)
     assert 0.4 < values(result)["saturated_fraction"] < 0.6
@@ -181,9 +181,9 @@ def test_files_that_cannot_be_read_are_named(tmp_path):
 
 def test_errors_by_range_and_hysteresis():
     force = np.array([0.1, 0.6, 1.1, 1.0])
-    told = range_errors(force, force + np.array([0.1, -0.2, 0.3, 0.1]), (0.0, 1.0, 1.1))
-    assert [r.samples for r in told] == [2, 2]
-    assert told[0].largest == pytest.approx(0.2)
+    ranges = range_errors(force, force + np.array([0.1, -0.2, 0.3, 0.1]), (0.0, 1.0, 1.1))
+    assert [r.samples for r in ranges] == [2, 2]
+    assert ranges[0].largest == pytest.approx(0.2)
     time = np.linspace(0, 1, 2001)
     triangle = 1 - np.abs(2 * time - 1)
     assert hysteresis(triangle, triangle + 0.1 * (time > 0.5)) == pytest.approx(0.1, rel=0.05)

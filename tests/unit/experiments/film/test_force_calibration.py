@@ -100,7 +100,7 @@ def test_a_file_of_two_sensors(written):
         run(data=both.model_copy(update={"sensors": 3}))
 
 
-def test_saturated_readings_are_left_out_and_told():
+def test_saturated_readings_are_left_out_and_reported():
     result = run(chain=SignalChain(converter=Converter(high=2.0)))
     assert result.quantities["excluded"].value > 4
     assert any("saturated and were left out" in words for words in result.warnings)

@@ -44,13 +44,13 @@ def test_it_is_found_by_the_kind_and_drawn(result):
 
 def test_it_says_line_band_and_limits(result):
     figure = force_calibration_figure(result)
-    told = words(figure)
+    written = words(figure)
     offset = result.quantities["intercept"].value / result.quantities["slope"].value
-    assert f"F = {1e-3 / result.quantities['slope'].value:.2f} C − {offset:.3f} (N, mS)" in told
-    assert f"{100 * result.quantities['linearity_negative'].value:+.2f} %" in told
+    assert f"F = {1e-3 / result.quantities['slope'].value:.2f} C − {offset:.3f} (N, mS)" in written
+    assert f"{100 * result.quantities['linearity_negative'].value:+.2f} %" in written
     for part in ("95 % band", "conductance in mS", "force in N", "% of 25 N"):
-        assert part in told
-    assert "left out" not in told
+        assert part in written
+    assert "left out" not in written
     drawn = figure.axes[1].lines[0].get_ydata()
     np.testing.assert_allclose(drawn, [4 * step.values["force_error"] for step in result.steps], rtol=1e-12)  # 100 % / 25 N
 

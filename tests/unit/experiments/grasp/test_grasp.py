@@ -75,32 +75,34 @@ def with_tube(file, lumen, **changes):
 
 
 def test_taxels_read_the_cauchy_pressure_of_a_frictionless_block():
-    found = values(run(contact={"kind": "coulomb", "friction": 0.0}, penetration_tolerance=1e-7))
+    quantities = values(run(contact={"kind": "coulomb", "friction": 0.0}, penetration_tolerance=1e-7))
     stretch = 1 - 2e-3 / SIZE[2]
     cauchy = 2 * C10 * (1 / stretch - stretch**2)
     for side in JAWS:
-        pressure = np.array(found[f"taxel_pressure_{side}"])
+        pressure = np.array(quantities[f"taxel_pressure_{side}"])
         assert pressure == pytest.approx(np.full((3, 3), cauchy), rel=3e-4), "twice the penetration over the closing is 2e-4"
         assert pressure != pytest.approx(np.full((3, 3), cauchy / stretch), rel=3e-4), "the nominal pressure"
-        assert np.abs(found[f"taxel_shear_{side}"]).max() < 1e-6 * cauchy * 81e-6
-        parts = np.sum(found[f"taxel_force_{side}"]) + found[f"gap_force_{side}"] + found[f"outside_force_{side}"]
-        assert parts == pytest.approx(found["reaction_force"], rel=1e-7)
-    assert found["max_penetration"] <= 1e-7
-    assert found["jaw_force_upper"] == pytest.approx(-np.array(found["jaw_force_lower"]), abs=1e-6 * found["reaction_force"])
+        assert np.abs(quantities[f"taxel_shear_{side}"]).max() < 1e-6 * cauchy * 81e-6
+        parts = np.sum(quantities[f"taxel_force_{side}"]) + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
+        assert parts == pytest.approx(quantities["reaction_force"], rel=1e-7)
+    assert quantities["max_penetration"] <= 1e-7
+    assert quantities["jaw_force_upper"] == pytest.approx(
+        -np.array(quantities["jaw_force_lower"]), abs=1e-6 * quantities["reaction_force"]
+    )
 
 
 def test_what_a_run_records():
     result = run(
         time={"steps": 2}, inclusions=[{"shape": BALL, "material": "lump"}], mesh={"kind": "structured", "cells": (4, 4, 4)}
     )
-    found = values(result)
+    quantities = values(result)
     assert [step.values["time"] for step in result.steps] == [0.5, 1.0]
     assert [step.values["displacement"] for step in result.steps] == pytest.approx([0.5e-3, 1e-3])
-    assert np.shape(found["taxel_force_upper_history"]) == (2, 3, 3)
-    assert found["taxel_force_lower_history"][-1] == found["taxel_force_lower"]
-    assert result.steps[-1].values["taxel_force_upper_1_3"] == found["taxel_force_upper"][0][2]
+    assert np.shape(quantities["taxel_force_upper_history"]) == (2, 3, 3)
+    assert quantities["taxel_force_lower_history"][-1] == quantities["taxel_force_lower"]
+    assert result.steps[-1].values["taxel_force_upper_1_3"] == quantities["taxel_force_upper"][0][2]
     assert {name for step in result.steps for name in step.values} <= set(result.units)
-    assert any(result.scene.mesh.content in told for told in result.assumptions)
+    assert any(result.scene.mesh.content in assumption for assumption in result.assumptions)
     assert [result.scene.jaw_places[side][2] for side in JAWS] == pytest.approx([SIZE[2] - 1e-3, 1e-3])
     assert len(result.frames) == 2
     frame = result.frames[-1]
@@ -142,12 +144,12 @@ def test_pressure_alone_swells_the_block_against_the_jaws(tube_file):
     held = pressed({"kind": "hold", "duration": 0.5})
     swelling = [{"kind": "ramp", "to": 1000.0, "duration": 0.5}]
     result = with_tube(tube_file, {"kind": "history", "pieces": swelling}, loading=held)
-    found = values(result)
-    assert found["displacement"] == 0
-    assert found["lumen_pressure"] == pytest.approx([1000.0])
-    assert found["reaction_force"] > 1e-3
-    assert found["jaw_force_upper"][2] == pytest.approx(-found["jaw_force_lower"][2], rel=1e-4)
-    taxels = np.array(found["taxel_force_upper"])
+    quantities = values(result)
+    assert quantities["displacement"] == 0
+    assert quantities["lumen_pressure"] == pytest.approx([1000.0])
+    assert quantities["reaction_force"] > 1e-3
+    assert quantities["jaw_force_upper"][2] == pytest.approx(-quantities["jaw_force_lower"][2], rel=1e-4)
+    taxels = np.array(quantities["taxel_force_upper"])
     assert taxels[1].mean() > 2 * taxels[[0, 2]].mean(), "the row above the tube"
     sucking = [{"kind": "jump", "to": -1000.0, "duration": 0.5}]
     sucked = values(with_tube(tube_file, {"kind": "history", "pieces": sucking}, loading=held))
@@ -202,10 +204,10 @@ def test_an_interruption_keeps_what_was_accepted():
 def test_a_pulse_rises_and_beats(reading, limits):
     pulse = PulsePressure(kind="pulse", reading=reading, rate=2.0, rise=0.5)
     history = pulse.history(10.0)
-    found = history.value([0.5, 0.75, 1.0, 0.625, 9.75])
+    computed = history.value([0.5, 0.75, 1.0, 0.625, 9.75])
     least, most = (MMHG * value for value in limits)
-    assert found == pytest.approx([least, most, least, (least + most) / 2, most], abs=1e-9 * most)
-    assert found != pytest.approx([least, most, least, least, most], abs=1e-9 * most)
+    assert computed == pytest.approx([least, most, least, (least + most) / 2, most], abs=1e-9 * most)
+    assert computed != pytest.approx([least, most, least, least, most], abs=1e-9 * most)
     counted = replace_beats(pulse, 2).history(10.0)
     assert counted.value([1.25, 9.75]) == pytest.approx([most, least], abs=1e-9 * most)
 
@@ -296,7 +298,7 @@ def test_touching_lumps_are_refused_in_cells_too():
         grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
 
 
-def test_a_ragged_lump_is_told():
+def test_a_ragged_lump_is_reported():
     lump = {"shape": BALL, "material": "lump"}
     result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
     assert any("the mesh gives sphere 1" in words for words in result.warnings)

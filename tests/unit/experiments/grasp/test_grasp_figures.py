@@ -83,7 +83,7 @@ def frame():
     return made_up_frame()
 
 
-def told(figure):
+def text_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
@@ -131,13 +131,13 @@ def test_an_artery_is_shown_at_its_highest_pressure(frame):
     frames = (replace(frame, time=steps[2].values["time"]), replace(frame, time=steps[-1].values["time"]))
     pulsing = replace(result, steps=steps, frames=frames)
     shown = shown_moment(pulsing)
-    assert [found.time for found in shown.frames] == [frames[0].time]
+    assert [frame.time for frame in shown.frames] == [frames[0].time]
     assert shown.steps == steps
     force = np.asarray(result.quantities["taxel_force_upper_history"].value)[2]
     np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)
     opened = CLOSING - steps[2].values["displacement"]
     assert shown.scene_as(SimulatedGrasp).jaw_places["upper"][2] == pytest.approx(SIZE[2] - CLOSING + opened)
-    assert "highest pressure, 5 kPa" in told(section_figure(shown))
+    assert "highest pressure, 5 kPa" in text_of(section_figure(shown))
     assert shown_moment(result) is result
     assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
 
@@ -190,17 +190,17 @@ def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
 
 
 def test_large_matrix_shows_colours_only():
-    words = told(maps_figure(made_up(layout=TaxelLayout(rows=12, columns=12, pitch=2.5e-3, size=2e-3))))
+    words = text_of(maps_figure(made_up(layout=TaxelLayout(rows=12, columns=12, pitch=2.5e-3, size=2e-3))))
     assert "N on the taxels" in words
     assert "kPa" in words
 
 
-def test_figures_tell_what_is_seen(frame):
+def test_figures_show_what_is_seen(frame):
     result = made_up(frame=frame, tilt=0.02)
-    section = told(section_figure(result))
+    section = text_of(section_figure(result))
     for words in ("A made-up grasp", "cut at y = 20 mm through the middle of sphere 1", "pressure in the tissue in kPa", "U2,2"):
         assert words in section
-    overview = told(grasp_figure(result))
+    overview = text_of(grasp_figure(result))
     for words in ("upper jaw", "lower jaw (L)", "x in mm", "row 3", "pressure in the lumen", "time in s", "9 of 18 taxels"):
         assert words in overview
 
@@ -208,18 +208,18 @@ def test_figures_tell_what_is_seen(frame):
 def test_history_without_time_is_over_the_closing():
     result = made_up()
     steps = tuple(replace(s, values={n: v for n, v in s.values.items() if n != "time"}) for s in result.steps)
-    assert "closing of each jaw in mm" in told(history_figure(replace(result, steps=steps)))
+    assert "closing of each jaw in mm" in text_of(history_figure(replace(result, steps=steps)))
 
 
 def test_single_step_without_fields_leaves_the_maps():
     alone = made_up(steps=1)
     assert list(figures_for(alone)) == ["grasp.png", "grasp_maps.png", "views.png", "views_pressure.png"]
-    assert "time in s" not in told(grasp_figure(alone))
+    assert "time in s" not in text_of(grasp_figure(alone))
     assert figures_for(replace(alone, steps=())) == {}
 
 
 def test_failed_run_is_marked():
-    assert "FAILED" in told(grasp_figure(made_up(status=Status.FAILED)))
+    assert "FAILED" in text_of(grasp_figure(made_up(status=Status.FAILED)))
 
 
 def test_overview_comes_first_and_the_view_last(frame):
@@ -273,7 +273,7 @@ def test_view_names_what_it_shows(monkeypatch, frame):
         return [blank.getvalue()] * len(cameras)
 
     monkeypatch.setattr(grasp_view, "pictures", drawn)
-    words = told(grasp_view.view_figure(made_up(frame=frame)))
+    words = text_of(grasp_view.view_figure(made_up(frame=frame)))
     for expected in ("upper jaw", "lower jaw", "sphere 1", "each jaw closed by 1 mm", "kPa"):
         assert expected in words
     (surfaces, cameras) = seen[0]

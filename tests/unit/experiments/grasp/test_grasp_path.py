@@ -31,5 +31,5 @@ class Model:
 def test_a_hollow_tube_is_not_squeezed_by_the_first_guess(facets, first):
     experiment = SimpleNamespace(softness=5e-5, loading=SimpleNamespace(control="displacement"), lumens=())
     rest = SimpleNamespace(load=0.0, unknowns=np.zeros(4))
-    found = grasped_block(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
-    assert (found == first).all()
+    computed = grasped_block(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
+    assert (computed == first).all()

@@ -35,7 +35,7 @@ def test_a_grasp_with_a_readout_has_the_voltages_of_18_sensors_over_time(read_gr
     np.testing.assert_array_equal(voltage[-1], value(read_grasp, "voltage_upper"))
     error = value(read_grasp, "read_force_upper") - value(read_grasp, "taxel_force_upper")
     assert np.abs(error).max() <= float(value(read_grasp, "read_force_largest_error"))
-    assert any("calibration by the film's own line" in told for told in read_grasp.assumptions)
+    assert any("calibration by the film's own line" in assumption for assumption in read_grasp.assumptions)
     assert "taxel_voltages.png" in figures_for(read_grasp)
 
 

@@ -38,18 +38,18 @@ def texts(figure):
     return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
-def test_threshold_and_title_are_told():
-    told = texts(indentation_figure(made_up()))
+def test_threshold_and_title_are_reported():
+    written = texts(indentation_figure(made_up()))
     for words in ("A title", "threshold", "75.45 kPa", "1.6 N", "pressure in kPa", "displacement in"):
-        assert words in told
-    assert "FAILED" not in told
+        assert words in written
+    assert "FAILED" not in written
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    told = texts(indentation_figure(replace(made_up(status), quantities={})))
-    assert f"{status.upper()} after a displacement" in told
-    assert "because" in told
+    written = texts(indentation_figure(replace(made_up(status), quantities={})))
+    assert f"{status.upper()} after a displacement" in written
+    assert "because" in written
 
 
 def test_rise_reaches_the_recess_on_its_own_axis():

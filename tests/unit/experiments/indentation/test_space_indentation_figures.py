@@ -40,33 +40,33 @@ def made_up(symmetry="half", status=Status.CONVERGED):
 
 @pytest.mark.parametrize(("symmetry", "sections"), [("quarter", 1), ("half", 2), ("whole", 2)])
 def test_cut_is_the_section_once_on_each_side_that_is_computed(symmetry, sections):
-    found = cut(made_up(symmetry).frames[-1])
-    assert len(found.cells["triangle6"]) == sections * len(SECTION.elements)
-    corners = found.points[found.cells["triangle6"][:, :3], :2]
+    section = cut(made_up(symmetry).frames[-1])
+    assert len(section.cells["triangle6"]) == sections * len(SECTION.elements)
+    corners = section.points[section.cells["triangle6"][:, :3], :2]
     sides = corners[:, 1:] - corners[:, :1]
     area = np.abs(np.linalg.det(sides)).sum() / 2
     assert area == pytest.approx(sections * 8e-3 * 4e-3, rel=1e-12)
     assert area != pytest.approx((3 - sections) * 8e-3 * 4e-3, rel=0.1)
-    edges, outline = Section(found).edges()
-    middles = found.points[edges[:, 1]]
-    np.testing.assert_allclose(middles, found.points[edges[:, [0, 2]]].mean(axis=1), atol=1e-15)
+    edges, outline = Section(section).edges()
+    middles = section.points[edges[:, 1]]
+    np.testing.assert_allclose(middles, section.points[edges[:, [0, 2]]].mean(axis=1), atol=1e-15)
     assert outline.any()
 
 
 @pytest.mark.parametrize("symmetry", list(TURNS))
-def test_figure_tells_what_is_seen(symmetry):
-    told = " ".join(text.get_text() for text in space_indentation_figure(made_up(symmetry)).findobj(Text))
+def test_figure_shows_what_is_seen(symmetry):
+    written = " ".join(text.get_text() for text in space_indentation_figure(made_up(symmetry)).findobj(Text))
     for words in ("A title", "cut y = 0", "pressure in", "inner sensor", "displacement in"):
-        assert words in told
-    assert ("sectors of the annulus" in told) == (symmetry != "quarter")
+        assert words in written
+    assert ("sectors of the annulus" in written) == (symmetry != "quarter")
 
 
 def test_failed_run_is_marked_and_fields_may_be_missing():
     failed = made_up(status=Status.FAILED)
-    told = " ".join(text.get_text() for text in space_indentation_figure(replace(failed, frames=())).findobj(Text))
-    assert "FAILED" in told
-    assert "because" in told
-    assert "cut" not in told
+    written = " ".join(text.get_text() for text in space_indentation_figure(replace(failed, frames=())).findobj(Text))
+    assert "FAILED" in written
+    assert "because" in written
+    assert "cut" not in written
 
 
 def test_drawings_are_png_and_none_without_steps():

@@ -21,12 +21,12 @@ LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
 
 def stored(folder, forces, inclusions):
     layout = TaxelLayout()
-    found = {"displacement": Quantity(1e-3, "m", "")}
+    quantities = {"displacement": Quantity(1e-3, "m", "")}
     for jaw, side in enumerate(("upper", "lower")):
-        found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
+        quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
     scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, width=40e-3, depth=40e-3)
     step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})
-    result = Result("grasp", Status.CONVERGED, "", found, steps=(step,), units={"displacement": "m"}, scene=scene)
+    result = Result("grasp", Status.CONVERGED, "", quantities, steps=(step,), units={"displacement": "m"}, scene=scene)
     return str(write_result(result, folder, case_id="0" * 16, provenance={}))
 
 

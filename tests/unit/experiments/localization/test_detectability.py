@@ -22,16 +22,16 @@ RADII = np.array([2e-3, 4e-3, 6e-3, 8e-3])
 
 
 def test_one_template_has_the_threshold_of_a_normal_number():
-    found = false_alarm_threshold(np.eye(4)[:1], 0.05, draws=200_000, seed=1)
-    assert found == pytest.approx(ndtri(0.975), abs=0.02)  # scatter of 200 000 draws
-    assert found != pytest.approx(ndtri(0.95), abs=0.02)
+    threshold = false_alarm_threshold(np.eye(4)[:1], 0.05, draws=200_000, seed=1)
+    assert threshold == pytest.approx(ndtri(0.975), abs=0.02)  # scatter of 200 000 draws
+    assert threshold != pytest.approx(ndtri(0.95), abs=0.02)
 
 
 def test_independent_templates_raise_the_threshold():
-    found = false_alarm_threshold(np.eye(10), 0.05, draws=100_000, seed=1)
+    threshold = false_alarm_threshold(np.eye(10), 0.05, draws=100_000, seed=1)
     exact = ndtri(1 - (1 - 0.95 ** (1 / 10)) / 2)
-    assert found == pytest.approx(exact, abs=0.03)
-    assert found != pytest.approx(ndtri(0.975), abs=0.03)
+    assert threshold == pytest.approx(exact, abs=0.03)
+    assert threshold != pytest.approx(ndtri(0.975), abs=0.03)
 
 
 def test_power_is_that_of_the_noncentral_chi_square():
@@ -43,12 +43,12 @@ def test_power_is_that_of_the_noncentral_chi_square():
 
 def test_the_smallest_radius_of_a_constant_density_is_exact():
     densities, sigma, threshold = np.full((1, 4), 1e6), 0.04, 3.0
-    found = smallest_radius(densities, RADII, 8e-3, contrast=2.0, sigma=sigma, threshold=threshold, wanted=0.9)
+    computed = smallest_radius(densities, RADII, 8e-3, contrast=2.0, sigma=sigma, threshold=threshold, wanted=0.9)
     match = threshold + ndtri(0.9)  # the other tail is below 1e-12
     exact = (match * sigma / (2.0 * 1e6) / (4 / 3 * np.pi)) ** (1 / 3)
-    assert found == pytest.approx(exact, abs=2e-7)
-    half_found = (threshold * sigma / (2.0 * 1e6) / (4 / 3 * np.pi)) ** (1 / 3)
-    assert found != pytest.approx(half_found, abs=2e-7), "that of one half of the lumps"
+    assert computed == pytest.approx(exact, abs=2e-7)
+    half_radius = (threshold * sigma / (2.0 * 1e6) / (4 / 3 * np.pi)) ** (1 / 3)
+    assert computed != pytest.approx(half_radius, abs=2e-7), "that of one half of the lumps"
 
 
 def test_no_radius_is_null():
@@ -84,14 +84,14 @@ def run(monkeypatch):
 
 def test_the_map_is_symmetric_and_deeper_lumps_are_harder_to_find(run):
     result = run(depths=(4e-3, 7e-3, 10e-3, 13e-3, 16e-3), shear_ratios=(1.8, 100.0)).run()
-    found = np.array(result.quantities["smallest_radius"].value, dtype=float)
-    assert found.shape == (2, 2, 5)
-    np.testing.assert_allclose(found, found[..., ::-1], rtol=1e-4)
-    assert np.nanmax(found[1, 0]) == found[1, 0, 2]
-    assert np.all(found[1, 0] < np.where(np.isnan(found[0, 0]), np.inf, found[0, 0]))
+    radii = np.array(result.quantities["smallest_radius"].value, dtype=float)
+    assert radii.shape == (2, 2, 5)
+    np.testing.assert_allclose(radii, radii[..., ::-1], rtol=1e-4)
+    assert np.nanmax(radii[1, 0]) == radii[1, 0, 2]
+    assert np.all(radii[1, 0] < np.where(np.isnan(radii[0, 0]), np.inf, radii[0, 0]))
     scaled = np.array(result.quantities["smallest_radius_by_area"].value, dtype=float)
-    np.testing.assert_allclose(scaled[:, 0], found[:, 0])
-    assert np.all(scaled[1, 1, 1:-1] < found[1, 1, 1:-1])
+    np.testing.assert_allclose(scaled[:, 0], radii[:, 0])
+    assert np.all(scaled[1, 1, 1:-1] < radii[1, 1, 1:-1])
 
 
 def test_less_noise_finds_smaller_lumps(run):
@@ -135,8 +135,8 @@ def test_templates_have_unit_length_and_leave_out_what_nothing_feels():
 def test_the_coarse_response_does_not_depend_on_its_parts(monkeypatch):
     points = np.random.default_rng(1).random((500, 3)) * [40e-3, 40e-3, 20e-3]
     densities = np.random.default_rng(2).random((2, 3, 3, 500))
-    told = lump_sensitivity.Sensitivity(points, np.full(500, 6.4e-8), densities, np.zeros((2, 3, 3)))
-    monkeypatch.setattr(lump_sensitivity, "sensitivity", lambda setup: told)
+    adjoint = lump_sensitivity.Sensitivity(points, np.full(500, 6.4e-8), densities, np.zeros((2, 3, 3)))
+    monkeypatch.setattr(lump_sensitivity, "sensitivity", lambda setup: adjoint)
     setup = Detectability.example().grasp
     whole = coarse_response(setup)
     monkeypatch.setattr(detectability, "ROWS_AT_ONCE", 5)

@@ -35,16 +35,16 @@ ESTIMATOR = ThesisEstimator(background="reference")
 
 def grasp(forces, *, closing=1e-3, inclusions=(SPHERE,), apart=0.0, layout=None, extra=None):
     layout = layout or TaxelLayout()
-    found = {"displacement": Quantity(closing, "m", "")}
+    quantities = {"displacement": Quantity(closing, "m", "")}
     for jaw, side in enumerate(("upper", "lower")):
-        found[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
-        found[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
+        quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
+        quantities[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
     scene = grasp_scene(SIZE, layout, inclusions, width=40e-3, depth=40e-3)
     x, y, z = scene.jaw_places["upper"]
     scene = scene.model_copy(update={"jaw_places": scene.jaw_places | {"upper": (x + apart, y, z)}})
     step = StepRecord(1, 3, 0.0, {"displacement": closing})
     return Result(
-        "grasp", Status.CONVERGED, "made up", found | (extra or {}), steps=(step,), units={"displacement": "m"}, scene=scene
+        "grasp", Status.CONVERGED, "made up", quantities | (extra or {}), steps=(step,), units={"displacement": "m"}, scene=scene
     )
 
 
@@ -68,7 +68,7 @@ def value(result, name):
     return np.asarray(result.quantities[name].value)
 
 
-def test_a_stored_ball_is_found_and_the_errors_told(folders):
+def test_a_stored_ball_is_found_and_the_errors_reported(folders):
     result = run(folders)
     assert value(result, "present") == 1
     assert np.abs(value(result, "estimated_center") - SPHERE.center).max() < 1e-3
@@ -118,7 +118,7 @@ def test_every_matrix_has_views(layout):
     assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
 
 
-def test_dead_taxels_are_interpolated_and_told(folders):
+def test_dead_taxels_are_interpolated_and_reported(folders):
     result = run(folders, dead=(("upper", 2, 2), ("lower", 3, 1)))
     assert value(result, "present") == 1
     assert any("neighbours: 2" in words for words in result.warnings)

@@ -46,7 +46,7 @@ def test_a_response_is_computed_once_without_the_inclusions(computed, tmp_path):
 
 
 def test_only_the_case_of_a_grasp_will_do(computed, tmp_path):
-    with pytest.raises(InputError, match="does not tell the case of a grasp"):
+    with pytest.raises(InputError, match="does not hold the case of a grasp"):
         stored_response(stored(tmp_path / "film", FilmTest.example()), cache=tmp_path)
     with pytest.raises(StorageError):
         stored_response(str(tmp_path / "none"), cache=tmp_path)

@@ -70,13 +70,13 @@ def test_the_rankings_of_figure_5_8(three):
 
 
 def test_every_touch_is_read(three):
-    for number, told in enumerate(three.scene.touches, 1):
-        assert told.count == 1
-        assert [closing.switch for closing in told.closings] == [1, 2, 3, 4, 5]
-        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(told.rate, rel=0.03)
+    for number, touch in enumerate(three.scene.touches, 1):
+        assert touch.count == 1
+        assert [closing.switch for closing in touch.closings] == [1, 2, 3, 4, 5]
+        assert three.quantities[f"mean_rate_{number}"].value == pytest.approx(touch.rate, rel=0.03)
         intervals = three.quantities[f"switching_intervals_{number}"].value
         assert intervals[1:] == pytest.approx(
-            1e-3 / told.rate, rel=0.05
+            1e-3 / touch.rate, rel=0.05
         )  # the pressure on each switch is higher, so its threshold is met sooner
         read, true = three.quantities[f"switching_forces_{number}"].value, three.quantities[f"forces_{number}"].value
         assert ((read < true * 1.05) & (read > true * 0.85)).all(), "half a strip early, late by the threshold"
@@ -123,13 +123,13 @@ def test_figures(three):
     drawings = figures_for(three)
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
-    told = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
+    written = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
     for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
-        assert words in told
+        assert words in written
     single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
-    told = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
-    assert "not every switch closed" in told
+    written = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
+    assert "not every switch closed" in written
 
 
 @pytest.mark.parametrize(("error", "status"), [(KeyboardInterrupt(), "interrupted"), (ConvergenceError("no luck"), "failed")])
@@ -140,11 +140,11 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
         return touched(setup, chosen, rate, generator)
 
     monkeypatch.setattr(run, "touched", stopped)
-    found = probe(rates=(1e-3, 3e-3)).run()
-    assert found.status == status
-    assert "forces_1" in found.quantities
-    assert "forces_2" not in found.quantities
-    assert figures_for(found)["force_over_depth.png"]().startswith(b"\x89PNG")
+    result = probe(rates=(1e-3, 3e-3)).run()
+    assert result.status == status
+    assert "forces_1" in result.quantities
+    assert "forces_2" not in result.quantities
+    assert figures_for(result)["force_over_depth.png"]().startswith(b"\x89PNG")
     nothing = probe(rates=(3e-3,)).run()
     assert (nothing.status, nothing.steps, figures_for(nothing)) == (status, (), {})
 
@@ -173,26 +173,26 @@ def test_impossible_experiments_are_refused(changes, words):
 def test_finite_elements_on_a_coarse_mesh_agree_with_the_fast_model():
     given = {"depth": 2e-3, "sides": "computed"}
     fast = probe(**given).run()
-    found = probe(model="fem", **COARSE, **given).run()
-    assert found.status is Status.CONVERGED, found.reason
+    result = probe(model="fem", **COARSE, **given).run()
+    assert result.status is Status.CONVERGED, result.reason
     expected = fast.quantities["forces_1"].value
-    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
+    np.testing.assert_allclose(result.quantities["forces_1"].value, expected, rtol=0.02)  # the coarse mesh; see the slow test
     elastic = probe(tissues=(ELASTIC,), **given).run()
-    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
+    assert not np.allclose(result.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("rate", "fractions"), [(0.5e-3, (0.9,)), (1e-3, (0.9,)), (3e-3, (0.4,))])
 def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fractions):
     given = {"tissues": (tissue(fractions=fractions),), "rates": (rate,), "sides": "computed"}
-    fast, found = (probe(model=model, **given).run() for model in ("fast", "fem"))
+    fast, elements = (probe(model=model, **given).run() for model in ("fast", "fem"))
     expected = fast.quantities["forces_1"].value
-    np.testing.assert_allclose(found.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
+    np.testing.assert_allclose(elements.quantities["forces_1"].value, expected, rtol=0.02)  # superposition at finite strain
     elastic = probe(**given | {"tissues": (ELASTIC,)}).run()
-    assert not np.allclose(found.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
-    heights = [run.quantities["contact_height_1"].value for run in (fast, found)]
+    assert not np.allclose(elements.quantities["forces_1"].value, elastic.quantities["forces_1"].value, rtol=0.02)
+    heights = [run.quantities["contact_height_1"].value for run in (fast, elements)]
     assert heights[1] == pytest.approx(heights[0], rel=0.03)
-    pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, found)]
+    pressed = [max(step.values["switch_force_1"] for step in run.steps) for run in (fast, elements)]
     assert pressed[0] == pytest.approx(pressed[1], rel=0.35), (
         "a strip under the last edge of the contact; superposition is rough there"
     )
@@ -200,8 +200,8 @@ def test_the_fast_model_is_the_finite_elements_within_two_percent(rate, fraction
 
 @pytest.mark.slow
 def test_the_curve_is_that_of_the_finite_elements():
-    fast, found = (probe(model=model, tissues=(ELASTIC,), sides="computed").run() for model in ("fast", "fem"))
-    np.testing.assert_allclose(found.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
-    assert found.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
+    fast, elements = (probe(model=model, tissues=(ELASTIC,), sides="computed").run() for model in ("fast", "fem"))
+    np.testing.assert_allclose(elements.quantities["forces_1"].value, fast.quantities["forces_1"].value, rtol=2e-3)
+    assert elements.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
     relaxing = probe(sides="computed").run()
-    assert not np.allclose(found.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)
+    assert not np.allclose(elements.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)

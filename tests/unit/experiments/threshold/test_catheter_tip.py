@@ -64,7 +64,7 @@ def test_shares_are_areas_and_mixed_thresholds_lie_between():
     assert alone[0] < mixed[0].force < alone[1]
 
 
-def test_straddling_and_small_thresholds_are_told():
+def test_straddling_and_small_thresholds_are_reported():
     result = run(place=(10e-3, 0.0))
     assert result.scene.straddles == (True, False, False, False)
     assert any("over two tissues: 1" in warning for warning in result.warnings)
@@ -91,7 +91,7 @@ def test_between_equally_hard_tissues_no_answer_is_wrong():
     assert run(surface=bands(20e3, 20e3, 20e3), sensor=noisy(5e-3), trials=50).quantities["chance_of_wrong"].value == 0
 
 
-def test_touches_without_a_usable_threshold_are_told():
+def test_touches_without_a_usable_threshold_are_reported():
     assert any("touches report no usable threshold" in words for words in run(sensor=noisy(1.0)).warnings)
     assert not any("touches report no usable threshold" in words for words in run().warnings)
     assert tip(tilt="30 deg").tilt == pytest.approx(np.pi / 6)
@@ -127,8 +127,8 @@ def test_figure():
     assert list(drawings) == ["catheter_tip.png"]
     assert drawings["catheter_tip.png"]().startswith(b"\x89PNG")
     words = " ".join(text.get_text() for text in catheter_tip_figure(result).findobj(Text))
-    for told in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
-        assert told in words
+    for label in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
+        assert label in words
     none = run(press=0.05e-3)
     assert figures_for(none)["catheter_tip.png"]().startswith(b"\x89PNG")
 

@@ -69,13 +69,13 @@ def test_errors_over_speed_noise_and_cutoff(result):
 
 
 def test_the_recording_and_its_capture(result):
-    told = result.scene.capture
+    capture = result.scene.capture
     times = np.array([step.values["time"] for step in result.steps])
-    at = int(np.searchsorted(times, told.trigger_time))
-    assert times[at] == told.trigger_time
-    assert result.steps[at].values["large_reading"] == told.captured_force
-    assert result.steps[at].values["small_reading"] > told.trigger_level
-    assert told.trigger_time > told.touch_time > told.armed_time
+    at = int(np.searchsorted(times, capture.trigger_time))
+    assert times[at] == capture.trigger_time
+    assert result.steps[at].values["large_reading"] == capture.captured_force
+    assert result.steps[at].values["small_reading"] > capture.trigger_level
+    assert capture.trigger_time > capture.touch_time > capture.armed_time
     assert set(result.steps[0].values) == set(result.units) <= set(ThresholdTrial.history_units)
 
 
@@ -84,8 +84,8 @@ def test_figures(result):
     assert list(drawings) == ["threshold_errors.png", "threshold_signals.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
     words = " ".join(text.get_text() for text in threshold_error_figure(result).findobj(Text))
-    for told in ("lag of the filter", "cut-off of the low pass in Hz", "mean ± standard deviation", "speed in mm/s"):
-        assert told in words
+    for label in ("lag of the filter", "cut-off of the low pass in Hz", "mean ± standard deviation", "speed in mm/s"):
+        assert label in words
     assert "captured threshold" in " ".join(text.get_text() for text in threshold_signal_figure(result).findobj(Text))
 
 
@@ -96,7 +96,7 @@ def test_the_same_seed_gives_the_same_result():
     assert first.quantities["force_error"] != other.quantities["force_error"]
 
 
-def test_rates_of_false_missed_and_saturated_trials_are_told_and_drawn():
+def test_rates_of_false_missed_and_saturated_trials_are_reported_and_drawn():
     false = run(sensor=ThresholdSensor(trigger=TriggerLevel(multiple=1.5)), noises=(1e-3,))
     assert grid(false, "false_rate")[0, 0, 0] == 1
     assert false.quantities["force_error"].value == [[[None]]]
@@ -111,7 +111,7 @@ def test_rates_of_false_missed_and_saturated_trials_are_told_and_drawn():
         assert all(draw().startswith(b"\x89PNG") for draw in figures_for(result).values())
 
 
-def test_a_threshold_below_the_resolution_is_told():
+def test_a_threshold_below_the_resolution_is_reported():
     soft = LAYER.model_copy(update={"recess": 0.2e-3})
     assert any("E27" in warning for warning in run(source=soft).warnings)
     assert not any("E27" in warning for warning in run().warnings)
@@ -127,14 +127,14 @@ def test_films_can_conduct_in_place_of_the_line():
     below_zero = Converter(low=-0.1, high=4.9)
     chain = SignalChain(converter=below_zero, low_pass=SignalChain().low_pass)
     sensor = ThresholdSensor(large=ForceSensor(film=Film()), small=ForceSensor(film=Film()), chain=chain)
-    found = run(sensor=sensor)
-    assert found.status is Status.CONVERGED
-    assert grid(found, "false_rate").max() == 0
-    parts = [grid(found, f"{name}_error")[0, 0, 0] for name in ("level", "film", "filter", "sampling", "noise")]
-    assert sum(parts) == pytest.approx(grid(found, "force_error")[0, 0, 0], rel=1e-9)
+    outcome = run(sensor=sensor)
+    assert outcome.status is Status.CONVERGED
+    assert grid(outcome, "false_rate").max() == 0
+    parts = [grid(outcome, f"{name}_error")[0, 0, 0] for name in ("level", "film", "filter", "sampling", "noise")]
+    assert sum(parts) == pytest.approx(grid(outcome, "force_error")[0, 0, 0], rel=1e-9)
     assert parts[1] != 0
     assert grid(run(), "film_error")[0, 0, 0] == 0
-    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(found).values())
+    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(outcome).values())
 
 
 def test_the_large_sensor_with_and_without_the_small_one_on_it():
