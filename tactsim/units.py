@@ -154,6 +154,22 @@ def parse_quantity(text: str, unit: str) -> float:
     return float(f"{converted:.15g}")  # so that "0.8 mm" and "800 um" are the same float
 
 
+def conversion(given_unit: str, unit: str) -> float:
+    """How many ``unit`` one ``given_unit`` is.
+
+    Raises
+    ------
+    InvalidQuantity
+        If either is unknown, or their dimensions differ.
+    """
+    import pint
+
+    try:
+        return _factor_to(unit or "1", given_unit or "1") if (unit or "1") != (given_unit or "1") else 1.0
+    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+        raise InvalidQuantity(f"{shown(unit)} is not a unit of what is in {shown(given_unit)}") from None
+
+
 def format_quantity(value: float, unit: str) -> str:
     """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``; angles in degrees."""
     if unit in ("", "1"):

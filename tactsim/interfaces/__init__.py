@@ -33,8 +33,8 @@ from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
 from tactsim.units import Area
 
-Drawing = Callable[[], bytes]
-"""Draws one figure and returns it as PNG."""
+Drawing = Callable[..., bytes]
+"""Draws one figure and returns it as PNG, or as the form (``png``, ``svg``, ``pdf``) that it is called with."""
 
 
 class Material(CaseKind):

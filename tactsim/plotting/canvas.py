@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,8 @@ RESOLUTION = 160
 
 LONGEST_TITLE = 200
 """Characters; a case allows no longer title."""
+VECTOR = {"svg.fonttype": "none", "svg.hashsalt": "tactsim", "pdf.fonttype": 42}
+UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 STYLE = {"font.size": 9.0, "axes.titlesize": 9.5, "axes.linewidth": 0.7, "legend.frameon": False, "lines.linewidth": 1.5}
 
 
@@ -29,11 +33,30 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def encoded(figure: Figure, form: str = "png") -> bytes:
+    """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date."""
+    content = io.BytesIO()
+    if form == "png":
+        figure.savefig(content, format="png", dpi=RESOLUTION)
+    else:
+        with rc_context(VECTOR):  # type: ignore[arg-type]
+            figure.savefig(content, format=form, dpi=2 * RESOLUTION, metadata=UNDATED[form])
+    return content.getvalue()
+
+
 def png(figure: Figure) -> bytes:
     """The figure as PNG."""
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=RESOLUTION)
-    return content.getvalue()
+    return encoded(figure)
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A figure that is drawn when it is wanted, and encoded as it is wanted."""
+
+    figure: Callable[[], Figure]
+
+    def __call__(self, form: str = "png") -> bytes:
+        return encoded(self.figure(), form)
 
 
 def styled() -> AbstractContextManager[Any]:

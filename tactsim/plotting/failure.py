@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable
 
 from matplotlib.figure import Figure
 
-from tactsim.errors import TactsimError
-from tactsim.plotting.canvas import png
 from tactsim.results import Result, Status
 
 FAILED_COLOUR = "#b00020"
@@ -30,17 +27,3 @@ def mark_failure(figure: Figure, result: Result, where: str = "") -> None:
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     figure.supxlabel("\n".join(lines), color=FAILED_COLOUR, fontsize=9.5, fontweight="bold")
     figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
-
-
-def rendered(name: str, draw: Callable[[], Figure]) -> bytes:
-    """The PNG of a figure that needs a renderer.
-
-    Raises
-    ------
-    TactsimError
-        If this machine cannot render; it says that ``name`` is left out.
-    """
-    try:
-        return png(draw())
-    except TactsimError as error:
-        raise TactsimError(f"{name} is left out: {error}") from error

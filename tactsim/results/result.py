@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+import importlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import StrEnum
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, shown
+from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, UnknownName, shown
 from tactsim.results.scene import Scene, UnreadableScene
+from tactsim.units import conversion
+
+if TYPE_CHECKING:
+    import pyvista
+    import xarray
+    from matplotlib.figure import Figure
 
 AnyScene = TypeVar("AnyScene", bound=Scene)
 
@@ -30,16 +38,56 @@ class Status(StrEnum):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number or array in SI with its unit."""
+    """A number or an array with its unit; in SI where tactsim made it.
+
+    Attributes
+    ----------
+    value : number, or nested lists of numbers
+    unit : such as ``Pa``; ``1`` for a plain number
+    dims : names of the axes of an array, as `array` has them
+    """
 
     value: Any
     unit: str
     description: str
+    dims: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
     @property
-    def array(self) -> np.ndarray:
+    def numbers(self) -> np.ndarray:
         """The value as an array of floats, NaN where it has none."""
         return np.asarray(self.value, dtype=float)
+
+    @property
+    def array(self) -> xarray.DataArray:
+        """The value as a `xarray.DataArray` with its unit and description in ``attrs``; a number has no dimensions."""
+        import xarray
+
+        attributes = {"units": self.unit, "long_name": self.description}
+        return xarray.DataArray(self.numbers, dims=self.dims or None, attrs=attributes)
+
+    def to(self, unit: str) -> Quantity:
+        """The same quantity in another unit.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the unit is unknown or has another dimension.
+        """
+        factor = conversion(self.unit, unit)
+        value = self.numbers * factor
+        return replace(self, value=float(value) if value.ndim == 0 else value.tolist(), unit=unit)
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self.numbers, dtype=dtype)
+
+    def __format__(self, form: str) -> str:
+        return f"{format(self.value, form)} {self.unit}".removesuffix(" 1") if form else str(self)
+
+    def __str__(self) -> str:
+        return f"{self.value} {self.unit}".removesuffix(" 1")
 
 
 @dataclass(frozen=True)
@@ -74,7 +122,7 @@ class FieldFrame:
     cell_data: dict[str, np.ndarray] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """What a run computed.
 
@@ -84,6 +132,8 @@ class Result:
     units : unit of every history value
     title : that of the case, empty without one
     scene : what later stages read beside quantities and history; see `scene_as`
+    experiment : what was run; None of a result that was read
+    provenance : the case with its id, versions, seeds and the identity of the code, where known
     """
 
     kind: str
@@ -98,10 +148,86 @@ class Result:
     frames: tuple[FieldFrame, ...] = ()
     title: str = ""
     scene: Scene | UnreadableScene | None = None
+    experiment: Any = field(default=None, compare=False)
+    provenance: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
-    def history(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Quantity:
+        """A quantity by its name.
+
+        Raises
+        ------
+        UnknownName
+            With the nearest name.
+        """
+        if name not in self.quantities:
+            raise UnknownName("quantity", str(name), self.quantities)
+        quantity = self.quantities[name]
+        return replace(quantity, dims=dimensions(name, quantity.numbers.ndim))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.quantities
+
+    def __eq__(self, other: object) -> bool:
+        """Whether every number, text and field is the same to the last bit; times that a run took count too."""
+        return isinstance(other, Result) and all(
+            identical(getattr(self, one.name), getattr(other, one.name)) for one in fields(self) if one.compare
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def history(self) -> xarray.Dataset:
+        """Every history value over the accepted steps, unit in ``attrs``, with what each step took."""
+        import xarray
+
+        names = dict.fromkeys(name for record in self.steps for name in record.values)
+        columns: dict[str, Any] = {
+            name: ("step", self.history_values(name), {"units": self.units.get(name, "1")}) for name in names
+        }
+        columns["newton_iterations"] = ("step", [record.newton_iterations for record in self.steps], {"units": "1"})
+        columns["residual"] = ("step", [record.residual for record in self.steps], {"units": "1"})
+        attributes = {"kind": self.kind, "status": str(self.status), "title": self.title}
+        return xarray.Dataset(columns, {"step": [record.step for record in self.steps]}, attributes)
+
+    def history_values(self, name: str) -> np.ndarray:
         """A history value at every accepted step, shape (steps,) in SI, NaN where a step has none."""
         return np.array([step.values.get(name, np.nan) for step in self.steps], dtype=float)
+
+    def fields(self) -> pyvista.UnstructuredGrid:
+        """The deformed body at the last kept state with its fields, their units in the names.
+
+        Raises
+        ------
+        InputError
+            If the run kept no fields.
+        """
+        mesh: pyvista.UnstructuredGrid = _presentation().field_mesh(self)
+        return mesh
+
+    def plot(self) -> dict[str, Figure]:
+        """Name -> `matplotlib.figure.Figure` of every figure of the run, the main one first."""
+        figures: dict[str, Figure] = _presentation().figures(self)
+        return figures
+
+    def save(self, directory: str | Path, *, force: bool = False) -> Path:
+        """Writes the folder that ``tactsim run`` writes and returns its path; `tactsim.load_result` reads it.
+
+        Raises
+        ------
+        StorageError
+            If the place is taken (``force`` replaces an earlier result of tactsim), or cannot be written.
+        InputError
+            If the result was not run from a case or an experiment.
+        """
+        place: Path = _presentation().save(self, directory, force=force)
+        return place
+
+    def _repr_html_(self) -> str:
+        text: str = _presentation().html(self)
+        return text
+
+    def __repr__(self) -> str:
+        return f"<Result of {self.kind}: {self.status}, {len(self.steps)} steps, {len(self.quantities)} quantities>"
 
     def scene_as(self, model: type[AnyScene]) -> AnyScene:
         """The scene as a kind of scene.
@@ -118,3 +244,29 @@ class Result:
         if isinstance(self.scene, UnreadableScene):
             raise StorageError(f"the scene of the result cannot be read: {self.scene.reason}; run the case again")
         raise InputError(f"the result of {shown(self.kind)} holds no {model.__name__}")
+
+
+def dimensions(name: str, count: int) -> tuple[str, ...]:
+    """Names of the axes of a quantity's array, empty where only their number is known."""
+    over_time = ("time",) if name.endswith("_history") else ()
+    known = {"taxel": ("row", "column"), "voltage": ("row", "column"), "read": ("row", "column")}
+    named = (*over_time, *known.get(name.partition("_")[0], ()))
+    return named if len(named) == count else ()
+
+
+def identical(one: Any, other: Any) -> bool:
+    """Whether two plain values are the same to the last bit; NaN is NaN, and a list is a tuple or an array of the same."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(identical(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple | np.ndarray) and isinstance(other, list | tuple | np.ndarray):
+        return len(one) == len(other) and all(map(identical, one, other))
+    if is_dataclass(one) and type(one) is type(other):
+        return all(identical(getattr(one, part.name), getattr(other, part.name)) for part in fields(one) if part.compare)
+    if isinstance(one, float | np.floating) and isinstance(other, float | np.floating):
+        return bool(one == other or (one != one and other != other))
+    return bool(one == other)
+
+
+def _presentation() -> Any:
+    """What a result shows of itself is built of upper rooms, which are loaded when they are asked."""
+    return importlib.import_module("tactsim.presentation")

@@ -102,7 +102,7 @@ FOLDER = {
                     return {}
                 figure = new_figure(3.0, 2.0)
                 colour = result.scene_as(SpringScene).colour
-                figure.subplots().plot(result.history("extension"), result.history("force"), color=colour)
+                figure.subplots().plot(result.history_values("extension"), result.history_values("force"), color=colour)
                 return {"spring.png": lambda: png(figure)}
     ''',
     "recorder": '''

@@ -5,31 +5,39 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from tactsim.errors import TactsimError
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.results import Result
 
+FORMS = ("png", "svg", "pdf")
+"""Forms of a figure's file."""
 
-def rendered_figures(result: Result) -> tuple[dict[str, bytes], list[str]]:
-    """File name -> PNG bytes of a result's figures, the main one first, and warnings."""
 
-    def drawings() -> Mapping[str, Callable[[], bytes]]:
+def rendered_figures(result: Result, form: str = "png") -> tuple[dict[str, bytes], list[str]]:
+    """File name -> content of a result's figures, the main one first, and warnings."""
+
+    def drawings() -> Mapping[str, Callable[..., bytes]]:
         from tactsim.plotting import figures_for  # type: ignore[attr-defined,unused-ignore]
 
         return figures_for(result)
 
-    return drawn_figures(drawings)
+    return drawn_figures(drawings, form)
 
 
-def drawn_figures(drawings: Callable[[], Mapping[str, Callable[[], bytes]]]) -> tuple[dict[str, bytes], list[str]]:
-    """File name -> PNG bytes of those figures that could be drawn, and warnings: of libraries, and why others could not."""
+def drawn_figures(
+    drawings: Callable[[], Mapping[str, Callable[..., bytes]]], form: str = "png"
+) -> tuple[dict[str, bytes], list[str]]:
+    """File name -> content of those figures that could be drawn, and warnings: of libraries, and why others could not."""
     drawn: dict[str, bytes] = {}
     warnings: list[str] = []
-    try:
-        with collected_warnings() as collected:
+    with collected_warnings() as said:
+        try:
             for name, draw in drawings().items():
-                drawn[name if Path(name).suffix else f"{name}.png"] = draw()
-        warnings += collected.lines()
-    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-    return drawn, warnings
+                try:
+                    drawn[str(Path(name).with_suffix(f".{form}"))] = draw() if form == "png" else draw(form)
+                except TactsimError as error:
+                    warnings.append(f"{name} is left out: {error}")
+        except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
+            warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
+    return drawn, said.lines() + warnings

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import despined, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, new_figure, styled
 
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
@@ -68,9 +68,9 @@ def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
     """File name -> drawing, of the numbers of a ranking in SI."""
     estimators = record["estimators"]
     return {
-        "errors.png": lambda: png(errors_figure(estimators)),
-        "noise.png": lambda: png(noise_figure(estimators)),
-        "places.png": lambda: png(places_figure(estimators, record["block_size"]["value"])),
+        "errors.png": Plot(lambda: errors_figure(estimators)),
+        "noise.png": Plot(lambda: noise_figure(estimators)),
+        "places.png": Plot(lambda: places_figure(estimators, record["block_size"]["value"])),
     }
 
 

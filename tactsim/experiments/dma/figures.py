@@ -12,7 +12,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from tactsim.array import Array
 from tactsim.experiments.dma.scene import DmaScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result, Status
 
@@ -31,7 +31,7 @@ class DmaIdentificationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``dma_identification.png``, unless no fit was made."""
-        return {"dma_identification.png": lambda: png(dma_identification_figure(result))} if result.steps else {}
+        return {"dma_identification.png": Plot(lambda: dma_identification_figure(result))} if result.steps else {}
 
 
 def dma_identification_figure(result: Result) -> Figure:
@@ -63,20 +63,20 @@ def _made(result: Result) -> list[str]:
 
 def _draw_curves(axis: Axes, result: Result, part: str) -> None:
     """Data, fits, bands and, of synthetic data, the true curve, in logarithmic axes."""
-    frequency = result.history("frequency")
+    frequency = result.history_values("frequency")
     for order, method in enumerate(_made(result)):
         words, colour, line = METHODS[method]
         lower, centre, upper = (
-            PER_MEGAPASCAL * result.history(f"{method}_{part}_compliance{end}") for end in ("_lower", "", "_upper")
+            PER_MEGAPASCAL * result.history_values(f"{method}_{part}_compliance{end}") for end in ("_lower", "", "_upper")
         )
         axis.fill_between(
             frequency, lower, upper, color=colour, alpha=0.22, linewidth=0, zorder=2 - order, label=_band(result, method)
         )
         axis.plot(frequency, centre, line, color=colour, zorder=4 + order, label=words)
-    true = result.history(f"true_{part}_compliance")
+    true = result.history_values(f"true_{part}_compliance")
     if np.isfinite(true).any():
         axis.plot(frequency, PER_MEGAPASCAL * true, ":", color=TRUE_COLOUR, zorder=6, label="true model")
-    measured = PER_MEGAPASCAL * result.history(f"measured_{part}_compliance")
+    measured = PER_MEGAPASCAL * result.history_values(f"measured_{part}_compliance")
     axis.plot(frequency, measured, "o", color=DATA_COLOUR, markersize=4, zorder=7, label="data")
     axis.set(xscale="log", yscale="log")
     axis.set_title(f"{part} compliance", loc="left")
@@ -95,11 +95,11 @@ def _band(result: Result, method: str) -> str:
 
 def _draw_differences(axis: Axes, result: Result, part: str) -> None:
     """Relative differences in percent from the first fit, whose band is then symmetric about zero."""
-    frequency = result.history("frequency")
-    reference = result.history(f"{_first(result)}_{part}_compliance")
+    frequency = result.history_values("frequency")
+    reference = result.history_values(f"{_first(result)}_{part}_compliance")
 
     def percent(name: str) -> Array:
-        return 100 * (result.history(name) / reference - 1)
+        return 100 * (result.history_values(name) / reference - 1)
 
     for order, method in enumerate(_made(result)):
         _, colour, line = METHODS[method]

@@ -81,11 +81,11 @@ def _history(stored: Result, folder: str) -> tuple[Array, Array]:
     names: Any = [f"taxel_force_{side}" for side in JAWS]
     try:
         if len(stored.steps) > 1:
-            times = stored.quantities["time_history"].array
-            forces = [stored.quantities[f"{name}_history"].array for name in names]
+            times = stored.quantities["time_history"].numbers
+            forces = [stored.quantities[f"{name}_history"].numbers for name in names]
         else:
             times = np.array([stored.quantities["time"].value], dtype=float)
-            forces = [stored.quantities[name].array[None] for name in names]
+            forces = [stored.quantities[name].numbers[None] for name in names]
     except KeyError as error:
         raise _incomplete(folder, error) from None
     return times, np.stack(forces, axis=1)

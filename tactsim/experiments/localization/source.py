@@ -97,7 +97,7 @@ def saturated_taxels(result: Result) -> Array:
     """Which readings (time or 1, jaw, row, column) of a result are saturated; one without known times is so all the time."""
     over_time = [f"saturated_{side}_history" for side in JAWS]
     if all(name in result.quantities for name in over_time):
-        return np.stack([result.quantities[name].array for name in over_time], axis=1) > 0
+        return np.stack([result.quantities[name].numbers for name in over_time], axis=1) > 0
     return _taxels(result, "saturated")[None] > 0
 
 

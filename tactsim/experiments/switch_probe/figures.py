@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -40,10 +40,10 @@ class SwitchProbeFigures(ResultFigures):
         """``force_over_depth.png`` and ``switch_panel.png``, and ``ranking.png`` for several tissues."""
         if not result.steps:
             return {}
-        drawn: dict[str, Drawing] = {"force_over_depth.png": lambda: png(force_over_depth_figure(result))}
-        drawn["switch_panel.png"] = lambda: png(switch_panel_figure(result))
+        drawn: dict[str, Drawing] = {"force_over_depth.png": Plot(lambda: force_over_depth_figure(result))}
+        drawn["switch_panel.png"] = Plot(lambda: switch_panel_figure(result))
         if len(result.scene_as(SwitchProbeScene).tissues) > 1:
-            drawn["tissues_by_rate.png"] = lambda: png(tissues_by_rate_figure(result))
+            drawn["tissues_by_rate.png"] = Plot(lambda: tissues_by_rate_figure(result))
         return drawn
 
 

@@ -78,7 +78,7 @@ def _recording(result: Result, scene: PageScene, name: str) -> Recording:
     quantities = result.quantities
     if f"{name}_upper_history" in quantities:
         times = np.asarray(quantities[_TIMES[name]].value, dtype=float)
-        forces = np.stack([quantities[f"{name}_{side}_history"].array for side in JAWS], axis=1)
+        forces = np.stack([quantities[f"{name}_{side}_history"].numbers for side in JAWS], axis=1)
     else:
         times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
         forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
@@ -113,8 +113,8 @@ def _closings(result: Result, times: Array) -> Array | None:
     """Closing of each jaw at some times in m, None if the result does not tell it."""
     quantities = result.quantities
     if "displacement_history" in quantities:
-        known = quantities["time_history"].array
-        return np.interp(times, known, quantities["displacement_history"].array)
+        known = quantities["time_history"].numbers
+        return np.interp(times, known, quantities["displacement_history"].numbers)
     if "displacement" in quantities and len(times) == 1:
         return np.array([float(quantities["displacement"].value)])
     return None

@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -34,7 +34,7 @@ class AnnulusDesignFigures(ResultFigures):
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``annulus_design.png``, unless the map is incomplete."""
         complete = "force_to_touch" in result.quantities
-        return {"annulus_design.png": lambda: png(annulus_design_figure(result))} if complete else {}
+        return {"annulus_design.png": Plot(lambda: annulus_design_figure(result))} if complete else {}
 
 
 def annulus_design_figure(result: Result) -> Figure:

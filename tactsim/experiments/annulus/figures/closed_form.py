@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
 
 COLOUR = "#1f4e79"
@@ -22,18 +22,18 @@ class ClosedFormFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``closed_form.png``."""
-        return {"closed_form.png": lambda: png(closed_form_figure(result))} if result.steps else {}
+        return {"closed_form.png": Plot(lambda: closed_form_figure(result))} if result.steps else {}
 
 
 def closed_form_figure(result: Result) -> Figure:
     """Histories of a closed form, shaded where the force pulls."""
-    time = result.history("time")
-    pulls = result.history("force") < 0
+    time = result.history_values("time")
+    pulls = result.history_values("force") < 0
     with styled():
         figure = new_figure(6.4, 5.2)
         axes = figure.subplots(len(HISTORIES), 1, sharex=True)
         for axis, (name, words, unit) in zip(axes, HISTORIES, strict=True):
-            values = result.history(name)
+            values = result.history_values(name)
             factor, prefixed = scale_of(float(np.abs(values).max()), unit)
             axis.plot(time, factor * values, color=COLOUR)
             axis.axhline(0.0, color="0.6", linewidth=0.6)

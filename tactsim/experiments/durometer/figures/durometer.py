@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.figures.indentation import section_beside
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import png, scale_of
+from tactsim.plotting.canvas import Plot, scale_of
 from tactsim.results import Result
 
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
@@ -26,7 +26,7 @@ class DurometerFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``durometer.png``, unless no step was accepted."""
-        return {"durometer.png": lambda: png(durometer_figure(result))} if result.steps else {}
+        return {"durometer.png": Plot(lambda: durometer_figure(result))} if result.steps else {}
 
 
 def durometer_figure(result: Result) -> Figure:
@@ -36,7 +36,7 @@ def durometer_figure(result: Result) -> Figure:
 
 def _draw_balance(axis: Axes, result: Result) -> None:
     """Forces of tissue, spring and Hertz over the depth, and the readings along the top."""
-    depth, tissue, hertz = (result.history(name) for name in ("displacement", "reaction_force", "hertz_force"))
+    depth, tissue, hertz = (result.history_values(name) for name in ("displacement", "reaction_force", "hertz_force"))
     scale = result.scene_as(DurometerScene).scale
     whole = np.array([0.0, scale.travel])
     spring = scale.force_at_zero + scale.force_per_unit * 100 * (1 - whole / scale.travel)

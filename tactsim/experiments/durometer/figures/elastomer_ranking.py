@@ -14,7 +14,7 @@ from tactsim.array import Array
 from tactsim.experiments.durometer.elastomers import Elastomer
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.results import Result
 
@@ -34,7 +34,7 @@ class ElastomerRankingFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``elastomer_ranking.png``, unless no shape was finished."""
-        return {"elastomer_ranking.png": lambda: png(elastomer_ranking_figure(result))} if _finished(result) else {}
+        return {"elastomer_ranking.png": Plot(lambda: elastomer_ranking_figure(result))} if _finished(result) else {}
 
 
 def elastomer_ranking_figure(result: Result) -> Figure:

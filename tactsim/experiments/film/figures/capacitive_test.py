@@ -13,7 +13,7 @@ DATA, LINE = "#1f4e79", "#b8540a"
 
 def capacitive_test_figure(result: Result) -> Figure:
     """Capacitance and strain over force and, if an amplifier reads it, its voltage."""
-    forces, capacitance = result.quantities["forces"].array, 1e12 * result.quantities["reading_capacitance"].array
+    forces, capacitance = result.quantities["forces"].numbers, 1e12 * result.quantities["reading_capacitance"].numbers
     amplified = "reading_voltage" in result.quantities
     with styled():
         figure = new_figure(10.0, 4.0)
@@ -29,7 +29,7 @@ def capacitive_test_figure(result: Result) -> Figure:
         axes[1].plot(forces, 100 * strain, "o-", color=DATA, markersize=3)
         axes[1].set(xlabel="force in N", ylabel="compressive strain in %", title="Strain of the dielectric", ylim=(0, None))
         if amplified:
-            axes[2].plot(forces, result.quantities["reading_voltage"].array, "o-", color=DATA, markersize=3)
+            axes[2].plot(forces, result.quantities["reading_voltage"].numbers, "o-", color=DATA, markersize=3)
             axes[2].set(xlabel="force in N", ylabel="amplitude in V", title="Charge amplifier", ylim=(0, None))
         for axis in axes:
             despined(axis)

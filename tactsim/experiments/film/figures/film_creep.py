@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from tactsim.experiments.film.figures.film_test import COEFFICIENTS
 from tactsim.experiments.film.scene import FilmCreepScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 PER_CENT = 100.0
@@ -26,7 +26,7 @@ class FilmCreepFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``film_creep.png``, unless no fit was made."""
-        return {"film_creep.png": lambda: png(film_creep_figure(result))} if result.steps else {}
+        return {"film_creep.png": Plot(lambda: film_creep_figure(result))} if result.steps else {}
 
 
 def film_creep_figure(result: Result) -> Figure:
@@ -57,9 +57,9 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 
 
 def _draw_coefficients(axis: Axes, result: Result) -> None:
-    forces = result.history("force")
+    forces = result.history_values("force")
     for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
-        values = result.history(name) / 1e6
+        values = result.history_values(name) / 1e6
         widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
         axis.errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
         if f"{name}_slope" in result.quantities:

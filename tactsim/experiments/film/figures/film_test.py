@@ -15,7 +15,7 @@ from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
@@ -36,12 +36,12 @@ class FilmTestFigures(ResultFigures):
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``film_test.png`` and, with at least two times of a piezoresistive film, ``film_surface.png``."""
         if "capacitance" in result.quantities:
-            return {"film_test.png": lambda: png(capacitive_test_figure(result))}
+            return {"film_test.png": Plot(lambda: capacitive_test_figure(result))}
         if result.scene is None or (coefficients := result.scene_as(FilmTestScene).coefficients) is None:
             return {}
-        drawings: dict[str, Drawing] = {"film_test.png": lambda: png(film_test_figure(result, coefficients))}
+        drawings: dict[str, Drawing] = {"film_test.png": Plot(lambda: film_test_figure(result, coefficients))}
         if len(result.quantities["times"].value) > 1:
-            drawings["film_surface.png"] = lambda: png(film_surface_figure(result))
+            drawings["film_surface.png"] = Plot(lambda: film_surface_figure(result))
         return drawings
 
 
@@ -52,7 +52,7 @@ def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]
         axes = figure.subplots(2, 2)
         _draw_readings(axes[0, 0], axes[0, 1], result)
         _draw_creep(axes[1, 0], result)
-        _draw_coefficients(axes[1, 1], result.quantities["forces"].array, coefficients)
+        _draw_coefficients(axes[1, 1], result.quantities["forces"].numbers, coefficients)
         for axis in axes.flat:
             despined(axis)
         entitle(figure, result.title or "Piezoresistive film under constant forces")
@@ -64,8 +64,8 @@ def film_surface_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(7.0, 5.5)
         axis: Any = figure.add_subplot(projection="3d")
-        forces, times = np.meshgrid(result.quantities["forces"].array, result.quantities["times"].array)
-        resistance = np.log10(result.quantities["resistance"].array)
+        forces, times = np.meshgrid(result.quantities["forces"].numbers, result.quantities["times"].numbers)
+        resistance = np.log10(result.quantities["resistance"].numbers)
         axis.plot_surface(forces, times, resistance, cmap=colormaps["viridis"], linewidth=0.2, edgecolor="#444444")
         axis.set_xlabel("force in N")
         axis.set_ylabel("time since the force began in s")
@@ -77,10 +77,10 @@ def film_surface_figure(result: Result) -> Figure:
 
 
 def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
-    forces, read = result.quantities["forces"].array, result.quantities["reading_resistance"].array
+    forces, read = result.quantities["forces"].numbers, result.quantities["reading_resistance"].numbers
     when = f"{result.scene_as(FilmTestScene).reading_time:g} s after the force began"
     resistance.semilogy(forces, read / 1e3, "o-", color=DATA, markersize=3, label="film and contacts")
-    resistance.semilogy(forces, result.quantities["reading_film_resistance"].array / 1e3, "--", color=LINE, label="film alone")
+    resistance.semilogy(forces, result.quantities["reading_film_resistance"].numbers / 1e3, "--", color=LINE, label="film alone")
     resistance.legend(loc="upper right")
     resistance.set(xlabel="force in N", ylabel="resistance in kΩ", title=f"Resistance, {when}")
     conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3, label="film")
@@ -93,7 +93,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:
-    forces, times, resistance = (result.quantities[name].array for name in ("forces", "times", "resistance"))
+    forces, times, resistance = (result.quantities[name].numbers for name in ("forces", "times", "resistance"))
     chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):

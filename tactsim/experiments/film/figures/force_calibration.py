@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
@@ -26,7 +26,7 @@ class ForceCalibrationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``calibration.png``."""
-        return {"calibration.png": lambda: png(force_calibration_figure(result))} if result.steps else {}
+        return {"calibration.png": Plot(lambda: force_calibration_figure(result))} if result.steps else {}
 
 
 def force_calibration_figure(result: Result) -> Figure:
@@ -44,7 +44,7 @@ def _draw_line(axis: Axes, result: Result) -> None:
     """Conductance in mS over force in N, one line per sensor."""
     confidence = f"{100 * result.scene_as(CalibrationScene).confidence:.3g} % band of the line"
     for number, sensor in enumerate(_sensors(result)):
-        force, line, low, high, conductance, used = (sensor.history(name) for name in COLUMNS)
+        force, line, low, high, conductance, used = (sensor.history_values(name) for name in COLUMNS)
         order = np.argsort(force, kind="stable")
         labels = (confidence, _equation(result), "readings") if number == 0 else (None, None, None)
         low, line, high, conductance = (MILLISIEMENS * values for values in (low, line, high, conductance))
@@ -73,11 +73,11 @@ def _draw_errors(axis: Axes, result: Result) -> None:
     scale = result.scene_as(CalibrationScene).full_scale
     slopes = np.atleast_1d(result.quantities["slope"].value)
     for slope, sensor in zip(slopes, _sensors(result), strict=True):
-        force, line, low, high = (sensor.history(name) for name in COLUMNS[:4])
+        force, line, low, high = (sensor.history_values(name) for name in COLUMNS[:4])
         order = np.argsort(force, kind="stable")
         low, high = (100 * (end - line)[order] / slope / scale for end in (low, high))
         axis.fill_between(force[order], low, high, color=LINE_COLOUR, alpha=0.3 / np.sqrt(slopes.size), linewidth=0)
-        axis.plot(force, 100 * sensor.history("force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
+        axis.plot(force, 100 * sensor.history_values("force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
     axis.axhline(0.0, color=LINE_COLOUR, linewidth=1)
     for name, extreme in (("linearity_positive", np.max), ("linearity_negative", np.min)):
         _draw_limit(axis, 100 * float(extreme(result.quantities[name].value)))

@@ -7,7 +7,7 @@ from typing import Literal
 from matplotlib.figure import Figure
 
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 READINGS = (
@@ -25,12 +25,12 @@ class SensorResponseFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``sensor_response.png``."""
-        return {"sensor_response.png": lambda: png(sensor_response_figure(result))}
+        return {"sensor_response.png": Plot(lambda: sensor_response_figure(result))}
 
 
 def sensor_response_figure(result: Result) -> Figure:
     """Applied force with the three readings, and each reading's error."""
-    columns = {name: result.history(name) for name in result.units}
+    columns = {name: result.history_values(name) for name in result.units}
     time, force = columns["time"], columns["force"]
     with styled():
         figure = new_figure(10.0, 6.0)

@@ -16,8 +16,8 @@ from tactsim.experiments.grasp.figures.view import VIEW, view_figure
 from tactsim.experiments.grasp.figures.viewed import has_views, viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import entitle, new_figure, png, styled
-from tactsim.plotting.failure import mark_failure, rendered
+from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
+from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1
@@ -34,19 +34,19 @@ class GraspFigures(ResultFigures):
         if not result.steps:
             return {}
         moment = shown_moment(result) if result.status is Status.CONVERGED else result
-        drawings: dict[str, Drawing] = {"grasp.png": lambda: png(grasp_figure(moment))}
-        drawings["grasp_maps.png"] = lambda: png(maps_figure(moment))
+        drawings: dict[str, Drawing] = {"grasp.png": Plot(lambda: grasp_figure(moment))}
+        drawings["grasp_maps.png"] = Plot(lambda: maps_figure(moment))
         if result.frames:
-            drawings["grasp_section.png"] = lambda: png(section_figure(moment))
+            drawings["grasp_section.png"] = Plot(lambda: section_figure(moment))
         if has_history(result):
-            drawings["grasp_history.png"] = lambda: png(history_figure(result))
+            drawings["grasp_history.png"] = Plot(lambda: history_figure(result))
         if has_views(result):
-            drawings[VIEWS] = lambda: png(views_figure(viewed(moment), result.title))
-            drawings[VIEWS_PRESSURE] = lambda: png(views_figure(viewed(moment), result.title, "pressure"))
+            drawings[VIEWS] = Plot(lambda: views_figure(viewed(moment), result.title))
+            drawings[VIEWS_PRESSURE] = Plot(lambda: views_figure(viewed(moment), result.title, "pressure"))
         if has_voltages(result):
-            drawings[VOLTAGES] = lambda: png(voltages_figure(result))
+            drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
-            drawings[VIEW] = lambda: rendered(VIEW, lambda: view_figure(result))
+            drawings[VIEW] = Plot(lambda: view_figure(result))
         return drawings
 
 

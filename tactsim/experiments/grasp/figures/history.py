@@ -56,10 +56,10 @@ def draw_histories(axes: Sequence[Axes], result: Result) -> None:
 
 def abscissa(result: Result) -> tuple[Array, str]:
     """Values (steps,) over which to draw and their name: time, or the closing where no time passes."""
-    time = result.history("time")
+    time = result.history_values("time")
     if np.isfinite(time).all() and np.ptp(time) > 0:
         return time, "time in s"
-    closing = result.history("displacement")
+    closing = result.history_values("displacement")
     factor, unit = scale_of(float(np.abs(closing).max()), "m")
     return factor * closing, f"closing of each jaw in {unit}"
 
@@ -71,7 +71,7 @@ def _lumens(result: Result) -> list[str]:
 
 def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
     signs = {"upper": 1.0, "lower": -1.0}
-    forces = {side: signs[side] * result.history(f"jaw_force_{side}_z") for side in JAWS}
+    forces = {side: signs[side] * result.history_values(f"jaw_force_{side}_z") for side in JAWS}
     factor, unit = _scale(list(forces.values()), "N")
     for side, force in forces.items():
         colour, line, marker = FORCE_STYLES[side]
@@ -83,7 +83,7 @@ def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
 
 def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
     names = _lumens(result)
-    pressures = [result.history(name) for name in names]
+    pressures = [result.history_values(name) for name in names]
     factor, unit = _scale(pressures, "Pa")
     scene = result.scene_as(GraspScene)
     for name, pressure, colour in zip(names, pressures, itertools.cycle(LUMEN_COLOURS), strict=False):
@@ -102,7 +102,7 @@ def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
 def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     """The taxels of both jaws that ever carry the most."""
     forces = {
-        (side, *place): result.quantities[f"taxel_force_{side}_history"].array[:, place[0], place[1]]
+        (side, *place): result.quantities[f"taxel_force_{side}_history"].numbers[:, place[0], place[1]]
         for side in JAWS
         for place in np.ndindex(np.shape(result.quantities[f"taxel_force_{side}_history"].value)[1:])
     }

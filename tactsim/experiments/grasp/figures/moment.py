@@ -22,7 +22,7 @@ def shown_moment(result: Result) -> Result:
     lumens = sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
     if not lumens or not result.frames or "taxel_force_upper_history" not in result.quantities:
         return result
-    pressure = np.sum([result.history(name) for name in lumens], axis=0)
+    pressure = np.sum([result.history_values(name) for name in lumens], axis=0)
     step = int(np.argmax(pressure))
     time = result.steps[step].values["time"]
     numbers = [k for k, frame in enumerate(result.frames) if np.isclose(frame.time, time, rtol=1e-9, atol=1e-12)]
@@ -44,7 +44,7 @@ def _quantities(result: Result, step: int, closing: float) -> dict[str, Quantity
     area = result.scene_as(SimulatedGrasp).matrix.area
     quantities = {"displacement": replace(result.quantities["displacement"], value=closing)}
     for side in JAWS:
-        force = result.quantities[f"taxel_force_{side}_history"].array[step]
+        force = result.quantities[f"taxel_force_{side}_history"].numbers[step]
         quantities[f"taxel_force_{side}"] = replace(result.quantities[f"taxel_force_{side}"], value=force.tolist())
         quantities[f"taxel_pressure_{side}"] = replace(result.quantities[f"taxel_pressure_{side}"], value=(force / area).tolist())
     return quantities

@@ -47,7 +47,7 @@ class LoadedTaxels:
 def loaded_taxels(result: Result) -> LoadedTaxels:
     """The taxels at the last accepted step, or at the moment that the scene names."""
     pressures, forces = (
-        {side: result.quantities[f"taxel_{name}_{side}"].array for side in JAWS} for name in ("pressure", "force")
+        {side: result.quantities[f"taxel_{name}_{side}"].numbers for side in JAWS} for name in ("pressure", "force")
     )
     return LoadedTaxels(result.scene_as(GraspScene), pressures, forces)
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
 
 VOLTAGES = "taxel_voltages.png"
@@ -27,7 +27,7 @@ class MatrixReadoutFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``taxel_voltages.png``."""
-        return {VOLTAGES: lambda: png(voltages_figure(result))}
+        return {VOLTAGES: Plot(lambda: voltages_figure(result))}
 
 
 def has_voltages(result: Result) -> bool:
@@ -40,7 +40,7 @@ def voltages_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(10.5, 6.4)
         axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
-        factor, unit = scale_of(max(float(result.quantities[f"voltage_{side}_history"].array.max()) for side in JAWS), "V")
+        factor, unit = scale_of(max(float(result.quantities[f"voltage_{side}_history"].numbers.max()) for side in JAWS), "V")
         for row, side in zip(axes, JAWS, strict=True):
             _draw_voltages(row[0], result, side, factor)
             _draw_forces(row[1], result, side)
@@ -56,7 +56,7 @@ def voltages_figure(result: Result) -> Figure:
 
 
 def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None:
-    time, voltage = result.quantities["readout_time"].array, factor * result.quantities[f"voltage_{side}_history"].array
+    time, voltage = result.quantities["readout_time"].numbers, factor * result.quantities[f"voltage_{side}_history"].numbers
     rows, columns = voltage.shape[1:]
     colours = colormaps["viridis"](np.linspace(0, 0.9, rows * columns))
     for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
@@ -67,7 +67,7 @@ def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None
 
 
 def _draw_forces(axis: Axes, result: Result, side: str) -> None:
-    applied, read = result.quantities[f"taxel_force_{side}"].array, result.quantities[f"read_force_{side}"].array
+    applied, read = result.quantities[f"taxel_force_{side}"].numbers, result.quantities[f"read_force_{side}"].numbers
     places = np.arange(applied.size)
     axis.bar(places, applied.ravel(), width=0.8, color="#fdd0a2", edgecolor=APPLIED, linewidth=0.6, label="applied")
     axis.plot(places, read.ravel(), "o", color=READ, markersize=4, label="read")

@@ -66,7 +66,7 @@ def viewed(result: Result) -> ViewedGrasp:
     """The grasp that a result describes; with a reference, what the taxels read beyond it."""
     scene = result.scene_as(GraspScene)
     name = "taxel_difference" if "taxel_difference_upper" in result.quantities else "taxel_force"
-    signal, meaning = np.array([result.quantities[f"{name}_{side}"].array for side in JAWS]), "force"
+    signal, meaning = np.array([result.quantities[f"{name}_{side}"].numbers for side in JAWS]), "force"
     if name == "taxel_difference":
         signal, meaning = shown_change(signal)
     return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(_bodies(scene)))

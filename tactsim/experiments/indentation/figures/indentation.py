@@ -13,7 +13,7 @@ from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
@@ -28,7 +28,7 @@ class IndentationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``indentation.png``, unless no step was accepted."""
-        return {"indentation.png": lambda: png(indentation_figure(result))} if result.steps else {}
+        return {"indentation.png": Plot(lambda: indentation_figure(result))} if result.steps else {}
 
 
 def indentation_figure(result: Result) -> Figure:
@@ -58,7 +58,7 @@ def after(result: Result) -> str:
 
 def draw_curve(axis: Axes, result: Result) -> None:
     """Force and rise against the displacement, with the threshold, and a cross where a run stopped short."""
-    displacement, force, rise = (result.history(name) for name in ("displacement", "reaction_force", "tissue_rise"))
+    displacement, force, rise = (result.history_values(name) for name in ("displacement", "reaction_force", "tissue_rise"))
     along, length = scale_of(float(displacement.max()), "m")
     up, unit = scale_of(float(np.abs(force).max()), "N")
     axis.plot(displacement * along, force * up, ".-", color=FORCE_COLOUR, markersize=4)

@@ -12,7 +12,7 @@ from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, af
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
@@ -24,7 +24,7 @@ class SpaceIndentationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``indentation_3d.png``, unless no step was accepted."""
-        return {"indentation_3d.png": lambda: png(space_indentation_figure(result))} if result.steps else {}
+        return {"indentation_3d.png": Plot(lambda: space_indentation_figure(result))} if result.steps else {}
 
 
 def space_indentation_figure(result: Result) -> Figure:
@@ -46,7 +46,7 @@ def space_indentation_figure(result: Result) -> Figure:
 
 def _draw_around(axis: Axes, result: Result) -> None:
     """The mean pressure on each sector of the annulus against the angle about its axis."""
-    pressure = result.quantities["pressure_around"].array
+    pressure = result.quantities["pressure_around"].numbers
     factor, unit = scale_of(max(float(np.abs(pressure).max()), 1e-12), "Pa")
     edges = np.linspace(0.0, 360.0, len(pressure) + 1)
     axis.stairs(factor * pressure, edges, color=FORCE_COLOUR, linewidth=1.5)

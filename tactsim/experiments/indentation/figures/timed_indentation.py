@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
 from tactsim.experiments.indentation.scene import TimedIndentationScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
@@ -28,7 +28,7 @@ class TimedIndentationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``timed_indentation.png``, unless no step was accepted."""
-        return {"timed_indentation.png": lambda: png(timed_indentation_figure(result))} if result.steps else {}
+        return {"timed_indentation.png": Plot(lambda: timed_indentation_figure(result))} if result.steps else {}
 
 
 def timed_indentation_figure(result: Result) -> Figure:
@@ -61,12 +61,12 @@ def _title(result: Result) -> str:
 
 def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> None:
     name, words, unit = what
-    time, values = result.history("time"), result.history(name)
+    time, values = result.history_values("time"), result.history_values(name)
     factor, prefixed = scale_of(float(np.abs(values).max()), unit)
     axis.plot(time, factor * values, ".-", color=COMPUTED_COLOUR, markersize=4, linewidth=1, label="finite elements")
     other = "closed_form_force" if name == "reaction_force" else "closed_form_displacement"
     if other in result.steps[-1].values:
-        axis.plot(time, factor * result.history(other), "--", color=CLOSED_COLOUR, label="closed form")
+        axis.plot(time, factor * result.history_values(other), "--", color=CLOSED_COLOUR, label="closed form")
         axis.legend(fontsize=8)
     axis.set_ylabel(f"{words}\nin {prefixed}")
     _scale_time(axis, time)
@@ -79,7 +79,7 @@ def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> Non
 
 
 def _draw_difference(axis: Axes, result: Result) -> None:
-    time, difference = result.history("time"), 100 * result.history("closed_form_difference")
+    time, difference = result.history_values("time"), 100 * result.history_values("closed_form_difference")
     axis.plot(time, difference, ".-", color=COMPUTED_COLOUR, markersize=4, linewidth=1)
     axis.axhline(0.0, color="0.5", linewidth=0.7)
     widest = max(1.2 * float(np.nanmax(np.abs(difference))), 1e-6)

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from tactsim.array import Array
 from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -35,7 +35,7 @@ class DetectabilityFigures(ResultFigures):
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``detectability.png``, of a complete result."""
         complete = all(name in result.quantities for name in PANELS)
-        return {"detectability.png": lambda: png(detectability_figure(result))} if complete else {}
+        return {"detectability.png": Plot(lambda: detectability_figure(result))} if complete else {}
 
 
 def detectability_figure(result: Result) -> Figure:

@@ -9,8 +9,7 @@ from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.figures.space import SPACE, space_figure
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import png
-from tactsim.plotting.failure import rendered
+from tactsim.plotting.canvas import Plot
 from tactsim.results import Result
 
 
@@ -23,7 +22,7 @@ class LocalizationFigures(ResultFigures):
         """``views.png``, ``views_pressure.png`` and ``space.png``; the last needs a renderer."""
         if not has_views(result):
             return {}
-        drawings: dict[str, Drawing] = {VIEWS: lambda: png(views_figure(localized(result), result.title))}
-        drawings[VIEWS_PRESSURE] = lambda: png(views_figure(localized(result), result.title, "pressure"))
-        drawings[SPACE] = lambda: rendered(SPACE, lambda: space_figure(result))
+        drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(localized(result), result.title))}
+        drawings[VIEWS_PRESSURE] = Plot(lambda: views_figure(localized(result), result.title, "pressure"))
+        drawings[SPACE] = Plot(lambda: space_figure(result))
         return drawings

@@ -14,7 +14,7 @@ from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 from tactsim.array import Array
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
@@ -33,7 +33,7 @@ class CatheterTipFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``catheter_tip.png``, unless no sensor was read."""
-        return {"catheter_tip.png": lambda: png(catheter_tip_figure(result))} if result.steps else {}
+        return {"catheter_tip.png": Plot(lambda: catheter_tip_figure(result))} if result.steps else {}
 
 
 def catheter_tip_figure(result: Result) -> Figure:
@@ -41,7 +41,7 @@ def catheter_tip_figure(result: Result) -> Figure:
     with styled():
         figure = new_figure(11.0, 4.9)
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
-        pressures = KILOPASCALS * result.history("reported_pressure")
+        pressures = KILOPASCALS * result.history_values("reported_pressure")
         largest = float(np.nanmax(pressures)) if np.isfinite(pressures).any() else 1.0
         colours = ScalarMappable(Normalize(0.0, largest), "viridis")
         _draw_surface(left, result)
@@ -124,9 +124,9 @@ def _name_hardest(axis: Axes, result: Result, hardest: int) -> None:
 
 def _draw_thresholds(axis: Axes, result: Result, pressures: Array) -> None:
     """Reported and true thresholds of every sensor, those over two tissues named."""
-    angle = np.degrees(result.history("angle"))
-    deviation = KILOPASCALS * result.history("reported_deviation")
-    true = KILOPASCALS * result.history("threshold_pressure")
+    angle = np.degrees(result.history_values("angle"))
+    deviation = KILOPASCALS * result.history_values("reported_deviation")
+    true = KILOPASCALS * result.history_values("threshold_pressure")
     bars = np.nan_to_num(deviation)
     axis.errorbar(angle, pressures, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
     axis.plot(angle, true, "_", color=TRUE_COLOUR, markersize=16, markeredgewidth=1.8, label="true threshold")

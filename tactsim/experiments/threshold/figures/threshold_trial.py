@@ -15,7 +15,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 from tactsim.units import format_quantity
@@ -49,9 +49,9 @@ class ThresholdTrialFigures(ResultFigures):
         """``threshold_errors.png`` and ``threshold_signals.png``, as far as there is something to draw."""
         drawings: dict[str, Drawing] = {}
         if "force_error" in result.quantities:
-            drawings["threshold_errors.png"] = lambda: png(threshold_error_figure(result))
+            drawings["threshold_errors.png"] = Plot(lambda: threshold_error_figure(result))
         if result.steps:
-            drawings["threshold_signals.png"] = lambda: png(threshold_signal_figure(result))
+            drawings["threshold_signals.png"] = Plot(lambda: threshold_signal_figure(result))
         return drawings
 
 
@@ -169,16 +169,16 @@ def threshold_signal_figure(result: Result) -> Figure:
     """Both sensors over time, the large one with the captured threshold, and below the small one with its level (Fig. 3.6b)."""
     capture = _capture(result)
     result = _around(capture, result)
-    time = result.history("time")
+    time = result.history_values("time")
     with styled():
         figure = new_figure(8.0, 5.6)
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(1.4, 1))
-        large, unit = scale_of(float(result.history("large_reading").max()), "N")
-        small, small_unit = scale_of(float(result.history("small_reading").max()), "N")
+        large, unit = scale_of(float(result.history_values("large_reading").max()), "N")
+        small, small_unit = scale_of(float(result.history_values("small_reading").max()), "N")
         _draw_signal(axes[0], result, "large", large, LARGE_COLOUR)
-        axes[0].plot(time, large * result.history("plate_force"), ":", color="black", label="force on the plate")
+        axes[0].plot(time, large * result.history_values("plate_force"), ":", color="black", label="force on the plate")
         _draw_signal(axes[1], result, "small", small, SMALL_COLOUR)
-        axes[1].plot(time, small * result.history("small_force"), ":", color="black", label="force on it")
+        axes[1].plot(time, small * result.history_values("small_force"), ":", color="black", label="force on it")
         axes[1].axhline(small * capture.trigger_level, color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
         axes[1].annotate("trigger", (time[0], small * capture.trigger_level), (2, 3), textcoords="offset points", fontsize=8)
         for axis in axes:
@@ -213,8 +213,8 @@ def _around(capture: ThresholdCapture, result: Result) -> Result:
 
 
 def _draw_signal(axis: Axes, result: Result, name: str, factor: float, colour: str) -> None:
-    time = result.history("time")
-    plain, filtered = (factor * result.history(f"{name}_reading{end}") for end in ("_unfiltered", ""))
+    time = result.history_values("time")
+    plain, filtered = (factor * result.history_values(f"{name}_reading{end}") for end in ("_unfiltered", ""))
     axis.plot(time, plain, color=colour, alpha=0.3, linewidth=0.7, label="reading, unfiltered")
     axis.plot(time, filtered, color=colour, label="reading, filtered")
     spread = float(np.ptp(filtered))
