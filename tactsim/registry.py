@@ -130,15 +130,24 @@ def kind_class(base: Any, kind: str) -> Any:
         With the nearest registered kind.
     """
     if kind not in _registered.get(base, {}):
-        for name in _module_names(base.package, base.modules):
-            if name.rpartition(".")[2] == kind:
-                importlib.import_module(name)
+        _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
     known = kinds(base)
     if kind not in known:
         raise UnknownName(f"{base.__name__.lower()} kind", kind, known)
     return known[kind]
+
+
+def _load_named(base: Any, kind: str) -> None:
+    """Load the modules that bear the name of a kind, or else those beside a module that does, such as the figures of a kind."""
+    names = _module_names(base.package, base.modules)
+    named = [name for name in names if name.rpartition(".")[2] == kind]
+    if not named:
+        folders = {f"{name.rpartition('.')[0]}." for name in _module_names(base.package, ".*") if name.rpartition(".")[2] == kind}
+        named = [name for name in names if any(name.startswith(folder) for folder in folders - {f"{base.package}."})]
+    for name in named:
+        importlib.import_module(name)
 
 
 @cache

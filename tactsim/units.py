@@ -9,7 +9,8 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
@@ -182,10 +183,26 @@ def format_quantity(value: float, unit: str) -> str:
     return f"{quantity.magnitude:.5g} {quantity.units:~P}"
 
 
+def _is_pint(value: Any) -> bool:
+    """Whether it is a quantity of pint, of whatever registry."""
+    return "pint" in sys.modules and isinstance(value, sys.modules["pint"].Quantity)
+
+
+def written(value: Any) -> Any:
+    """A value from Python as a case file holds it: quantities of pint as text, within lists and mappings too."""
+    if _is_pint(value):
+        return f"{value.magnitude:.15g} {value.units:~C}"
+    if isinstance(value, Mapping):
+        return {key: written(item) for key, item in value.items()}
+    return [written(item) for item in value] if isinstance(value, list | tuple) else value
+
+
 def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
     def read(value: Any, info: ValidationInfo) -> float:
         if isinstance(value, str):
             return parse_quantity(value, unit)
+        if _is_pint(value):
+            return parse_quantity(written(value), unit)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {unit}'")
         if info.context and info.context.get("units") == "required":

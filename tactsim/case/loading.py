@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,14 @@ from pydantic import ValidationError
 
 from tactsim.case.explaining import as_written, problems_of
 from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class, experiment_kinds
-from tactsim.case.overrides import apply_override
+from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, UnknownName, suggestion
 from tactsim.outside.files import LIMITS, TooLarge, opened
 from tactsim.outside.text import one_line
+from tactsim.shipped import case_path
+from tactsim.units import written
 
 LONGEST_MESSAGE = 2000
 """Characters of what is told of one fault: a list of all that is allowed in its place may be long."""
@@ -31,8 +33,17 @@ SWEEPS = "tactsim/sweep/"
 """How the schema of a file begins that `tactsim sweep` reads."""
 
 
-def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
-    """The validated case in a file, after the overrides ``path.to.key=value``.
+Overrides = Sequence[str] | Mapping[str, Any]
+"""``path.to.key=value`` as text, or key path -> value as a case file would hold it."""
+
+
+def load_case(path: str | Path, overrides: Overrides = ()) -> Case:
+    """The validated case in a file, or the shipped case of a name such as ``annulus_icf``.
+
+    Parameters
+    ----------
+    path : of the file; a file comes before a shipped case
+    overrides : ``{"experiment.recess": "0.4 mm"}``, or text such as ``experiment.recess=0.4 mm``; validated like the file
 
     Raises
     ------
@@ -44,7 +55,7 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
     return validated_case(*read_document(path, overrides))
 
 
-def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Document, Place]:
+def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document, Place]:
     """What a case file says, after the overrides, and how messages name its places; nothing is validated yet.
 
     Raises
@@ -54,6 +65,7 @@ def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Docu
     StorageError
         If the file is missing or cannot be read.
     """
+    path = case_path(path)
     text = read_case_text(path)
     try:
         document = replace(read_yaml(text), folder=Path(path).parent)
@@ -63,9 +75,13 @@ def read_document(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Docu
         found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
         raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
     overridden: dict[KeyPath, str] = {}
-    for override in overrides:
+    named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
+    for override, value in named:
         try:
-            key_path = apply_override(document, override)
+            if isinstance(overrides, Mapping):
+                key_path = set_value(document, override.split("."), written(value))
+            else:
+                key_path = apply_override(document, override)
         except YamlProblems as error:
             raise case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
         overridden[key_path] = override.partition("=")[0].strip()

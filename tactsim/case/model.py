@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Progress
+from tactsim.outside.library_warnings import collected_warnings
 from tactsim.registry import Registered, kind_class, kinds
+from tactsim.results.provenance import provenance
+from tactsim.results.result import Result
 from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
@@ -43,6 +48,24 @@ class Case(FrozenModel):
         """
         text = json.dumps(_canonical(self.resolved()), sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:
+        """Run the experiment; the result knows the title, the case and what it rests on.
+
+        Parameters
+        ----------
+        progress : called with the record of each accepted step; by default a bar on a terminal and in a notebook, None is silent
+        time_limit : s, or text such as "5 min"
+
+        Raises
+        ------
+        InputError, Unfinished
+            As `Experiment.run`.
+        """
+        with collected_warnings() as caught:
+            result = self.experiment.run(progress, time_limit=time_limit)
+        origin = provenance(self.resolved(), self.case_id, seeds=self.experiment.seeds())
+        return replace(result, title=self.title, provenance=origin, warnings=(*result.warnings, *caught.lines()))
 
     def resolved(self) -> dict[str, Any]:
         """The case as plain JSON values in SI with every default filled in."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems, read_yaml
@@ -26,6 +27,17 @@ def apply_override(document: Document, override: str) -> Path:
         value = read_yaml(value_text).value
     except YamlProblems as error:
         raise _refused(f"the value {shown(value_text)} cannot be read: {error}") from None
+    return set_value(document, keys, value)
+
+
+def set_value(document: Document, keys: Sequence[str], value: Any) -> Path:
+    """Sets the value at a key path of the document, which it changes; returns the key path that was made or replaced.
+
+    Raises
+    ------
+    YamlProblems
+        If the path leads through something that has no such entry.
+    """
     target: Any = document.value
     place: Path = ()
     made: Path | None = None

@@ -52,11 +52,17 @@ def case_text(case: Case | Experiment) -> str:
     return text.getvalue()
 
 
-def case_document(case: Case | Experiment) -> dict[str, Any]:
-    """A case as the mapping that a case file holds: quantities as text with units, without what is a default."""
-    complete = case if isinstance(case, Case) else Case(schema="tactsim/case/1", experiment=case)
-    dumped = complete.model_dump(mode="json", by_alias=True, context={"units": "written"})
-    document: dict[str, Any] = _without_defaults(complete, dumped)
+def case_document(case: Case | Experiment, *, complete: bool = False) -> dict[str, Any]:
+    """A case as the mapping that a case file holds, quantities as text with units.
+
+    Parameters
+    ----------
+    case : a case, or an experiment, which becomes a case without a title
+    complete : whether every default is written too, and the constants of shipped materials instead of their names
+    """
+    whole = case if isinstance(case, Case) else Case(schema="tactsim/case/1", experiment=case)
+    dumped = whole.model_dump(mode="json", by_alias=True, context={"units": "written"})
+    document: dict[str, Any] = dumped if complete else _without_defaults(whole, dumped)
     return document
 
 

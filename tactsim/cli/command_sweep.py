@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from tactsim.cli import console
 from tactsim.cli.interruption import interruptible
 from tactsim.errors import INTERRUPTED, ConvergenceError, InputError
-from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.running.executors import Executor
@@ -75,6 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
     from tactsim.dataset.running.resuming import opened_run
+    from tactsim.dataset.running.whole import compute
     from tactsim.dataset.sampling.sweep import load_sweep
 
     for name in ("samples", "workers"):
@@ -87,12 +87,11 @@ def run(arguments: argparse.Namespace) -> int:
         executor = _executor(sweep, arguments)  # before anything is written: a scheduler may not answer
         changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}
         with closing(executor), opened_run(sweep, arguments.out, **changes) as going:
-            _card(going)
-            stopped = _computed(going, executor, arguments)
+            computed = compute(going, executor, _progress(arguments))
+            for line in computed.warnings:
+                console.note(f"warning: {line}")
             with interruption.deferred():
-                _draw(arguments.out)
-                _card(going)
-                return _finish(going, arguments, stopped or interruption.requested)
+                return _finish(going, arguments, computed.interrupted or interruption.requested)
 
 
 def _check_inputs(sweep: Sweep) -> None:
@@ -102,43 +101,6 @@ def _check_inputs(sweep: Sweep) -> None:
 
     for line in check_inputs(first_case(sweep), sweep.document, sweep.where):
         console.note(f"warning: {line}")
-
-
-def _computed(going: SweepRun, executor: Executor, arguments: argparse.Namespace) -> bool:
-    """Computes until the end or the first signal; whether there was one."""
-    try:
-        going.compute(executor, _progress(arguments))
-    except KeyboardInterrupt:
-        return True
-    finally:
-        executor.close()
-    return False
-
-
-def _card(going: SweepRun) -> None:
-    """Writes the card, unless another file stands in its place."""
-    from tactsim.dataset.figures.card import FIGURE_FILES
-    from tactsim.dataset.use.card import adopt_earlier_files, write_card
-    from tactsim.storage.own_files import ForeignFile
-
-    try:
-        adopt_earlier_files(going.store.path, FIGURE_FILES)
-        write_card(going.store, going.sweep, going.layout)
-    except ForeignFile as error:
-        console.note(f"warning: the card is not written: {error}")
-
-
-def _draw(store: Path) -> None:
-    """Draws the figures of the card; one that cannot be drawn never costs the data."""
-    try:
-        from tactsim.dataset.figures.card import card_figures
-        from tactsim.dataset.store.files import FIGURES
-        from tactsim.storage.own_files import OwnFiles
-
-        for name, draw in card_figures(store).items():
-            OwnFiles(store).replace(f"{FIGURES}/{name}", draw())
-    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
-        console.note(f"warning: not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
 
 
 def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:

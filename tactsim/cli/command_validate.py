@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.errors import NOT_AS_RECORDED, InputError
+from tactsim.shipped import PROGRAM
 
 if TYPE_CHECKING:
     from tactsim.validation import TableOutcome
@@ -78,14 +79,14 @@ def _progress(line: str) -> None:
 
 
 def tables_folder() -> Path:
-    """The tables of the folder one works in, else those of the checkout that this program belongs to.
+    """The tables of the folder one works in, else those that come with tactsim.
 
     Raises
     ------
     InputError
         If there are none.
     """
-    for root in (Path(), Path(__file__).parents[2]):
+    for root in (Path(), PROGRAM):
         if (root / TABLES).is_dir():
             return root / TABLES
     raise InputError(f"there is no folder {TABLES} here; name one with --from DIR")

@@ -11,14 +11,17 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import ClassVar, Self, final
+from typing import Any, ClassVar, Literal, Self, final
 
 from tactsim.deadline import check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
 from tactsim.interfaces.seeds import seeds_in
+from tactsim.interfaces.variation import Variation
 from tactsim.kind import CaseKind
+from tactsim.progress import step_bar
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.results.scene import Scene
+from tactsim.units import parse_quantity
 
 Progress = Callable[[StepRecord], None]
 
@@ -76,6 +79,15 @@ class Runnable(CaseKind):
     history_units: ClassVar[dict[str, str]] = {}
     """Unit of every value that an accepted step records."""
 
+    @property
+    def extent(self) -> tuple[str, float] | None:
+        """The history value that grows during a run and its last value, in SI; None if the end is not known beforehand."""
+        return None
+
+    def vary(self, places: Mapping[str, Any]) -> Variation:
+        """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``."""
+        return Variation(self, dict(places))
+
     def seeds(self) -> dict[str, int]:
         """Every seed of random numbers by its key path, such as ``readout.seed``; empty if nothing is random."""
         return dict(seeds_in(self))
@@ -107,11 +119,11 @@ class Runnable(CaseKind):
         """
 
     @final
-    def run(self, progress: Progress | None = None, *, time_limit: float | None = None) -> Result:
-        """Run to the end, calling ``progress`` after each accepted step.
+    def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:
+        """Run to the end, calling ``progress`` after each accepted step; by default a bar on a terminal and in a notebook.
 
-        A run that does not converge, lacks memory, takes longer than ``time_limit`` in s (None: as long as it needs) or is
-        interrupted returns a result with that status, the reason, and what was accepted.
+        A run that does not converge, lacks memory, takes longer than ``time_limit`` (s, or text such as "5 min"; None: as long as
+        it needs) or is interrupted returns a result with that status, the reason, and what was accepted.
 
         Raises
         ------
@@ -120,7 +132,11 @@ class Runnable(CaseKind):
         Unfinished
             If it ended before its first step was begun: there is nothing to keep.
         """
-        return run_experiment(self, progress, time_limit)
+        seconds = parse_quantity(time_limit, "s") if isinstance(time_limit, str) else time_limit
+        if progress != "bar":
+            return run_experiment(self, progress, seconds)
+        with step_bar(self.kind.replace("_", " "), self.extent) as shown:
+            return run_experiment(self, shown, seconds)
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
@@ -183,6 +199,7 @@ def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] 
         units=dict(experiment.history_units if findings.units is None else findings.units),
         frames=tuple(findings.frames),
         scene=findings.scene,
+        experiment=experiment,
     )
 
 

@@ -43,6 +43,17 @@ def named_material(name: str) -> MaterialSet:
     return material
 
 
+def material(name: str) -> InvariantPolynomial:
+    """The shipped material of this name, such as ``icf_stable``.
+
+    Raises
+    ------
+    UnknownName
+        With the nearest name.
+    """
+    return named_material(name).material
+
+
 B1A_PRINTED = MaterialSet(
     name="b1a_printed",
     material=MooneyRivlin3(c10=-129700, c01=173670, c11=55812),

@@ -196,3 +196,9 @@ class DisplacementLoading(Loading):
 
 
 AnyLoading = Annotated[ForceLoading | DisplacementLoading, Field(discriminator="control")]
+
+
+def close(to: Any, duration: Any, *, hold: Any = None) -> DisplacementLoading:
+    """A ramp to a displacement within a duration, held for another one if that is given: ``close("1 mm", "1 s")``."""
+    pieces = [{"kind": "ramp", "to": to, "duration": duration}, *([] if hold is None else [{"kind": "hold", "duration": hold}])]
+    return DisplacementLoading.model_validate({"control": "displacement", "pieces": pieces})

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tactsim.outside.files import PROGRAM, SHIPPED
+from tactsim.outside.files import SHIPPED
+from tactsim.shipped import PROGRAM
 
 
 def shipped_folders() -> tuple[Path, ...]:

@@ -15,11 +15,12 @@ from typing import BinaryIO, Literal, Self
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
+from tactsim.shipped import PROGRAM
 
 Place = Literal["beside the case", "in the working folder", "with the program", "elsewhere"]
 """Where a file or folder was found; ``elsewhere`` is outside of all the others, links followed."""
-PROGRAM, SHIPPED = Path(__file__).resolve().parents[2], "meshes"
-"""Where this program is kept, and the folder there whose files a case may name from anywhere."""
+SHIPPED = "meshes"
+"""Folder of the program whose files a case may name from anywhere."""
 MEBIBYTE = 2**20
 LIMITS = {
     "case file": 1 * MEBIBYTE,

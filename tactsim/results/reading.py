@@ -28,6 +28,11 @@ class StoredResult:
     changed: tuple[str, ...] = ()
     """Files that are read here and were changed since tactsim wrote them."""
 
+    @property
+    def complete(self) -> Result:
+        """The result with its provenance, as it was when it was written."""
+        return replace(self.result, provenance=self.provenance)
+
 
 def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     """The result in a folder, with or without its fields.

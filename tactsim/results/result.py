@@ -258,6 +258,8 @@ def identical(one: Any, other: Any) -> bool:
     """Whether two plain values are the same to the last bit; NaN is NaN, and a list is a tuple or an array of the same."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(identical(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return one.shape == other.shape and bool(((one == other) | ((one != one) & (other != other))).all())
     if isinstance(one, list | tuple | np.ndarray) and isinstance(other, list | tuple | np.ndarray):
         return len(one) == len(other) and all(map(identical, one, other))
     if is_dataclass(one) and type(one) is type(other):

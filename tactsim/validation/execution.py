@@ -138,7 +138,7 @@ def simulated(task: Task) -> RunOutcome:
     name, path, overrides = task
     case = load_case(path, overrides)
     try:
-        result = case.experiment.run()
+        result = case.experiment.run(None)
     except TactsimError as error:
         return RunOutcome(
             id=name, case_id=case.case_id, status="failed", reason=str(error), quantities={}, history={}, seconds=0.0

@@ -86,7 +86,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
     """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
     assert drawn.case is not None
     try:
-        result = drawn.case.experiment.run(time_limit=sweep.settings.time_limit)
+        result = drawn.case.experiment.run(None, time_limit=sweep.settings.time_limit)
         if result.status is not Status.CONVERGED:
             return FAILED, f"{result.status}: {result.reason}", {}
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))

@@ -95,6 +95,17 @@ def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: i
     return _sweep(document, where, samples)
 
 
+def sweep_of_document(document: Document) -> Sweep:
+    """The sweep that a mapping from Python describes.
+
+    Raises
+    ------
+    CaseError
+        With one line for every fault: the key path, the value, and what is allowed.
+    """
+    return _sweep(document, lambda problem: "", None)
+
+
 @lru_cache(maxsize=4)
 def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
     """The sweep that `Sweep.text` describes; the files that it names are looked for in the folder first.

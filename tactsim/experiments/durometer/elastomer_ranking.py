@@ -213,7 +213,7 @@ class ElastomerRanking(Experiment):
 
 def _finished(experiment: Experiment) -> Result:
     """The result of a simulation that the user did not interrupt."""
-    result = experiment.run()
+    result = experiment.run(None)
     if result.status is Status.INTERRUPTED:
         raise KeyboardInterrupt
     return result

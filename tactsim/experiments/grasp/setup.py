@@ -120,6 +120,11 @@ class GraspSetup(FrozenModel):
     """Sensors and electronics of the taxels, from force to voltage and back; null ends at the force."""
 
     @property
+    def extent(self) -> tuple[str, float]:
+        """The time of all histories."""
+        return "time", self.duration
+
+    @property
     def tolerance(self) -> float:
         """Largest penetration in m."""
         usual = PENETRATION * self.block.size[2]

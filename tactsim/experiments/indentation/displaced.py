@@ -37,6 +37,11 @@ class DisplacedSetup(IndentationSetup):
     """Length of the load steps."""
 
     @property
+    def extent(self) -> tuple[str, float]:
+        """The displacement, unless the threshold comes first."""
+        return "displacement", self.displacement
+
+    @property
     def depth(self) -> float:
         """The displacement in m."""
         return self.displacement

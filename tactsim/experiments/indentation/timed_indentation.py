@@ -54,6 +54,11 @@ class TimedIndentation(IndentationSetup, Experiment):
         return indentation_course(self)
 
     @property
+    def extent(self) -> tuple[str, float]:
+        """The time of the history."""
+        return "time", self.loading.duration
+
+    @property
     def depth(self) -> float:
         """Displacement in m that the mesh must serve."""
         if self.deepest is not None:

@@ -138,7 +138,7 @@ class IndentationSource(Source):
 
     def tissue(self, simulated: Result | None = None) -> ContactCurve:
         """The curve of the simulation; it is run if its result is not given."""
-        result = self.experiment.run() if simulated is None else simulated
+        result = self.experiment.run(None) if simulated is None else simulated
         return ContactCurve.of_result(result, beyond=self.beyond)
 
     def assumptions(self) -> list[str]:

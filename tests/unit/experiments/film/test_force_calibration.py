@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from tactsim.case import load_case
 from tactsim.errors import InvalidQuantity, StorageError
-from tactsim.experiments.film.force_calibration import ForceCalibration
+from tactsim.experiments.film.calibration import ForceCalibration
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
 from tactsim.results import Status
 from tactsim.results.document import document_text

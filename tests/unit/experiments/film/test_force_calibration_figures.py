@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from tactsim.experiments.film.figures.force_calibration import force_calibration_figure
-from tactsim.experiments.film.force_calibration import ForceCalibration
+from tactsim.experiments.film.calibration import ForceCalibration
+from tactsim.experiments.film.figures.calibration import force_calibration_figure
 from tactsim.experiments.film.force_calibration_source import SyntheticCalibration
 from tactsim.plotting import figures_for
 from tactsim.results import Result, Status

@@ -1,0 +1,132 @@
+"""A whole data set in one call: the store, its samples, its card and figures; `sweep` from Python, the same from a sweep file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tactsim.case.overrides import set_value
+from tactsim.case.writing import case_document
+from tactsim.case.yaml_reading import Document, YamlProblems
+from tactsim.dataset.figures.card import FIGURE_FILES, card_figures
+from tactsim.dataset.running.executors import Executor, LocalWorkers, usable_cores
+from tactsim.dataset.running.resuming import opened_run
+from tactsim.dataset.running.run import SweepRun, Tally
+from tactsim.dataset.sampling.settings import SCHEMA
+from tactsim.dataset.sampling.sweep import SECTION, Sweep, sweep_of_document
+from tactsim.dataset.store.files import FIGURES
+from tactsim.dataset.use.card import adopt_earlier_files, write_card
+from tactsim.errors import CaseError, InputError
+from tactsim.interfaces.variation import Variation
+from tactsim.outside.text import one_line
+from tactsim.progress import count_bar
+from tactsim.registry import registered_outside
+from tactsim.storage.own_files import ForeignFile, OwnFiles
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What became of a run: whether it was interrupted, and what went wrong beside the samples."""
+
+    run: SweepRun
+    interrupted: bool
+    warnings: tuple[str, ...]
+
+
+def sweep(
+    variation: Variation,
+    *,
+    out: str | Path,
+    samples: int | None = None,
+    workers: int | None = None,
+    resume: bool = False,
+    title: str = "",
+    **settings: Any,
+) -> xarray.Dataset:
+    """Compute a data set from an experiment in which some places vary, and open it.
+
+    Parameters
+    ----------
+    variation : of `Experiment.vary`
+    out : folder of the data set
+    samples : number of samples; of a grid it follows from the places
+    workers : processes, by default one for each core
+    resume : whether to go on in a data set that an earlier call left
+    title : one line for the card
+    **settings : of the section ``sweep`` of a sweep file, such as ``seed``, ``design``, ``splits``
+
+    Raises
+    ------
+    CaseError
+        If a place, a distribution or a setting is wrong.
+    InputError
+        If the experiment is of a class that a worker process cannot load.
+    StorageError
+        If the place is taken or cannot be written.
+    """
+    from tactsim.dataset.use.loading import load
+
+    asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
+    with (
+        closing(LocalWorkers(asked.text, workers or usable_cores(), folder=None)) as executor,
+        opened_run(asked, out, resume=resume) as run,
+        count_bar("samples", run.store.samples) as shown,
+    ):
+        finished = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
+    if finished.interrupted:
+        raise KeyboardInterrupt
+    return load(out)
+
+
+def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Sweep:
+    foreign = {cls.__name__ for cls in registered_outside("tactsim")} & {type(variation.experiment).__name__}
+    if foreign:
+        raise InputError(f"{foreign.pop()} is defined in this session, and the worker processes of a sweep cannot load it")
+    document = Document(case_document(variation.experiment, complete=True) | {"title": title, "schema": SCHEMA})
+    try:
+        for place, distribution in variation.places.items():
+            set_value(document, ["experiment", *place.split(".")], distribution)
+    except YamlProblems as error:
+        raise CaseError(f"vary: {error}") from None
+    document.value[SECTION] = settings
+    return sweep_of_document(document)
+
+
+def compute(run: SweepRun, executor: Executor, progress: Callable[[Tally], None]) -> Computed:
+    """Compute what is pending until the end or an interruption; the card is written before and after, its figures after."""
+    warnings = list(_card(run))
+    interrupted = False
+    try:
+        run.compute(executor, progress)
+    except KeyboardInterrupt:
+        interrupted = True
+    finally:
+        executor.close()
+    return Computed(run, interrupted, (*warnings, *finish(run)))
+
+
+def finish(run: SweepRun) -> Sequence[str]:
+    """Draw the figures of the card and write it; a warning for what could not be done, which never costs the data."""
+    warnings = []
+    try:
+        for name, draw in card_figures(run.store.path).items():
+            OwnFiles(run.store.path).replace(f"{FIGURES}/{name}", draw())
+    except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
+        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
+    return [*warnings, *_card(run)]
+
+
+def _card(run: SweepRun) -> Sequence[str]:
+    """Write the card, unless another file stands in its place; a warning then."""
+    try:
+        adopt_earlier_files(run.store.path, FIGURE_FILES)
+        write_card(run.store, run.sweep, run.layout)
+    except ForeignFile as error:
+        return [f"the card is not written: {error}"]
+    return []

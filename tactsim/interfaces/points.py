@@ -1,0 +1,36 @@
+"""The extension points by the names that users call them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tactsim import interfaces, registry
+from tactsim.errors import UnknownName
+
+POINTS = {
+    "experiment": interfaces.Experiment,
+    "material": interfaces.Material,
+    "body": interfaces.RigidBody,
+    "contact": interfaces.ContactLaw,
+    "inclusion": interfaces.Inclusion,
+    "film": interfaces.SensorFilm,
+    "estimator": interfaces.Estimator,
+}
+"""Name -> base class, of those whose kinds a case file can name."""
+
+
+def kinds(point: str) -> dict[str, Any]:
+    """Kind -> class of everything known for an extension point, such as ``kinds("experiment")["film_test"]``.
+
+    Parameters
+    ----------
+    point : experiment, material, body, contact, inclusion, film or estimator
+
+    Raises
+    ------
+    UnknownName
+        If there is no such point.
+    """
+    if point not in POINTS:
+        raise UnknownName("extension point", point, POINTS)
+    return registry.kinds(POINTS[point])

@@ -1,0 +1,106 @@
+"""What a result shows of itself and how it is kept: figures, fields for pyvista, HTML for a notebook, its folder on disk."""
+
+from __future__ import annotations
+
+import base64
+import html as markup
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactsim.case.model import Case
+from tactsim.errors import InputError
+from tactsim.outside.files import opened_folder
+from tactsim.outside.text import one_line
+from tactsim.plotting.canvas import encoded
+from tactsim.plotting.result_figures import figures_for
+from tactsim.results import Result, read_result, write_result
+from tactsim.results.provenance import provenance
+from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.figure import Figure
+
+CELL_TYPES = {"triangle": "TRIANGLE", "triangle6": "QUADRATIC_TRIANGLE", "tetra": "TETRA", "tetra10": "QUADRATIC_TETRA"}
+"""Name of cells in a frame, as meshio has it -> as VTK has it."""
+LONGEST_TABLE = 12
+"""Quantities that a notebook lists; the others are counted."""
+
+
+def load_result(directory: str | Path) -> Result:
+    """The result in a folder that `Result.save` or ``tactsim run`` wrote, fields included.
+
+    Raises
+    ------
+    StorageError
+        If a file is missing, damaged, or of a newer version of tactsim.
+    """
+    folder, _ = opened_folder(directory, "result of tactsim")
+    stored = read_result(folder)
+    return stored.complete
+
+
+def figures(result: Result) -> dict[str, Figure]:
+    """Name -> figure of every figure of a result, the main one first."""
+    return {Path(name).stem: draw.figure() for name, draw in figures_for(result).items()}  # type: ignore[attr-defined]
+
+
+def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
+    """The deformed body at the last kept state with its fields.
+
+    Raises
+    ------
+    InputError
+        If the run kept no fields.
+    """
+    if not result.frames:
+        raise InputError(f"the result of {result.kind} holds no fields; a case keeps them with output: {{fields: all}}")
+    import pyvista
+
+    frame = result.frames[-1]
+    cells = {getattr(pyvista.CellType, CELL_TYPES[name]): corners for name, corners in frame.cells.items()}
+    grid = pyvista.UnstructuredGrid(cells, frame.points)
+    grid.point_data.update(frame.point_data)
+    grid.cell_data.update(frame.cell_data)
+    return grid
+
+
+def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
+    """Write the folder of a result and return its path.
+
+    Raises
+    ------
+    InputError
+        If the result was not run from a case or an experiment.
+    StorageError
+        If the place is taken or cannot be written.
+    """
+    origin = result.provenance
+    if not origin:
+        if result.experiment is None:
+            raise InputError("the result does not know the case that it comes from; run a case or an experiment")
+        case = Case(schema="tactsim/case/1", title=result.title, experiment=result.experiment)
+        origin = provenance(case.resolved(), case.case_id, seeds=case.experiment.seeds())
+    drawn = {f"{name}.png": encoded(figure) for name, figure in figures(result).items()}
+    return write_result(result, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
+
+
+def html(result: Result) -> str:
+    """Status, quantities, warnings and the main figure."""
+    title = markup.escape(result.title or result.kind.replace("_", " "))
+    lines = [f"<h4>{title}</h4>", f"<p><b>{result.status}</b>: {markup.escape(one_line(result.reason))}</p>"]
+    single = [(name, quantity) for name, quantity in result.quantities.items() if isinstance(quantity.value, int | float)]
+    rows = [
+        f"<tr><td><code>{markup.escape(name)}</code></td><td>{markup.escape(format_quantity(quantity.value, quantity.unit))}</td>"
+        f"<td style='text-align:left'>{markup.escape(quantity.description)}</td></tr>"
+        for name, quantity in single[:LONGEST_TABLE]
+    ]
+    left = len(result.quantities) - len(rows)
+    lines.append(f"<table>{''.join(rows)}</table>" + (f"<p>and {left} more in <code>quantities</code></p>" if left > 0 else ""))
+    lines += [f"<p>warning: {markup.escape(one_line(warning))}</p>" for warning in result.warnings]
+    first = next(iter(figures_for(result).values()), None)
+    if first is not None:
+        lines.append(
+            f'<img alt="{title}" style="max-width:100%" src="data:image/png;base64,{base64.b64encode(first()).decode()}">'
+        )
+    return "\n".join(lines)

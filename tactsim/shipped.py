@@ -1,0 +1,35 @@
+"""Where the cases, tables and meshes that come with tactsim lie: beside the modules of a wheel, or in the checkout."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from tactsim.errors import UnknownName
+
+_PACKAGE = Path(__file__).resolve().parent
+PROGRAM = _PACKAGE / "_shipped" if (_PACKAGE / "_shipped").is_dir() else _PACKAGE.parent
+"""The folder that holds ``cases`` and ``meshes``."""
+CASES = PROGRAM / "cases"
+
+
+def case_path(named: str | Path) -> Path:
+    """The case file of a path or of the name of a shipped case, such as ``annulus_icf``; a file of that path comes first.
+
+    Raises
+    ------
+    UnknownName
+        If it is a bare name, and no shipped case has it.
+    """
+    path = Path(named)
+    if path.suffix or len(path.parts) != 1 or path.exists():
+        return path
+    known = {place.stem: place for place in shipped_cases()}
+    if path.name not in known:
+        raise UnknownName("case", path.name, known)
+    return known[path.name]
+
+
+def shipped_cases() -> Iterator[Path]:
+    """The files of the shipped cases and sweeps, by name."""
+    return iter(sorted(CASES.glob("*.yaml")))
