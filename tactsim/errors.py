@@ -43,8 +43,10 @@ class InputError(TactsimError):
     exit_code = 2
 
 
-class CaseError(InputError):
-    """A case file is wrong at a place that the message names."""
+class CaseError(InputError, ValueError):
+    """A case, in a file or from Python, is wrong at a place that the message names; ``refused`` holds what its model refused."""
+
+    refused: Any = None
 
 
 class InvalidQuantity(InputError, ValueError):

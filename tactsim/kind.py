@@ -6,8 +6,8 @@ from abc import ABC, abstractmethod
 from inspect import isabstract
 from typing import Any, ClassVar, Self
 
+from tactsim.model import FrozenModel
 from tactsim.registry import register
-from tactsim.units import FrozenModel
 
 
 class Kind(FrozenModel, ABC):

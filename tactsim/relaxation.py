@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.array import Array
-from tactsim.units import FrozenModel, Time
+from tactsim.model import FrozenModel
+from tactsim.units import Time
 
 SHORTEST, LONGEST = 1e-12, 1e12
 """Relaxation times in s; beyond, nothing is measured and steps of time drown in round-off."""

@@ -15,9 +15,7 @@ from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
 from pydantic import (
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     PlainSerializer,
     SerializationInfo,
@@ -27,13 +25,6 @@ from pydantic import (
 
 from tactsim.errors import InvalidQuantity, shown
 from tactsim.unit_definitions import PREFIXED, PREFIXES, UNPREFIXED
-
-
-class FrozenModel(BaseModel):
-    """A closed, immutable value: unknown keys, NaN and later changes are errors."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
 
 _QUANTITY = re.compile(
     r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",

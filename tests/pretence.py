@@ -12,8 +12,9 @@ from pydantic import Field, model_validator
 from tactsim.errors import InvalidQuantity, Unfinished, UnknownName
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
+from tactsim.model import FrozenModel
 from tactsim.results import FieldFrame, Quantity, Result, Scene, Status, StepRecord
-from tactsim.units import FrozenModel, Length, Pressure, Time
+from tactsim.units import Length, Pressure, Time
 
 
 class PretendedScene(Scene):

@@ -10,7 +10,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Force, FrozenModel, Length
+from tactsim.model import FrozenModel
+from tactsim.units import Force, Length
 
 FULL = 100.0
 """Largest reading."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tactsim.case.explaining import as_written, problems_of
+from tactsim.case.explaining import problems_of
 from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class, experiment_kinds
 from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
@@ -18,6 +18,7 @@ from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, UnknownName, suggestion
 from tactsim.outside.files import LIMITS, TooLarge, opened
 from tactsim.outside.text import one_line
+from tactsim.refusals import as_written
 from tactsim.shipped import case_path
 from tactsim.units import written
 

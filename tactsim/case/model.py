@@ -12,11 +12,11 @@ from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Progress
+from tactsim.model import FrozenModel
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.registry import Registered, kind_class, kinds
 from tactsim.results.provenance import provenance
 from tactsim.results.result import Result
-from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
 

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.array import Array
-from tactsim.units import FrozenModel
+from tactsim.model import FrozenModel
 
 Values = dict[str, Array]
 """Values of variables by name."""

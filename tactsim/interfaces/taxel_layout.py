@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.array import Array
-from tactsim.units import FrozenModel, Length, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Length, format_quantity
 
 JawName = Literal["upper", "lower"]
 JAWS: tuple[str, ...] = get_args(JawName)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tactsim.units import FrozenModel, written
+from tactsim.model import FrozenModel
+from tactsim.units import written
 
 
 @dataclass(frozen=True)

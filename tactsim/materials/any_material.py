@@ -12,9 +12,9 @@ from tactsim.errors import UnknownName
 from tactsim.interfaces import Material
 from tactsim.materials.library import LIBRARY, named_material
 from tactsim.materials.moduli import BulkModulus
+from tactsim.model import FrozenModel
 from tactsim.registry import kind_class, kinds
 from tactsim.relaxation import Relaxation
-from tactsim.units import FrozenModel
 
 
 class SetReference(FrozenModel):

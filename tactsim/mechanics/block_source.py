@@ -22,8 +22,9 @@ from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
 from tactsim.mesh.structured_block import morphed_block, structured_block
 from tactsim.mesh.wholeness import check_whole
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.units import FrozenModel, format_quantity
+from tactsim.units import format_quantity
 
 Size = tuple[float, float, float]
 FITS = 1e-6

@@ -11,7 +11,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, create_model, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
-from tactsim.units import Force, Frequency, FrozenModel, Length, Time, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Force, Frequency, Length, Time, format_quantity
 
 MOST_PERIODS = 10_000
 """Periods of a wave: with the fewest steps of a period, four, nearly as many steps as a path may have (``fem.progress``)."""

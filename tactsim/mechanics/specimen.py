@@ -12,7 +12,8 @@ from tactsim.interfaces import Material
 from tactsim.materials import AnyMaterial
 from tactsim.mesh.axisymmetric import Size, section_mesh
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.units import FrozenModel, Length, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Length, format_quantity
 
 LARGEST_CAP = 0.9
 """Largest difference of height of a curved surface, as a part of the thickness."""

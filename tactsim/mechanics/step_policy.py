@@ -11,7 +11,8 @@ from pydantic import Field
 
 from tactsim.fem.time_steps import TimeControl
 from tactsim.interfaces import Material
-from tactsim.units import FrozenModel, Time
+from tactsim.model import FrozenModel
+from tactsim.units import Time
 
 if TYPE_CHECKING:
     from tactsim.mechanics.history_path import TimeInterval

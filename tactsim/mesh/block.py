@@ -10,7 +10,8 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.interfaces.solid import Positive
 from tactsim.mesh.quadratic import QuadraticMesh
-from tactsim.units import FrozenModel, Time
+from tactsim.model import FrozenModel
+from tactsim.units import Time
 
 VOLUME_TOLERANCE = 5e-3
 """Largest relative error of the volume of a region."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import StorageError
+from tactsim.model import FrozenModel
 from tactsim.outside.files import opened
 from tactsim.outside.json_text import read_json
-from tactsim.units import FrozenModel
 
 MANIFEST = "manifest.json"
 

@@ -9,9 +9,9 @@ from pydantic import ValidationError
 
 from tactsim.errors import TactsimError
 from tactsim.kind import Kind
+from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
 from tactsim.registry import kind_class
-from tactsim.units import FrozenModel
 
 EARLIER = "it was written by an earlier version of tactsim (schema_version 1), which described it in another form"
 

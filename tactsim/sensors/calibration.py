@@ -9,8 +9,9 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.model import FrozenModel
 from tactsim.registry import Named
-from tactsim.units import Conductance, ConductancePerForce, FrozenModel
+from tactsim.units import Conductance, ConductancePerForce
 
 
 class LinearCalibration(FrozenModel):

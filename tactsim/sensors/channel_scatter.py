@@ -9,8 +9,9 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.model import FrozenModel
 from tactsim.sensors.calibration import LinearCalibration
-from tactsim.units import Force, FrozenModel
+from tactsim.units import Force
 
 
 class ChannelScatter(FrozenModel):

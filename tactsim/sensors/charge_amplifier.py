@@ -9,7 +9,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Capacitance, FrozenModel, Voltage
+from tactsim.model import FrozenModel
+from tactsim.units import Capacitance, Voltage
 
 
 class ChargeAmplifier(FrozenModel):

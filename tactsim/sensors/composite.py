@@ -7,19 +7,9 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from tactsim.model import FrozenModel
 from tactsim.sensors.tunnelling import LOOSEST_PACKING, particle_separation, tunnelling_decay
-from tactsim.units import (
-    Area,
-    Energy,
-    Force,
-    FrozenModel,
-    Length,
-    Pressure,
-    PressurePerForce,
-    Resistance,
-    Viscosity,
-    ViscosityPerForce,
-)
+from tactsim.units import Area, Energy, Force, Length, Pressure, PressurePerForce, Resistance, Viscosity, ViscosityPerForce
 
 
 class ModulusLine(FrozenModel):

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import FrozenModel, Voltage, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Voltage, format_quantity
 
 LEAST_RANGE, MOST_RANGE = 1e-6, 1e6
 """Range in V of any converter, with a wide margin, in which no quotient overflows."""

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import SensorFilm
+from tactsim.model import FrozenModel
 from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import AnyCalibration, LinearCalibration
 from tactsim.sensors.film import Film
@@ -18,7 +19,7 @@ from tactsim.sensors.film_calibration import film_line
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import Recording, SignalChain
-from tactsim.units import Force, FrozenModel, check_increasing
+from tactsim.units import Force, check_increasing
 
 
 @dataclass(frozen=True, eq=False)

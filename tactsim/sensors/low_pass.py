@@ -11,7 +11,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Frequency, FrozenModel, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Frequency, format_quantity
 
 INVERTIBLE = 1
 """Highest order that is inverted: the inverse has as many poles at -1, from the second on round-off grows with the samples."""

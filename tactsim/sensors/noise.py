@@ -9,7 +9,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Frequency, FrozenModel, Voltage
+from tactsim.model import FrozenModel
+from tactsim.units import Frequency, Voltage
 
 
 class Noise(FrozenModel):

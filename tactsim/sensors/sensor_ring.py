@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.array import Array
-from tactsim.units import Angle, FrozenModel, Length, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Angle, Length, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 RINGS, SPOKES = 40, 96

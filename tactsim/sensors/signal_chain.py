@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.model import FrozenModel
 from tactsim.sensors.converter import Converter
 from tactsim.sensors.divider import divider_conductance, divider_slope, divider_voltage
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
-from tactsim.units import Frequency, FrozenModel, Resistance, Voltage
+from tactsim.units import Frequency, Resistance, Voltage
 
 MOST_SAMPLES = 10**8
 """Longest record, in samples per channel."""

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Force, FrozenModel, Length, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Force, Length, format_quantity
 
 Formula = Literal["corrected", "as_printed"]
 MARGIN = 2.0

@@ -8,13 +8,14 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.array import Array
+from tactsim.model import FrozenModel
 from tactsim.sensors.any_film import ConductingFilm
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.sensors.threshold_trigger import ThresholdTrigger, TriggerLevel
-from tactsim.units import FrozenModel, Time
+from tactsim.units import Time
 
 LARGE, SMALL = 0, 1
 """Place of the channels on the second axis of a recording."""

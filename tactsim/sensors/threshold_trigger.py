@@ -11,7 +11,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Force, FrozenModel
+from tactsim.model import FrozenModel
+from tactsim.units import Force
 
 UNTRIGGERED = -1
 """Index of a recording in which the small sensor never exceeded its level."""

@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Literal, Self, get_type_hints
 from pydantic import Field, create_model, model_validator
 
 from tactsim.errors import InputError
+from tactsim.model import FrozenModel
 from tactsim.registry import MarkedFunction, marked_functions, union_of
-from tactsim.units import FrozenModel
 from tactsim.validation.inputs import Inputs
 
 PACKAGE = "tactsim.validation.quantities"

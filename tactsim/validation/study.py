@@ -7,7 +7,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from tactsim.units import FrozenModel
+from tactsim.model import FrozenModel
 
 Override = str | float | bool | dict[str, str | float | bool]
 

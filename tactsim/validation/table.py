@@ -7,8 +7,9 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, SerializeAsAny, create_model, model_validator
 
+from tactsim.model import FrozenModel
 from tactsim.registry import MarkedFunction
-from tactsim.units import FrozenModel, parse_quantity
+from tactsim.units import parse_quantity
 from tactsim.validation.calls import Call, any_call, callable_now
 from tactsim.validation.study import Study
 

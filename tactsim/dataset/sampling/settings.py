@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.experiments.recording import RecordingSettings
-from tactsim.units import FrozenModel, Time
+from tactsim.model import FrozenModel
+from tactsim.units import Time
 
 SCHEMA = "tactsim/sweep/1"
 NO_SPLIT = "none"

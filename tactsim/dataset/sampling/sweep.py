@@ -14,7 +14,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tactsim.case.explaining import as_written, problems_of
+from tactsim.case.explaining import problems_of
 from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
@@ -23,6 +23,7 @@ from tactsim.dataset.sampling.distributions import READERS, Distribution, Listed
 from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
+from tactsim.refusals import as_written
 
 SECTION = "sweep"
 

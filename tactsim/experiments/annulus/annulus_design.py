@@ -14,8 +14,9 @@ from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, PositiveForce, PositiveLength, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
+from tactsim.model import FrozenModel
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.units import FrozenModel, Time, check_increasing, format_quantity
+from tactsim.units import Time, check_increasing, format_quantity
 
 SMALL_DISPLACEMENT = 0.1
 """Displacement over the outer radius beyond which small-displacement theory is not to be trusted; a convention."""

@@ -7,8 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from tactsim.analytic.force_factor import LARGEST_RATIO
+from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
-from tactsim.units import Force, FrozenModel, Length, Time
+from tactsim.units import Force, Length, Time
 
 Ratio = Annotated[float, Field(gt=0, le=LARGEST_RATIO)]
 PositiveLength = Annotated[Length, Field(gt=0)]

@@ -10,8 +10,9 @@ from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.identification.dma_data import FEWEST_FREQUENCIES, THESIS_FREQUENCIES, DmaData, read_dma, synthetic_dma
 from tactsim.identification.dma_signals import dma_from_signals, read_dma_signals
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.units import Area, Frequency, FrozenModel, Length, check_increasing
+from tactsim.units import Area, Frequency, Length, check_increasing
 
 Seed = Annotated[int, Field(ge=0)]
 

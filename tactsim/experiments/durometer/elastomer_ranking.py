@@ -23,8 +23,9 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.specimen import Specimen
+from tactsim.model import FrozenModel
 from tactsim.results.result import Result, Status, StepRecord
-from tactsim.units import FrozenModel, Length, Time, format_quantity
+from tactsim.units import Length, Time, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 

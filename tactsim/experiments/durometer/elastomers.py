@@ -9,7 +9,8 @@ from pydantic import Field
 from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.units import FrozenModel, Pressure
+from tactsim.model import FrozenModel
+from tactsim.units import Pressure
 
 Reading = Annotated[float, Field(ge=0, lt=100)]
 

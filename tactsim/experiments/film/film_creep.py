@@ -21,11 +21,12 @@ from tactsim.identification.film_creep import (
 )
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.response_errors import root_mean_square
-from tactsim.units import Area, Force, FrozenModel, Time
+from tactsim.units import Area, Force, Time
 
 PositiveForce = Annotated[Force, Field(gt=0)]
 UNITS = {"instantaneous": "Pa", "delayed": "Pa", "viscosity": "Pa*s"}

@@ -10,11 +10,12 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
 from tactsim.sensors.signal_chain import SignalChain
-from tactsim.units import Force, FrozenModel, Time
+from tactsim.units import Force, Time
 
 Readings = tuple[Array, Array, Array]
 """Forces in N of shape (points,), voltages in V and whether each is saturated, of shape (points, sensors)."""

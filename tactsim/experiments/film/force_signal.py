@@ -14,10 +14,11 @@ from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.mechanics.loading import ForceLoading
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.sensors.film import HOLM
 from tactsim.sensors.force_history import checked_forces, checked_times
-from tactsim.units import Force, Frequency, FrozenModel, Time, format_quantity
+from tactsim.units import Force, Frequency, Time, format_quantity
 
 PositiveTime = Annotated[Time, Field(gt=0)]
 PositiveFrequency = Annotated[Frequency, Field(gt=0)]

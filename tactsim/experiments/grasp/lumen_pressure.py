@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
 from tactsim.mechanics.loading import Loading, pieces_of
-from tactsim.units import Frequency, FrozenModel, Pressure, Time, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Frequency, Pressure, Time, format_quantity
 
 MMHG = 133.322387415
 """Pressure in Pa of a millimetre of mercury (BIPM, SI brochure, 8th edition, table 8)."""

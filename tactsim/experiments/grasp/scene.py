@@ -12,8 +12,8 @@ from tactsim.contact.jaw import Jaw
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
+from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene, SolverReport
-from tactsim.units import FrozenModel
 
 Point = tuple[float, float, float]
 

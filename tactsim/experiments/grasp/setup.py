@@ -25,8 +25,9 @@ from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, Tetrahe
 from tactsim.mechanics.loading import AnyLoading, check_periods
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
+from tactsim.model import FrozenModel
 from tactsim.sensors.matrix_readout import MatrixReadout
-from tactsim.units import Angle, FrozenModel, Length, format_quantity
+from tactsim.units import Angle, Length, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.mechanics.block_model import GraspModel

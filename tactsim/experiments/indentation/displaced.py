@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
 from tactsim.fem.loading import StepControl
 from tactsim.fem.progress import check_steps
-from tactsim.units import FrozenModel, Length, format_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Length, format_quantity
 
 LEAST_STEP = 1e-9
 """First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""

@@ -22,9 +22,10 @@ from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.step_policy import StepPolicy
 from tactsim.mesh.axisymmetric import Size, edge_graded
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.model import FrozenModel
 from tactsim.registry import Registered
 from tactsim.results.result import Status
-from tactsim.units import FrozenModel, Length, format_quantity
+from tactsim.units import Length, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.fem.space import Measure

@@ -7,8 +7,8 @@ from typing import Literal
 from tactsim.experiments.grasp.scene import GraspScene, Point
 from tactsim.interfaces.estimate import EstimatedInclusion
 from tactsim.localization.region import shadows
+from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
-from tactsim.units import FrozenModel
 
 Line = list[tuple[float, float]]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
-from tactsim.units import FrozenModel
 
 
 class SwitchClosing(FrozenModel):

@@ -16,10 +16,11 @@ from tactsim.mechanics.loading import DisplacementLoading
 from tactsim.mechanics.penetration_bounds import default_penetration
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.model import FrozenModel
 from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
-from tactsim.units import FrozenModel, Length, Speed, format_quantity
+from tactsim.units import Length, Speed, format_quantity
 
 COUNT = 5
 """Switches of the probe of chapter 5."""

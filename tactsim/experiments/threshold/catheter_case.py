@@ -8,9 +8,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.experiments.threshold.valve_tissue import ValveSurface
+from tactsim.model import FrozenModel
 from tactsim.sensors.sensor_ring import SensorRing
 from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.units import Angle, FrozenModel, Length, Speed, Time
+from tactsim.units import Angle, Length, Speed, Time
 
 STEEPEST = np.pi / 6 * (1 + 1e-12)
 """Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""

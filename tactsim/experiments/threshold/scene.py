@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
 from tactsim.sensors.sensor_ring import SensorRing
-from tactsim.units import FrozenModel
 
 
 class ThresholdCapture(FrozenModel):

@@ -17,10 +17,11 @@ from tactsim.identification.columns import read_columns
 from tactsim.interfaces import Experiment
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
+from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result
-from tactsim.units import FrozenModel, Length, format_quantity
+from tactsim.units import Length, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 COLUMNS = {"displacement": "m", "plate force": "N", "tissue rise": "m", "small sensor force": "N"}

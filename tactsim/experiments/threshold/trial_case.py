@@ -8,10 +8,11 @@ from pydantic import Field, model_validator
 
 from tactsim.experiments.threshold.sampling import FINER
 from tactsim.experiments.threshold.source import AnySource
+from tactsim.model import FrozenModel
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.units import Frequency, FrozenModel, Speed, Time, Voltage, check_increasing
+from tactsim.units import Frequency, Speed, Time, Voltage, check_increasing
 
 
 class TrialCase(FrozenModel):

@@ -11,8 +11,9 @@ from pydantic import Field, model_validator
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.array import Array
 from tactsim.experiments.threshold.contact_curve import Approach
+from tactsim.model import FrozenModel
 from tactsim.sensors.sensor_ring import SensorRing
-from tactsim.units import FrozenModel, Length, Pressure, check_increasing
+from tactsim.units import Length, Pressure, check_increasing
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 

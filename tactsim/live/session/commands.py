@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from tactsim.errors import InputError
+from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
-from tactsim.units import FrozenModel
 
 MOST_STEPS = 10**9
 """Largest number of a step or a sample: no recording or data set is as long."""

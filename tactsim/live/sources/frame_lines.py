@@ -29,8 +29,8 @@ from tactsim.array import Array
 from tactsim.errors import InputError, shown
 from tactsim.interfaces.taxel_layout import JAWS, PositiveLength, TaxelLayout
 from tactsim.live.sources.scene import LARGEST_FORCE, Frame, PageScene, plain_scene
+from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
-from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/frames/1"
 LONGEST_LINE = 8 * 2**20

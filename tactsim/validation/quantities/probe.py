@@ -10,9 +10,10 @@ from pydantic import Field
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import InputError
 from tactsim.interfaces import quantity
+from tactsim.model import FrozenModel
 from tactsim.sensors.switch_array import Formula, SwitchArray
 from tactsim.sensors.switch_reading import read_switches
-from tactsim.units import Frequency, FrozenModel, Length, Positive, Speed, format_quantity
+from tactsim.units import Frequency, Length, Positive, Speed, format_quantity
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 

@@ -12,7 +12,8 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import drawing, quantity
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.units import FrozenModel, Length, Positive, parse_quantity
+from tactsim.model import FrozenModel
+from tactsim.units import Length, Positive, parse_quantity
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.quantities.annulus import OUTER_RADIUS

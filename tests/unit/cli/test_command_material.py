@@ -14,8 +14,8 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.library import LIBRARY, named_material
+from tactsim.model import FrozenModel
 from tactsim.registry import register
-from tactsim.units import FrozenModel
 
 NAME = "icf_stable"
 

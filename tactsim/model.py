@@ -1,0 +1,39 @@
+"""The base of every value that a case holds: closed, immutable, and refused in words when it is made in Python."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from tactsim.errors import CaseError
+from tactsim.refusals import refusals_of
+
+_Metaclass: Any = type(BaseModel)
+
+
+class _MadeInPython(_Metaclass):  # type: ignore[misc]
+    """What is wrong with a value made in Python raises the message that a case file has for it; fields may go by position."""
+
+    def __call__(cls, *values: Any, **fields: Any) -> Any:
+        named = dict(zip((name for name in cls.model_fields if name != "kind"), values, strict=False))  # type: ignore[attr-defined]
+        if len(named) < len(values) or named.keys() & fields.keys():
+            twice = ", ".join(named.keys() & fields.keys())
+            raise TypeError(
+                f"{cls.__name__}: " + (f"{twice} is given twice" if twice else f"at most {len(named)} values by position")
+            )
+        try:
+            return super().__call__(**named, **fields)
+        except ValidationError as error:
+            refusals = refusals_of(error, named | fields, cls)  # type: ignore[arg-type]
+            places = {".".join(map(str, path)): message for path, message in refusals.items()}
+            lines = [": ".join(part for part in (cls.__name__, place, message) if part) for place, message in places.items()]
+            refusal = CaseError("\n".join(lines))
+            refusal.refused = error
+            raise refusal from None
+
+
+class FrozenModel(BaseModel, metaclass=_MadeInPython):
+    """A closed, immutable value: unknown keys, NaN and later changes are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)

@@ -1,0 +1,243 @@
+"""Turns what a model refused into sentences: the key path, the value, and what is allowed there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core.core_schema import ErrorType
+
+from tactsim.errors import CaseError, shown, suggestion
+from tactsim.units import format_quantity
+
+Path = tuple[str | int, ...]
+
+_TYPES = {
+    "string": "a text",
+    "integer": "a whole number",
+    "number": "a number",
+    "boolean": "true or false",
+    "array": "a list",
+    "object": "a mapping",
+    "null": "null",
+}
+_BOUNDS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most", "multiple_of": "a multiple of"}
+_PYDANTIC_TYPES = frozenset(get_args(ErrorType))
+_MISSING = object()
+
+
+def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> dict[Path, str]:
+    """Key path -> message for every place of ``value``, plain data, that the model refused."""
+    schema = _schema_of(model)
+    messages: dict[Path, list[str]] = {}
+    for detail in _details(error):
+        path = _path_in_file(detail["loc"], value, str(detail["type"]))
+        if detail["type"] in ("too_short", "too_long") and _fits(detail.get("ctx", {}), _value_at(value, path)):
+            continue  # pydantic counts only the valid entries, and the others have their own message
+        place, message = _explained(detail, path, value, schema)
+        of_place = messages.setdefault(place, [])
+        if message not in of_place:
+            of_place.append(message)
+    return {path: "; or ".join(of_place) for path, of_place in messages.items()}
+
+
+@cache
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """The JSON Schema of a model, which takes long to make; it is only read."""
+    return model.model_json_schema(by_alias=True)
+
+
+def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
+    """Every single refusal; a validator that itself validated a model wraps the refusals of that model."""
+    for detail in error.errors(include_url=False):
+        place = (*location, *detail["loc"])
+        inner = detail.get("ctx", {}).get("error")
+        if isinstance(inner, CaseError) and inner.refused is not None:
+            inner = inner.refused
+        if isinstance(inner, ValidationError):
+            yield from _details(inner, place)
+        else:
+            yield {**detail, "loc": place}
+
+
+def as_written(value: Any) -> str:
+    """``value`` as a case file writes it, shortened."""
+    words = {None: "null", True: "true", False: "false"}
+    return words[value] if value is None or isinstance(value, bool) else shown(value)
+
+
+def _path_in_file(location: tuple[str | int, ...], value: Any, error_type: str) -> Path:
+    """The key path without the names of union members that the validator puts into a location."""
+    path: list[str | int] = []
+    for position, key in enumerate(location):
+        if isinstance(value, dict) and key in value and not _is_member(key, location[position + 1 :], value):
+            value = value[key]
+        elif isinstance(value, list) and isinstance(key, int):
+            value = value[key] if key < len(value) else _MISSING
+        elif not (isinstance(value, dict) and position == len(location) - 1 and error_type == "missing"):
+            continue
+        path.append(key)
+    return tuple(path)
+
+
+def _is_member(key: str | int, rest: tuple[str | int, ...], value: dict[str, Any]) -> bool:
+    """Whether ``key`` is the tag of a union although the mapping has a key of the same name."""
+    return value.get("kind") == key and bool(rest) and rest[0] in value and not isinstance(value[str(key)], dict | list)
+
+
+def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, Any]) -> tuple[Path, str]:
+    """The key path to blame and the message for one refusal."""
+    error_type, context = str(detail["type"]), detail.get("ctx", {})
+    value = _value_at(root, path)
+    fragment = _schema_at(schema, root, path)
+    if error_type == "extra_forbidden":
+        allowed = _keys(_schema_at(schema, root, path[:-1]), schema)
+        return path, f"unknown key{suggestion(str(path[-1]), allowed)}; allowed: {', '.join(allowed) or 'none'}"
+    if error_type == "missing":
+        return path, f"missing; expected {_expectation(fragment, schema)}"
+    if error_type == "union_tag_not_found":
+        return _tag_path(context, path), f"missing; choices: {', '.join(_tags(fragment, schema))}"
+    if error_type == "union_tag_invalid":
+        tag, choices = str(context["tag"]), re.findall(r"'([^']*)'", context["expected_tags"])
+        return _tag_path(
+            context, path
+        ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
+    if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
+        return _blamed_within(path, value, str(context.get("error", detail["msg"])))
+    if error_type in ("literal_error", "enum"):
+        choices = re.findall(r"'([^']*)'", context["expected"])
+        return path, f"{as_written(value)} is not allowed{suggestion(str(value), choices)}; choices: {context['expected']}"
+    return path, _out_of_bounds(
+        context, value, fragment
+    ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}"
+
+
+def _blamed_within(path: Path, value: Any, message: str) -> tuple[Path, str]:
+    """The key path and the message of a check of a whole mapping, which may begin with the keys within it that are to blame."""
+    keys, colon, words = message.partition(": ")
+    within: Path = ()
+    for key in keys.split(".") if colon else ():
+        step = int(key) if isinstance(value, list) and key.isdecimal() else key
+        try:
+            value = value[step]
+        except (LookupError, TypeError):
+            return path, message
+        within = (*within, step)
+    return (*path, *within), words if within else message
+
+
+def _out_of_bounds(context: dict[str, Any], value: Any, fragment: dict[str, Any]) -> str:
+    """The message for a number beyond its bound or a list or text of the wrong length, else an empty string."""
+    for name, words in _BOUNDS.items():
+        if name in context:
+            unit = fragment.get("unit", "")
+            bound = format_quantity(context[name], unit) if unit else f"{context[name]}"
+            return f"{as_written(value)} is out of range; must be {words} {bound}"
+    for name, words in (("min_length", "at least"), ("max_length", "at most")):
+        if name in context:
+            return f"{as_written(value)} has the wrong length; expected {words} {context[name]} entries or characters"
+    return ""
+
+
+def _fits(context: dict[str, Any], value: Any) -> bool:
+    length = len(value) if isinstance(value, list | dict | str) else 0
+    return int(context.get("min_length") or 0) <= length <= int(context.get("max_length") or length)
+
+
+def _wanted(detail: dict[str, Any], fragment: dict[str, Any], schema: dict[str, Any]) -> str:
+    described = _expectation(fragment, schema)
+    return described if described != "a value" else str(detail["msg"]).removeprefix("Input should be ")
+
+
+def _expectation(fragment: dict[str, Any], schema: dict[str, Any]) -> str:
+    """What a fragment of the schema accepts, in words."""
+    fragment = _resolved(fragment, schema)
+    if "const" in fragment:
+        return as_written(fragment["const"])
+    if "enum" in fragment:
+        return "one of " + ", ".join(map(shown, fragment["enum"]))
+    if "unit" in fragment:
+        return f"a quantity with its unit, such as {fragment['examples'][0]!r}"
+    members = list(_members(fragment, schema))
+    tags = _tags(fragment, schema)
+    if len(members) > 1 or tags:
+        words = [_expectation(member, schema) for member in members if not _tag(member)]
+        return " or ".join(dict.fromkeys([*words, *([f"a mapping with a kind of {', '.join(tags)}"] if tags else [])]))
+    if fragment.get("type") == "object" and "properties" in fragment:
+        return f"a mapping with {', '.join(fragment['properties'])}"
+    return _TYPES.get(str(fragment.get("type")), "a value")
+
+
+def _tag_path(context: dict[str, Any], path: Path) -> Path:
+    return (*path, str(context["discriminator"]).strip("'"))
+
+
+def _value_at(value: Any, path: Path) -> Any:
+    for key in path:
+        try:
+            value = value[key]
+        except (LookupError, TypeError):
+            return None
+    return value
+
+
+def _resolved(fragment: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
+    while "$ref" in fragment:
+        fragment = schema["$defs"][fragment["$ref"].rpartition("/")[2]]
+    return fragment
+
+
+def _members(fragment: dict[str, Any], schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The fragment itself, or the members of a union at any depth."""
+    fragment = _resolved(fragment, schema)
+    inner = [*fragment.get("anyOf", ()), *fragment.get("oneOf", ()), *fragment.get("allOf", ())]
+    if not inner:
+        yield fragment
+    for member in inner:
+        yield from _members(member, schema)
+
+
+def _tags(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
+    return sorted({tag for member in _members(fragment, schema) if (tag := _tag(member))})
+
+
+def _tag(member: dict[str, Any]) -> str:
+    """The ``kind`` of a member of a union, empty if it has none."""
+    return str(member.get("properties", {}).get("kind", {}).get("const", ""))
+
+
+def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
+    return list(dict.fromkeys(key for member in _members(fragment, schema) for key in member.get("properties", {})))
+
+
+def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
+    """The part of the schema for a key path, following in every union the member of the ``kind`` that the file names."""
+    fragment = _narrowed(schema, schema, root)
+    for position, key in enumerate(path):
+        fragment = _entry(fragment, key)
+        fragment = _narrowed(fragment, schema, _value_at(root, path[: position + 1]))
+    return fragment
+
+
+def _entry(fragment: dict[str, Any], key: str | int) -> dict[str, Any]:
+    for part in fragment.get("anyOf", [fragment]):
+        if isinstance(key, int):
+            prefix = part.get("prefixItems", [])
+            found = prefix[key] if key < len(prefix) else part.get("items")
+        else:
+            found = part.get("properties", {}).get(key) or part.get("additionalProperties")
+        if isinstance(found, dict):
+            return found
+    return {}
+
+
+def _narrowed(fragment: dict[str, Any], schema: dict[str, Any], value: Any) -> dict[str, Any]:
+    members = list(_members(fragment, schema))
+    if isinstance(value, dict) and len(members) > 1:
+        kind = value.get("kind")
+        fitting = [m for m in members if (_tag(m) == kind if kind else set(m.get("required", ["kind"])) <= value.keys())]
+        members = fitting if len(fitting) == 1 else members
+    return members[0] if len(members) == 1 else {**_resolved(fragment, schema), "anyOf": members}
