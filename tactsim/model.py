@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from tactsim.errors import CaseError
 from tactsim.refusals import refusals_of
 
-_Metaclass: Any = type(BaseModel)
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
 
-class _MadeInPython(_Metaclass):  # type: ignore[misc]
+class _MadeInPython(ModelMetaclass):
     """What is wrong with a value made in Python raises the message that a case file has for it; fields may go by position."""
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
@@ -25,12 +28,19 @@ class _MadeInPython(_Metaclass):  # type: ignore[misc]
         try:
             return super().__call__(**named, **fields)
         except ValidationError as error:
-            refusals = refusals_of(error, named | fields, cls)  # type: ignore[arg-type]
+            refusals = refusals_of(error, _plain(named | fields), cls)  # type: ignore[arg-type]
             places = {".".join(map(str, path)): message for path, message in refusals.items()}
             lines = [": ".join(part for part in (cls.__name__, place, message) if part) for place, message in places.items()]
             refusal = CaseError("\n".join(lines))
             refusal.refused = error
             raise refusal from None
+
+
+def _plain(value: Any) -> Any:
+    """The value as a file would hold it: lists for tuples."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 class FrozenModel(BaseModel, metaclass=_MadeInPython):

@@ -107,6 +107,8 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
     if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
         return _blamed_within(path, value, str(context.get("error", detail["msg"])))
+    if error_type == "finite_number":
+        return path, f"{as_written(value)} is not finite; expected {_expectation(fragment, schema)}"
     if error_type in ("literal_error", "enum"):
         choices = re.findall(r"'([^']*)'", context["expected"])
         return path, f"{as_written(value)} is not allowed{suggestion(str(value), choices)}; choices: {context['expected']}"

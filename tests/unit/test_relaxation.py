@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
+from tactsim.errors import CaseError
 from tactsim.materials.any_material import read_material
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -27,7 +27,7 @@ from tactsim.relaxation import Relaxation
     ],
 )
 def test_what_is_not_a_fading_memory_is_refused(fractions, times, words):
-    with pytest.raises(ValidationError, match=words):
+    with pytest.raises(CaseError, match=words):
         Relaxation(fractions=fractions, times=times)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tactsim.contact.rod import Rod
 from tactsim.contact.sphere import Sphere
+from tactsim.errors import CaseError
 
 RADIUS = 1.19e-3
 
@@ -37,5 +37,5 @@ def test_the_shank_is_a_cylinder():
 
 @pytest.mark.parametrize("radius", [0.0, -1e-3, float("nan"), float("inf")])
 def test_a_radius_is_positive(radius):
-    with pytest.raises(ValidationError, match="radius"):
+    with pytest.raises(CaseError, match="radius"):
         Rod(radius=radius)

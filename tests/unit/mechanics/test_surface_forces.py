@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from skfem import ElementTriP2, MeshTri
 from skfem.quadrature import get_quadrature
 
-from tactsim.errors import InputError
+from tactsim.errors import CaseError, InputError
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mechanics.surface_forces import taxel_forces
 
@@ -96,7 +95,7 @@ def test_row_one_is_at_the_front_and_column_one_at_the_left():
 
 
 def test_impossible_layouts_and_points_are_refused():
-    with pytest.raises(ValidationError, match="overlap at a pitch"):
+    with pytest.raises(CaseError, match="overlap at a pitch"):
         TaxelLayout(pitch=1e-3, size=2e-3)
     places = sheet(4e-3, 1)
     with pytest.raises(InputError, match="six points"):

@@ -8,7 +8,7 @@ from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, enclosed_volume, irregular
 from pydantic import TypeAdapter, ValidationError
 from solids import assert_close
 
-from tactsim.errors import InputError, InvalidQuantity, StorageError
+from tactsim.errors import CaseError, InputError, InvalidQuantity, StorageError
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid, nearest_on_ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -176,11 +176,11 @@ def test_case_files_name_the_kind_and_the_units():
     for change in ({"radius": "0 mm"}, {"radius": 5}, {"radius": "-1 mm"}, {"center": ["1 mm", "2 mm"]}, {"kind": "cube"}):
         with pytest.raises(ValidationError):
             adapter.validate_python(text | change, context={"units": "required"})
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         Tube(centre_line=((0, 0, 0),), inner_radius=1e-3, wall=1e-3)
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         Tube(centre_line=ARTERY.centre_line, inner_radius=4e-3, wall=0.0)
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         Ellipsoid(center=(0, 0, 0), semi_axes=(1, 1, 0))
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.sensors.calibration import THESIS_LINE, LinearCalibration
 from tactsim.sensors.channel_scatter import ChannelScatter
 from tactsim.sensors.signal_chain import SignalChain
@@ -45,7 +44,7 @@ def test_bad_forces_and_conductances_are_refused(bad):
 
 @pytest.mark.parametrize("slope", [0.0, -1e-5, float("nan")])
 def test_a_line_that_does_not_rise_is_refused(slope):
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         LinearCalibration(slope=slope)
     assert LinearCalibration.model_validate({"slope": "0.05 mS/N"}).slope == pytest.approx(5e-5)
 
@@ -74,5 +73,5 @@ def test_impossible_scatter_is_refused():
     with pytest.raises(InvalidQuantity, match="makes a gain negative"):
         ChannelScatter(full_scale=1.0).gains((100,), LinearCalibration(slope=1e-5, intercept=-0.99e-5))
     for changes in ({"repeatability": 0.2}, {"full_scale": 0.0}, {"seed": -1}):
-        with pytest.raises(ValidationError):
+        with pytest.raises(CaseError):
             ChannelScatter(**changes)

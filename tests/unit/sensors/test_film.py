@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.identification.film_line import identify_film
 from tactsim.sensors.calibration import THESIS_LINE
 from tactsim.sensors.composite import ModulusLine
@@ -188,7 +188,7 @@ def test_conductances_that_no_force_gives_are_refused():
 
 
 def test_an_unknown_composite_is_named():
-    with pytest.raises(ValidationError, match="lingstat_identified"):
+    with pytest.raises(CaseError, match="lingstat_identified"):
         Film(composite="lingstat_identifed")
 
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.sensors.calibration import LinearCalibration
 from tactsim.sensors.film import Film
 from tactsim.sensors.film_calibration import film_line
@@ -72,5 +71,5 @@ def test_bad_input_is_refused():
         PLAIN.read(np.array([]), np.zeros((0, 2, 3, 3)), AREA)
     with pytest.raises(InvalidQuantity, match="lower sampling_rate"):
         PLAIN.read(np.array([100.0]), np.zeros((1, 2, 32, 32)), AREA)
-    with pytest.raises(ValidationError, match="must increase"):
+    with pytest.raises(CaseError, match="must increase"):
         MatrixReadout(calibration_forces=(2.0, 1.0))

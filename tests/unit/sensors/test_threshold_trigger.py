@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from scipy.stats import norm
 
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.noise import Noise
 from tactsim.sensors.signal_chain import SignalChain
@@ -118,5 +117,5 @@ def test_bad_readings_and_times_are_refused():
     with pytest.raises(InvalidQuantity, match="step"):
         TriggerLevel().above_rest(np.zeros(3), 0.0)
     for bad in ({"multiple": 0}, {"multiple": -1}, {"force": 0.0}):
-        with pytest.raises(ValidationError):
+        with pytest.raises(CaseError):
             TriggerLevel(**bad)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.force_factor import force_factor, rise_factor
 from tactsim.case import load_case
+from tactsim.errors import CaseError
 from tactsim.experiments.annulus.annulus_design import AnnulusDesign, AtrialTissue
 from tactsim.plotting.result_figures import figures_for
 from tactsim.results import Status
@@ -140,7 +140,7 @@ def test_an_interrupted_run_keeps_its_rows():
     ],
 )
 def test_what_makes_no_design_is_refused(changes, message):
-    with pytest.raises(ValidationError, match=message):
+    with pytest.raises(CaseError, match=message):
         design(**changes)
 
 

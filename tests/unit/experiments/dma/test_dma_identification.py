@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from pydantic import ValidationError
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.case import load_case
-from tactsim.errors import ConvergenceError, StorageError
+from tactsim.errors import CaseError, ConvergenceError, StorageError
 from tactsim.experiments.dma import dma_identification
 from tactsim.experiments.dma.dma_identification import DmaIdentification
 from tactsim.experiments.dma.figures import dma_identification_figure
@@ -120,7 +119,7 @@ def test_the_fits_made_before_a_stop_are_kept(monkeypatch, error, status):
     ],
 )
 def test_bad_settings_are_refused(changes):
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         DmaIdentification(**changes)
 
 

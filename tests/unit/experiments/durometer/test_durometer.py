@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from pydantic import ValidationError
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.rod import Rod
+from tactsim.errors import CaseError
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
 from tactsim.experiments.indentation.setup import MeshSettings
@@ -110,7 +110,7 @@ def test_an_interrupted_run_keeps_its_steps():
     ],
 )
 def test_impossible_durometers_are_refused(changes, words):
-    with pytest.raises(ValidationError, match=words):
+    with pytest.raises(CaseError, match=words):
         measured(**changes)
 
 

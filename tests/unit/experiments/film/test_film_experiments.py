@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
-from tactsim.errors import InvalidQuantity, StorageError
+from tactsim.errors import CaseError, InvalidQuantity, StorageError
 from tactsim.experiments.film.film_creep import FilmCreep, MeasuredCreep
 from tactsim.experiments.film.film_test import FilmTest
 from tactsim.experiments.film.force_signal import Chirp, Record, Square
@@ -51,7 +50,7 @@ def test_a_force_beyond_the_creep_tests_is_reported():
     ],
 )
 def test_a_film_test_refuses_lists_out_of_order(forces, times):
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         FilmTest(forces=forces, times=times)
 
 
@@ -142,7 +141,7 @@ def test_waves_keep_to_their_bounds():
     np.testing.assert_array_equal(square, [0.1, 0.1, 2.5, 2.5, 0.1, 2.5, 0.1])
     climbing = Square(kind="square", increment=0.1, duration=30.0).sampled(np.array([0.75, 1.75, 9.75, 29.75]))
     np.testing.assert_allclose(climbing, [0.2, 0.3, 1.1, 2.5])
-    with pytest.raises(ValidationError, match="below high"):
+    with pytest.raises(CaseError, match="below high"):
         Chirp(kind="chirp", low=3.0)
 
 
@@ -175,7 +174,7 @@ def test_files_that_cannot_be_read_are_named(tmp_path):
     path.write_text("time [s], force [N]\n1, 0\n", encoding="utf-16")
     with pytest.raises(StorageError, match="save it as UTF-8"):
         _ = Record(kind="file", path=str(path)).duration
-    with pytest.raises(ValidationError, match="without a null character"):
+    with pytest.raises(CaseError, match="without a null character"):
         Record(kind="file", path="a\0b")
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tactsim.case import load_case
-from tactsim.errors import InvalidQuantity, StorageError
+from tactsim.errors import CaseError, InvalidQuantity, StorageError
 from tactsim.experiments.film.calibration import ForceCalibration
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
 from tactsim.results import Status
@@ -150,7 +149,7 @@ def test_bad_files_are_refused(written, tmp_path):
     ],
 )
 def test_bad_settings_are_refused(changes):
-    with pytest.raises(ValidationError):
+    with pytest.raises(CaseError):
         ForceCalibration(**changes)
 
 

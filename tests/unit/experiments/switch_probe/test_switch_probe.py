@@ -7,11 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from pydantic import ValidationError
 
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.errors import ConvergenceError
+from tactsim.errors import CaseError, ConvergenceError
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe import run
 from tactsim.experiments.switch_probe.figures import switch_panel_figure
@@ -166,7 +165,7 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
     ],
 )
 def test_impossible_experiments_are_refused(changes, words):
-    with pytest.raises(ValidationError, match=words):
+    with pytest.raises(CaseError, match=words):
         probe(**changes)
 
 
