@@ -112,8 +112,8 @@ class RateSum:
     def roots(self) -> tuple[Array, Array]:
         """Reciprocals in s of the roots of f, and 1 / f' there, in increasing order of the root.
 
-        A root lies between each two neighbouring poles and, for c > 0, one above the last. Each is computed as its offset from the
-        nearer pole, so that all differences of rates keep their digits (Li 1993, LAPACK Working Note 89).
+        A root lies between each two neighbouring poles and, for c > 0, one above the last. Each is computed as its offset from
+        the nearer pole, so that all differences of rates keep their digits (Li 1993, LAPACK Working Note 89).
         """
         weights, times = self.weights[::-1], self.times[::-1]
         differences = rate_differences(times)

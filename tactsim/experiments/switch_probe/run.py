@@ -29,7 +29,7 @@ class ProbeTouch:
     """A touch as it was and as it was read.
 
     ``time`` (n,) in s from the first contact on, negative before it; ``depth`` (n,) in m; ``true`` forces in N; ``force`` (n,)
-    and ``switches`` (n, count) in N as recorded; ``touches`` that the algorithm detected; ``states`` that finite elements accepted,
+    and ``switches`` (n, count) in N as recorded; ``touches`` as detected; ``states`` that finite elements accepted,
     with their ``quality``.
     """
 
