@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -29,7 +28,8 @@ def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
     corners = mesh.elements[:, :4]
     across = neighbours_of(corners)
     pairs = np.nonzero(across >= 0)[0], across[across >= 0]
-    count, pieces = connected_components(coo_array((np.ones(len(pairs[0])), pairs), shape=(len(corners),) * 2), directed=False)
+    shared = scipy.sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(len(corners),) * 2)
+    count, pieces = scipy.sparse.csgraph.connected_components(shared, directed=False)
     if count > 1:
         sizes = np.bincount(pieces)
         place = _place(mesh.nodes[corners[pieces == sizes.argmin()]].reshape(-1, 3).mean(axis=0))
