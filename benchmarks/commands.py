@@ -30,14 +30,14 @@ def _seconds(arguments: list[str], environment: dict[str, str]) -> tuple[float, 
 
 def measure() -> dict[str, float]:
     """Seconds of the first and a later main job, of every other case, and of ``--help`` (median of five)."""
-    found: dict[str, float] = {}
+    seconds: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as place:
         environment = {**os.environ, "NUMBA_CACHE_DIR": f"{place}/compiled"}
         main = ["run", str(ROOT / "cases" / "annulus_icf.yaml"), "--quiet", "--out"]
-        found["first_run_seconds"], _ = _seconds([*main, f"{place}/first"], environment)
-        found["later_run_seconds"] = median(_seconds([*main, f"{place}/{k}"], environment)[0] for k in "abc")
+        seconds["first_run_seconds"], _ = _seconds([*main, f"{place}/first"], environment)
+        seconds["later_run_seconds"] = median(_seconds([*main, f"{place}/{k}"], environment)[0] for k in "abc")
         for case in CASES[1:]:
             arguments = ["run", str(ROOT / "cases" / f"{case}.yaml"), "--quiet", "--out", f"{place}/{case}"]
-            found[f"{case}_seconds"], found[f"{case}_exit_code"] = _seconds(arguments, environment)
-        found["help_seconds"] = median(_seconds(["--help"], environment)[0] for _ in range(5))
-    return found
+            seconds[f"{case}_seconds"], seconds[f"{case}_exit_code"] = _seconds(arguments, environment)
+        seconds["help_seconds"] = median(_seconds(["--help"], environment)[0] for _ in range(5))
+    return seconds

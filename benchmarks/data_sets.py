@@ -76,8 +76,8 @@ def held_errors(samples: range = range(HELD)) -> dict[str, float | None]:
     """Differences of the taxels from those of the fine mesh, over the largest taxel, by held sample; None if it failed."""
     errors: dict[str, float | None] = {}
     for number in samples:
-        found = [_taxels_in_time(number, fine) for fine in (False, True)]
-        error = float(np.abs(found[0] - found[1]).max() / found[1].max())
+        forces = [_taxels_in_time(number, fine) for fine in (False, True)]
+        error = float(np.abs(forces[0] - forces[1]).max() / forces[1].max())
         errors[f"held_{number}"] = error if np.isfinite(error) else None
         sys.stderr.write(f"{number} {error:.4f}\n")
     known = [error for error in errors.values() if error is not None]

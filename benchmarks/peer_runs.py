@@ -67,15 +67,15 @@ def optional(place: Path, program: str, problem: Path, limit: float) -> Run | st
         return ABSENT
     try:
         if program == "calculix":
-            found = _run(place, program, [sys.executable, "calculix_block.py", str(limit), problem])
+            answer = _run(place, program, [sys.executable, "calculix_block.py", str(limit), problem])
         else:
-            found = _run(place, program, [SYSTEM_PYTHON, f"{program}_block.py", place / "warm_up.npz", problem], limit)
+            answer = _run(place, program, [SYSTEM_PYTHON, f"{program}_block.py", place / "warm_up.npz", problem], limit)
     except subprocess.TimeoutExpired:
         return _halt(limit)
     except Failed as error:
         sys.stderr.write(f"{error}\n")
         return f"failed: {_last_line(str(error))}"
-    return _halt(limit) if "stopped_seconds" in found else found
+    return _halt(limit) if "stopped_seconds" in answer else answer
 
 
 def _is_present(program: str) -> bool:

@@ -54,15 +54,15 @@ def measure(
     with _place(folder) as place:
         python = felupe_python or peer_runs.felupe_python(place)
         write(place / "warm_up.npz", WARM_UP)
-        found: Figures = {"load_average_before": os.getloadavg()[0]}
+        figures: Figures = {"load_average_before": os.getloadavg()[0]}
         for cells in sizes:
             path = place / f"block_{'_'.join(map(str, cells))}.npz"
             problem = write(path, cells)
             speeds, felupe = _speed(place, path, python, repetitions)
-            found |= speeds | _others(place, path, problem, felupe, limit)
-        found |= _agreement(place, agreement, python)
-        found["load_average_after"] = os.getloadavg()[0]
-    return found
+            figures |= speeds | _others(place, path, problem, felupe, limit)
+        figures |= _agreement(place, agreement, python)
+        figures["load_average_after"] = os.getloadavg()[0]
+    return figures
 
 
 @contextmanager
@@ -80,14 +80,14 @@ def _speed(place: Path, path: Path, python: Path, repetitions: int) -> tuple[Fig
     """tactsim and FElupe by turns on one mesh: medians and the median of the ratios, and FElupe's last run."""
     pairs = [(peer_runs.tactsim(place, path), peer_runs.felupe(place, path, python, "displacement")) for _ in range(repetitions)]
     number = int(pairs[0][1]["unknowns"])
-    found: Figures = {}
+    figures: Figures = {}
     for program, runs in zip(("tactsim", "felupe"), zip(*pairs, strict=True), strict=True):
-        found |= _summary(f"{number}_{program}", runs)
-    found[f"{number}_ratio"] = median(_seconds(felupe) / _seconds(tactsim) for tactsim, felupe in pairs)
-    found[f"{number}_ratio_with_setup"] = median(_seconds(b, "setup") / _seconds(a, "setup") for a, b in pairs)
+        figures |= _summary(f"{number}_{program}", runs)
+    figures[f"{number}_ratio"] = median(_seconds(felupe) / _seconds(tactsim) for tactsim, felupe in pairs)
+    figures[f"{number}_ratio_with_setup"] = median(_seconds(b, "setup") / _seconds(a, "setup") for a, b in pairs)
     if number in TARGETS:
-        found[f"{number}_ratio_asked"] = TARGETS[number]
-    return found, pairs[-1][1]
+        figures[f"{number}_ratio_asked"] = TARGETS[number]
+    return figures, pairs[-1][1]
 
 
 def _seconds(run: Run, *more: str) -> float:
@@ -98,22 +98,22 @@ def _seconds(run: Run, *more: str) -> float:
 def _summary(name: str, runs: Sequence[Run]) -> Figures:
     """Medians of the quantities of some runs of one program."""
     values = [{**run, "seconds": run["step_seconds"].sum(), "iterations": run["iterations"].sum()} for run in runs]
-    found: Figures = {f"{name}_{q}": median(float(run[q]) for run in values) for q in QUANTITIES}
-    return found | {f"{name}_version": str(runs[-1]["version"]), f"{name}_unknowns": float(runs[-1]["unknowns"])}
+    figures: Figures = {f"{name}_{q}": median(float(run[q]) for run in values) for q in QUANTITIES}
+    return figures | {f"{name}_version": str(runs[-1]["version"]), f"{name}_unknowns": float(runs[-1]["unknowns"])}
 
 
 def _others(place: Path, path: Path, problem: Run, felupe: Run, limit: float) -> Figures:
     """Figures of the programs that may be absent, with the difference from FElupe's displacement form, or why there are none."""
-    found: Figures = {}
+    figures: Figures = {}
     for program in peer_runs.OPTIONAL:
         name, other = f"{problem['nodes'].size}_{program}", peer_runs.optional(place, program, path, limit)
         if isinstance(other, str):
-            found[name] = other
+            figures[name] = other
             continue
-        found |= _summary(name, [other])
-        found[f"{name}_force_newtons"] = float(readings(problem, other["forces"])[0])
-        found[f"{name}_difference_from_felupe"] = _difference(problem, other, felupe)
-    return found
+        figures |= _summary(name, [other])
+        figures[f"{name}_force_newtons"] = float(readings(problem, other["forces"])[0])
+        figures[f"{name}_difference_from_felupe"] = _difference(problem, other, felupe)
+    return figures
 
 
 def _difference(problem: Run, one: Run, other: Run) -> float:

@@ -76,16 +76,16 @@ def table(figures: dict[str, dict[str, float]]) -> str:
     return "\n".join([*lines, "", f"On {os.cpu_count()} cores, Python {platform.python_version()}, {platform.machine()}."])
 
 
-def _data_sets(found: dict[str, float]) -> list[tuple[str, str, str]]:
+def _data_sets(taken: dict[str, float]) -> list[tuple[str, str, str]]:
     """Rows of the data sets."""
     return [
         (
-            f"samples of `sweep_lumps.yaml` at 1 mm and friction 0.6, {found['grasps_done']:.0f} of {found['grasps']:.0f} done",
+            f"samples of `sweep_lumps.yaml` at 1 mm and friction 0.6, {taken['grasps_done']:.0f} of {taken['grasps']:.0f} done",
             "1 500 per hour",
-            f"{found['grasps_per_hour']:.0f} per hour",
+            f"{taken['grasps_per_hour']:.0f} per hour",
         ),
-        (f"{found['fast_samples']:.0f} samples of `sweep_closed_form.yaml`", "under 120 s", f"{found['fast_seconds']:.0f} s"),
-        ("opening that store with xarray", "under 1 s", f"{found['open_seconds']:.2f} s"),
+        (f"{taken['fast_samples']:.0f} samples of `sweep_closed_form.yaml`", "under 120 s", f"{taken['fast_seconds']:.0f} s"),
+        ("opening that store with xarray", "under 1 s", f"{taken['open_seconds']:.2f} s"),
     ]
 
 

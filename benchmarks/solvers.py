@@ -116,10 +116,10 @@ def measure(sizes: tuple[int, ...] = SMALL) -> dict[str, float]:
         for kind in KINDS:
             run = [sys.executable, __file__, "--child", kind, "--cells", str(cells)]
             done = subprocess.run(run, check=True, capture_output=True, text=True, timeout=LONGEST)
-            found = json.loads(done.stdout)
-            figures |= {f"{kind}_{cells}_{name}": value for name, value in found.items()}
-            seconds[kind].append(found["setup_seconds"] + found["solve_seconds"] if found["solved"] else np.inf)
-        unknowns.append(found["unknowns"])
+            measured = json.loads(done.stdout)
+            figures |= {f"{kind}_{cells}_{name}": value for name, value in measured.items()}
+            seconds[kind].append(measured["setup_seconds"] + measured["solve_seconds"] if measured["solved"] else np.inf)
+        unknowns.append(measured["unknowns"])
     crossing = crossing_point(unknowns, seconds["direct"], seconds["iterative"])
     return figures if crossing is None else figures | {"crossing_unknowns": crossing}
 
@@ -141,8 +141,8 @@ def main() -> None:
     parser.add_argument("--child", choices=KINDS)
     parser.add_argument("--cells", type=int)
     arguments = parser.parse_args()
-    found = child(arguments.child, arguments.cells) if arguments.child else measure(LARGE if arguments.large else SMALL)
-    sys.stdout.write(json.dumps(found, indent=2) + "\n")
+    measured = child(arguments.child, arguments.cells) if arguments.child else measure(LARGE if arguments.large else SMALL)
+    sys.stdout.write(json.dumps(measured, indent=2) + "\n")
 
 
 if __name__ == "__main__":

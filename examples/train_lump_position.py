@@ -75,13 +75,13 @@ def trained(store: str) -> dict[str, float]:
     models = [Ridge(*train, penalty) for penalty in PENALTIES]
     best = min(models, key=lambda model: distance(model(validation[0]), validation[1]))
     inputs, truth = test
-    trivial, found = np.broadcast_to(train[1].mean(axis=0), truth.shape), best(inputs)
+    trivial, located = np.broadcast_to(train[1].mean(axis=0), truth.shape), best(inputs)
     return {
         "training_samples": len(train[0]),
         "test_samples": len(truth),
-        "error_mm": distance(found, truth),
-        "lateral_error_mm": distance(found[:, :2], truth[:, :2]),
-        "depth_error_mm": distance(found[:, 2:], truth[:, 2:]),
+        "error_mm": distance(located, truth),
+        "lateral_error_mm": distance(located[:, :2], truth[:, :2]),
+        "depth_error_mm": distance(located[:, 2:], truth[:, 2:]),
         "trivial_error_mm": distance(trivial, truth),
         "trivial_lateral_error_mm": distance(trivial[:, :2], truth[:, :2]),
         "trivial_depth_error_mm": distance(trivial[:, 2:], truth[:, 2:]),

@@ -68,25 +68,25 @@ def write_stl(place: Path, vertices: Array, faces: Array) -> None:
 
 def meshes_of_cases() -> dict[str, tuple[str, BlockMesh, str]]:
     """Name, mesh and origin by key, for every case that asks for tetrahedra of a block."""
-    found: dict[str, tuple[str, BlockMesh, str]] = {}
+    meshes: dict[str, tuple[str, BlockMesh, str]] = {}
     for path in sorted(CASES.glob("grasp_*.yaml")):
         experiment = load_case(path).experiment
         if not isinstance(experiment.mesh, TetrahedraSource):
             continue
         sourced = experiment.sourced()
-        found.setdefault(sourced.block.key, (path.stem, sourced.block, sourced.origin))
+        meshes.setdefault(sourced.block.key, (path.stem, sourced.block, sourced.origin))
         sys.stdout.write(f"{path.name}: {sourced.block.unknowns} unknowns, {sourced.origin}, {sourced.block.seconds:.1f} s\n")
-    return found
+    return meshes
 
 
 def main() -> None:
     """Make what is missing and drop what no case asks for."""
     if not LUMP.exists():
         write_stl(LUMP, *irregular_lump())
-    found = meshes_of_cases()
-    known = {entry.key: entry for entry in entries(FOLDER) if entry.key in found}
+    meshes = meshes_of_cases()
+    known = {entry.key: entry for entry in entries(FOLDER) if entry.key in meshes}
     (FOLDER / MANIFEST).unlink(missing_ok=True)
-    for key, (name, block, _) in found.items():
+    for key, (name, block, _) in meshes.items():
         file = f"{name}.npz"
         made = f"by meshes/make.py for cases/{name}.yaml with pytetwild {mesher_version()} (fTetWild)"
         content = content_hash(block.mesh)

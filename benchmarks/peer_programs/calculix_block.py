@@ -50,8 +50,8 @@ def _rows(table: Array, form: str) -> str:
 def reactions(text: str, top: Array) -> Array:
     """Forces (n, 3) in N of the last block of a ``.dat`` file, in the order of the nodes ``top``."""
     rows = [line.split() for line in text.rsplit("forces (fx,fy,fz)", 1)[1].splitlines()[1:] if line.strip()]
-    found = {int(row[0]) - 1: [float(value) for value in row[1:4]] for row in rows}
-    return np.array([found[int(node)] for node in top])
+    by_node = {int(row[0]) - 1: [float(value) for value in row[1:4]] for row in rows}
+    return np.array([by_node[int(node)] for node in top])
 
 
 def main() -> None:

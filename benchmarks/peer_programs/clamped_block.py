@@ -98,6 +98,6 @@ def run(start: Callable[[Problem], Discretisation]) -> None:
     warm_up, path, result = sys.argv[1:]
     for name in (warm_up, path):
         with np.load(name) as stored:
-            found = solve(dict(stored), start)
-    found["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    np.savez(result, **found)
+            solution = solve(dict(stored), start)
+    solution["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    np.savez(result, **solution)

@@ -63,7 +63,7 @@ def solve(problem, form):
     for level in problem["levels"]:
         begin = time.perf_counter()
         boundaries["down"].update(float(level) / MILLIMETRE)
-        found = felupe.newtonraphson(
+        solution = felupe.newtonraphson(
             x0=field,
             items=items,
             dof0=dof0,
@@ -74,11 +74,11 @@ def solve(problem, form):
             kwargs={"parallel": True},
             verbose=0,
         )
-        field = found.x
+        field = solution.x
         seconds.append(time.perf_counter() - begin)
-        iterations.append(found.iterations)
+        iterations.append(solution.iterations)
     used = time.process_time() - used
-    forces = found.fun[: 3 * number].reshape(-1, 3)[problem["top"]]
+    forces = solution.fun[: 3 * number].reshape(-1, 3)[problem["top"]]
     return {
         "setup_seconds": setup,
         "step_seconds": seconds,
@@ -97,9 +97,9 @@ def main():
     form, warm_up, path, result = sys.argv[1:]
     for name in (warm_up, path):
         with np.load(name) as stored:
-            found = solve(dict(stored), form)
-    found["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    np.savez(result, **found)
+            solution = solve(dict(stored), form)
+    solution["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    np.savez(result, **solution)
 
 
 if __name__ == "__main__":

@@ -62,12 +62,12 @@ def solve(problem: dict[str, Array]) -> dict[str, object]:
             guess = started(posed, moved)
         else:
             guess = extrapolated(path)
-        found = posed.solve(guess)
-        path.append(found.unknowns)
+        solved = posed.solve(guess)
+        path.append(solved.unknowns)
         seconds.append(time.perf_counter() - begin)
-        iterations.append(found.iterations)
+        iterations.append(solved.iterations)
     used = time.process_time() - used
-    reaction, _ = body.space.split(body.residual(path[-1], found.kinematics))
+    reaction, _ = body.space.split(body.residual(path[-1], solved.kinematics))
     solver.close()
     return {
         "setup_seconds": setup,
@@ -93,9 +93,9 @@ def main() -> None:
     """Solve the small problem untimed, so that the loops are compiled, then the other."""
     warm_up, path, result = map(Path, sys.argv[1:])
     solve(read(warm_up))
-    found = solve(read(path))
-    found["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    np.savez(result, **found)
+    solution = solve(read(path))
+    solution["peak_megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    np.savez(result, **solution)
 
 
 if __name__ == "__main__":

@@ -119,7 +119,8 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
 
     result = replace(result, title=case.title)
     figures, warnings = rendered_figures(result)
-    result = replace(result, warnings=(*result.warnings, *warnings), frames=_chosen_frames(result, case))
+    frames = {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]
+    result = replace(result, warnings=(*result.warnings, *warnings), frames=frames)
     report = result_report(result, case.title)
     try:
         kept = _write(result, case, folder, figures, arguments)
@@ -159,7 +160,3 @@ def _converged(directory: Path) -> bool:
         return read_result(directory, fields=False).result.status is Status.CONVERGED
     except StorageError:
         return False
-
-
-def _chosen_frames(result: Result, case: Case) -> tuple:
-    return {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]

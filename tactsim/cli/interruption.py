@@ -52,14 +52,11 @@ def interruptible() -> Iterator[Interruption]:
     if threading.current_thread() is not threading.main_thread():
         yield interruption
         return
-    earlier = {number: signal.signal(number, interruption.receive) for number in SIGNALS if _is_heeded(number)}
+    ignored = (signal.SIG_IGN, None)  # the caller asked to ignore the signal, as ``nohup`` does
+    heeded = [number for number in SIGNALS if signal.getsignal(number) not in ignored]
+    earlier = {number: signal.signal(number, interruption.receive) for number in heeded}
     try:
         yield interruption
     finally:
         for number, handler in earlier.items():
             signal.signal(number, handler)
-
-
-def _is_heeded(number: signal.Signals) -> bool:
-    """Whether the caller did not ask to ignore the signal, as ``nohup`` does."""
-    return signal.getsignal(number) not in (signal.SIG_IGN, None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import lru_cache
 from pathlib import Path
 
@@ -68,3 +69,18 @@ def _entries(place: Path, version: tuple[int, int]) -> tuple[ManifestEntry, ...]
         return _ENTRIES.validate_python(read_json(opened(place, "description").text(), str(place)))
     except (OSError, ValidationError, StorageError, ValueError) as error:
         raise StorageError(f"cannot read {place}: {error}") from None
+
+
+def add_entry(folder: Path, entry: ManifestEntry) -> None:
+    """Append an entry to a folder's manifest.
+
+    Raises
+    ------
+    StorageError
+        If it is damaged or cannot be written.
+    """
+    listed = [known.model_dump() for known in (*entries(folder), entry)]
+    try:
+        (folder / MANIFEST).write_text(json.dumps(listed, indent=1) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise StorageError(f"cannot write {folder / MANIFEST}: {error.strerror or error}") from None

@@ -50,6 +50,8 @@ class StudyRunner:
         ------
         CaseError
             If a case of a study is refused.
+        StorageError
+            If the file of a case cannot be read.
         ConvergenceError
             If a process died.
         TactsimError
@@ -134,6 +136,8 @@ def simulated(task: Task) -> RunOutcome:
     ------
     CaseError
         If the case is refused.
+    StorageError
+        If its file cannot be read.
     """
     name, path, overrides = task
     case = load_case(path, overrides)

@@ -128,9 +128,9 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
             raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SCHEMA}'"))
         settings = _settings(document, value.pop(SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
-        places = places_of(value, ())
+        places = tuple(places_of(value, ()))
         plain = replace(document, value=value)
-        return _sized(plain, where, settings, samples, tuple(places))
+        return _sized(plain, where, settings, samples, places)
     except YamlProblems as error:
         problems = [Problem(p.path, document.line(p.path), p.message) for p in error.problems]
         raise case_error(problems, where) from None
@@ -211,7 +211,7 @@ class Place:
         return "varied_" + "_".join(map(str, self.path[1:] if self.path[:1] == ("experiment",) else self.path))
 
 
-def places_of(value: Any, path: Path) -> list[Place]:
+def places_of(value: Any, path: Path) -> Iterator[Place]:
     """Every place in a value that stands at ``path``, by its keys, not their order in the text; those within options included.
 
     Raises
@@ -219,10 +219,6 @@ def places_of(value: Any, path: Path) -> list[Place]:
     YamlProblems
         If a distribution is written wrongly.
     """
-    return list(_places(value, path))
-
-
-def _places(value: Any, path: Path) -> Iterator[Place]:
     if is_distribution(value):
         try:
             read = distribution(value)
@@ -231,13 +227,13 @@ def _places(value: Any, path: Path) -> Iterator[Place]:
         yield Place(path, read)
         if isinstance(read, Listed) and read.numbers is None:
             for index, option in enumerate(read.options):
-                yield from _places(option, (*path, "choice", index))
+                yield from places_of(option, (*path, "choice", index))
     elif isinstance(value, dict):
         for key, item in sorted(value.items()):
-            yield from _places(item, (*path, key))
+            yield from places_of(item, (*path, key))
     elif isinstance(value, list):
         for index, item in enumerate(value):
-            yield from _places(item, (*path, index))
+            yield from places_of(item, (*path, index))
 
 
 def is_distribution(value: Any) -> bool:

@@ -51,7 +51,7 @@ def test_weights_count() -> None:
 
 def test_places_within_options_have_values_only_if_chosen() -> None:
     document = {"a": {"choice": [{"kind": "x", "r": {"uniform": [0, 1]}}, "none"]}, "b": [{"integer": [1, 2]}]}
-    places = places_of(document, ())
+    places = list(places_of(document, ()))
     assert [place.key for place in places] == ["a", "a.choice.0.r", "b.0"]
     used: dict = {}
     values = {place.path: place.distribution.value(0.1) for place in places}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tactsim.errors import CaseError
 from tactsim.materials.hyperelastic import Hyperelastic
@@ -33,9 +32,7 @@ def test_the_shear_modulus_of_higher_terms_alone_is_zero_and_refused():
 def test_a_bulk_modulus_out_of_reach_of_round_off_is_refused():
     largest = LARGEST_BULK_TO_SHEAR_RATIO
     assert NeoHookean(c10=0.5, bulk_modulus=largest).bulk_modulus == largest
-    with pytest.raises(
-        ValidationError, match=r"bulk modulus = 1\.1e\+07 Pa is 1\.1e\+07 times the shear modulus; .*1e\+07.*null"
-    ):
+    with pytest.raises(CaseError, match=r"bulk modulus = 1\.1e\+07 Pa is 1\.1e\+07 times the shear modulus; .*1e\+07.*null"):
         NeoHookean(c10=0.5, bulk_modulus=1.1 * largest)
 
 

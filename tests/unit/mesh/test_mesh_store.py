@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
@@ -15,7 +14,7 @@ from tactsim.errors import InvalidQuantity, StorageError
 from tactsim.mesh import mesh_store
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
-from tactsim.mesh.manifest import MANIFEST, entries
+from tactsim.mesh.manifest import MANIFEST, ManifestEntry, add_entry
 from tactsim.mesh.mesh_store import cache_folder, content_hash, stored_block_mesh, write_block_mesh
 from tactsim.mesh.structured_block import morphed_block
 from tactsim.mesh.tetrahedra import mesh_key
@@ -113,9 +112,7 @@ def ship(folder, block, **changes):
     folder.mkdir(exist_ok=True)
     write_block_mesh(block, folder / "lump.npz")
     entry = {"name": "lump", "file": "lump.npz", "key": block.key, "content": content_hash(block.mesh)}
-    entry |= {"source": "made for a test: 'quoted'", "licence": "MIT"} | changes
-    listed = [*(known.model_dump() for known in entries(folder)), entry]
-    (folder / MANIFEST).write_text(json.dumps(listed), encoding="utf-8")
+    add_entry(folder, ManifestEntry(**{**entry, "source": "made for a test: 'quoted'", "licence": "MIT", **changes}))
 
 
 def test_a_shipped_mesh_comes_first_and_a_wrong_one_is_refused(mesher, tmp_path):
