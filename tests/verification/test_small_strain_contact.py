@@ -66,7 +66,7 @@ def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=
         stop="displacement",
         displacement=displacement,
         penetration_tolerance=1e-2 * displacement,
-        mesh=MeshSettings(finest=finest, growth=0.3),
+        mesh=MeshSettings(finest=finest, growth=0.5),
         steps=StepSettings(first=displacement, largest=displacement),
     )
     result = experiment.run()
