@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
@@ -38,6 +39,7 @@ def provenance(
     }
 
 
+@cache
 def _package_versions() -> dict[str, str]:
     found = {}
     for package in PACKAGES:
