@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from tactsim.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from tactsim.case.loading import load_case

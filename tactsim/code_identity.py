@@ -6,13 +6,13 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-import tactsim
+from tactsim.version import __version__
 
 
 @cache
 def code_identity() -> str:
     """Version and twelve hexadecimal digits over every source file of the package but figures, command line and validation."""
-    root = Path(tactsim.__file__).parent
+    root = Path(__file__).parent
     summed = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         place = path.relative_to(root).as_posix()
@@ -21,4 +21,4 @@ def code_identity() -> str:
             and "figures" not in path.relative_to(root).with_suffix("").parts
         ):
             summed.update(place.encode() + b"\0" + path.read_bytes())
-    return f"{tactsim.__version__}+{summed.hexdigest()[:12]}"
+    return f"{__version__}+{summed.hexdigest()[:12]}"

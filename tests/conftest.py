@@ -16,6 +16,7 @@ TESTS = Path(__file__).parent
 sys.path.insert(0, str(TESTS))
 
 import pretence  # noqa: E402  it stands beside this file, which the line above makes known
+from fork_server import forked_pretended_command  # noqa: E402
 
 from tactsim.registry import forget, registered_outside  # noqa: E402
 
@@ -70,10 +71,11 @@ def _heeding() -> None:
 
 @pytest.fixture
 def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
-    """Starts the command line with the pretended experiment in a process of its own, in ``tmp_path``."""
+    """Starts the command line with the pretended experiment in ``tmp_path``, in a process of its own or a ``forked`` one."""
 
-    def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
-        command = [sys.executable, str(TESTS / "pretended_cli.py"), *arguments]
+    def started(*arguments: str, forked: bool = False, **options: object) -> subprocess.Popen[str]:
+        own = [sys.executable, str(TESTS / "pretended_cli.py")]
+        command = [*(forked_pretended_command() if forked else own), *arguments]
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "preexec_fn": _heeding}
         environment = {**os.environ, "PYTHONPATH": str(TESTS), "PYTHONWARNINGS": "error"}
         return subprocess.Popen(command, text=True, cwd=tmp_path, env=environment, **{**streams, **options})  # type: ignore[call-overload]

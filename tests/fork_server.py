@@ -138,9 +138,11 @@ class _Server:
             os.dup2(next(given), number) if is_open else os.close(number)
         for descriptor in descriptors:
             os.close(descriptor)
-        sys.stdin = open(0, closefd=False) if request["open"][0] else None  # type: ignore[index]  # noqa: SIM115
-        sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115
-        sys.stderr = open(2, "w", buffering=1, errors="backslashreplace", closefd=False)  # noqa: SIM115
+        there: list[bool] = request["open"]  # type: ignore[assignment]
+        sys.stdin = open(0, closefd=False) if there[0] else None  # noqa: SIM115
+        sys.stdout = open(1, "w", closefd=False) if there[1] else None  # type: ignore[assignment]  # noqa: SIM115
+        stderr = {"buffering": 1, "errors": "backslashreplace", "closefd": False}
+        sys.stderr = open(2, "w", **stderr) if there[2] else None  # type: ignore[assignment, call-overload]  # noqa: SIM115
         os.chdir(str(request["folder"]))
         os.environ.clear()
         os.environ.update(request["environment"])  # type: ignore[call-overload]
@@ -152,7 +154,7 @@ class _Server:
             pretend()
         sys.argv = ["tactsim", *request["arguments"]]  # type: ignore[misc]
         code = main()
-        for stream in (sys.stdout, sys.stderr):
+        for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.flush()
         os._exit(code)  # taking apart what was loaded costs more than the command
 

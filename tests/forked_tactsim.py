@@ -19,6 +19,8 @@ def is_open(descriptor: int) -> bool:
 def main() -> None:
     place, mode, *arguments = sys.argv[1:]
     streams = [is_open(number) for number in range(3)]
+    handed_on = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    signal.pthread_sigmask(signal.SIG_BLOCK, handed_on)  # until there is somebody to hand them on to
     with socket.socket(socket.AF_UNIX) as server:
         server.connect(place)
         request = {
@@ -37,8 +39,9 @@ def main() -> None:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(child, number)
 
-            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for number in handed_on:
                 signal.signal(number, hand_on)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, handed_on)
             code = int(answers.readline())
     if code < 0:
         signal.signal(-code, signal.SIG_DFL)

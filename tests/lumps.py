@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from tactsim.interfaces.solid import Solid
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid, spiral
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
@@ -45,6 +46,14 @@ def enclosed_volume(vertices: Array, triangles: Array) -> float:
     """Volume inside a closed surface by the divergence theorem."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     return float((np.cross(a, b) * c).sum() / 6)
+
+
+def points_about(solid: Solid, count: int, margin: float = 0.2) -> tuple[Array, float]:
+    """Random points (count, 3) in the box of a solid in the block, a margin of its sides wider, and the volume of that box."""
+    lowest, highest = np.clip(solid.bounds(), 0.0, SIZE)
+    wider = margin * (highest - lowest)
+    lowest, highest = np.maximum(lowest - wider, 0.0), np.minimum(highest + wider, SIZE)
+    return np.random.default_rng(1).uniform(lowest, highest, (count, 3)), float(np.prod(highest - lowest))
 
 
 def sides(mesh: QuadraticMesh) -> tuple[Array, Array]:

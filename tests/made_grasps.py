@@ -127,8 +127,8 @@ def sum_up(place: Path) -> None:
     store.array("checksum")[...] = np.stack([checksum(row, variables) for row in rows])
 
 
-def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: bool = True) -> Path:
-    """A store whose samples hold the made-up grasps; the first thirty are for training."""
+def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: bool = True, training: int = 30) -> Path:
+    """A store whose forty samples hold the made-up grasps; the first of them are for training."""
     path = folder / "sweep.yaml"
     path.write_text(text, encoding="utf-8")
     place = folder / "made.zarr"
@@ -148,7 +148,7 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
         "inclusion_contrast": [[truth.contrast or np.nan] for truth in grasps],
         "time_s": np.ones((40, 1)),
         "taxel_force": forces[:, None],
-        "split": np.where(np.arange(40) < 30, 0, 2),
+        "split": np.where(np.arange(40) < training, 0, 2),
         "status": np.full(40, DONE),
     }
     if "read_force" in store.described:

@@ -220,7 +220,8 @@ def printing() -> list[str]:
 def machine_paths() -> list[str]:
     """Folders of one machine in the package, the cases or the tests."""
     place = re.compile(r"/(?:home|Users|work|root)/\w+/|[A-Z]:\\\\Users")
-    texts = [*modules(), *ROOT.glob("cases/**/*.yaml"), *ROOT.glob("scripts/*"), *ROOT.glob("*.md")]
+    scripts = (path for path in ROOT.glob("scripts/*") if path.is_file())  # compiled ones lie in a folder beside them
+    texts = [*modules(), *ROOT.glob("cases/**/*.yaml"), *scripts, *ROOT.glob("*.md")]
     return [path.relative_to(ROOT).as_posix() for path in texts if place.search(path.read_text(encoding="utf-8"))]
 
 

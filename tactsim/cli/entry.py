@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
-from tactsim import __version__
 from tactsim.cli import (
     command_data,
     command_material,
@@ -25,6 +24,7 @@ from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
 from tactsim.outside.environment import check_environment
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
+from tactsim.version import __version__
 
 COMMANDS = (command_run, command_sweep, command_data, command_show, command_material, command_validate, command_schema)
 EXIT_CODES = """\

@@ -19,10 +19,9 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import IO, Any
 
-import tactsim
 from tactsim.outside.text import one_line
 
-ROOT = Path(tactsim.__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 """The folder that holds the package."""
 BEGIN = Path(__file__).resolve().with_name("child.py")
 ISOLATED = ("-P", "-E")

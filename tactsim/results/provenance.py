@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
 
-from tactsim import __version__
 from tactsim.code_identity import code_identity
+from tactsim.version import __version__
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "numba", "pypardiso", "pydantic", "ruamel.yaml", "pint")
 
@@ -38,6 +39,7 @@ def provenance(
     }
 
 
+@cache
 def _package_versions() -> dict[str, str]:
     versions = {}
     for package in PACKAGES:

@@ -6,11 +6,11 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from tactsim import __version__
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import RowOutcome, TableOutcome
 from tactsim.validation.loading import LoadedTables
 from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter
+from tactsim.version import __version__
 
 HEADER = ("row", "printed", "found", "ratio", "tolerance", "state")
 STATES = ("reproduced", "after an erratum", "outside", "finding", "assumption", "left")

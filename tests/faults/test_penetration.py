@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from pydantic import ValidationError
@@ -31,8 +32,14 @@ def changed(kind, **changes):
     return kind.model_validate(kind.example().model_dump() | changes)
 
 
+@cache
+def result_of(kind, text):
+    return kind.model_validate_json(text).run()
+
+
 def run(kind, **changes):
-    return changed(kind, **changes).run()
+    """The result of a changed example, computed once for all tests that ask for it."""
+    return result_of(kind, changed(kind, **changes).model_dump_json())
 
 
 def force_and_error(kind, tolerance, **changes):

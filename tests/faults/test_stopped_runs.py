@@ -1,4 +1,7 @@
-"""Signals, closed pipes, kills and runs that meet, in processes of their own; the runs beside them are forked."""
+"""Signals, closed pipes, kills and runs that meet.
+
+What the interpreter has a part in, from its start to its end, is tried with processes of their own; the others are forked.
+"""
 
 from __future__ import annotations
 
@@ -40,9 +43,9 @@ def status(folder: Path) -> str:
     return str(json.loads((folder / "result.json").read_text(encoding="utf-8"))["status"])
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_writes_what_was_accepted(start: Start, tmp_path: Path, number: signal.Signals) -> None:
-    process = start("run", "case.yaml", *SLOW)
+@pytest.mark.parametrize(("number", "forked"), [(signal.SIGINT, False), (signal.SIGTERM, True), (signal.SIGHUP, True)])
+def test_a_signal_writes_what_was_accepted(start: Start, tmp_path: Path, number: signal.Signals, forked: bool) -> None:
+    process = start("run", "case.yaml", *SLOW, forked=forked)
     wait_for_a_step(process)
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
@@ -55,7 +58,7 @@ def test_a_signal_writes_what_was_accepted(start: Start, tmp_path: Path, number:
 
 
 def test_a_second_signal_stops_at_once(start: Start, tmp_path: Path) -> None:
-    process = start("run", "case.yaml", *SLOW, "--set", "experiment.stubborn=true")
+    process = start("run", "case.yaml", *SLOW, "--set", "experiment.stubborn=true", forked=True)
     wait_for_a_step(process)
     process.send_signal(signal.SIGINT)
     time.sleep(0.5)
@@ -69,7 +72,7 @@ def test_a_second_signal_stops_at_once(start: Start, tmp_path: Path) -> None:
 def test_an_interrupted_run_does_not_lose_the_earlier_result(start: Start, tmp_path: Path) -> None:
     completed(tmp_path, "run", "case.yaml")
     assert status(tmp_path / "results/case") == "converged"
-    process = start("run", "case.yaml", *SLOW)
+    process = start("run", "case.yaml", *SLOW, forked=True)
     wait_for_a_step(process)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
@@ -78,7 +81,7 @@ def test_an_interrupted_run_does_not_lose_the_earlier_result(start: Start, tmp_p
 
 
 def test_a_kill_leaves_nothing_that_stops_the_next_run(start: Start, tmp_path: Path) -> None:
-    process = start("run", "case.yaml", *SLOW)
+    process = start("run", "case.yaml", *SLOW, forked=True)
     wait_for_a_step(process)
     process.kill()
     process.communicate(timeout=60)
@@ -90,7 +93,7 @@ def test_a_kill_leaves_nothing_that_stops_the_next_run(start: Start, tmp_path: P
 
 
 def test_two_runs_in_one_folder(start: Start, tmp_path: Path) -> None:
-    first = start("run", "case.yaml", *SLOW)
+    first = start("run", "case.yaml", *SLOW, forked=True)
     wait_for_a_step(first)
     second = completed(tmp_path, "run", "case.yaml")
     assert second.returncode == 5
@@ -100,9 +103,9 @@ def test_two_runs_in_one_folder(start: Start, tmp_path: Path) -> None:
     assert status(tmp_path / "results/case") == "interrupted"
 
 
-@pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_a_reader_that_goes_away_does_not_stop_the_run(start: Start, tmp_path: Path, stream: str) -> None:
-    process = start("run", "case.yaml", "--progress", "--set", "experiment.steps=500")
+@pytest.mark.parametrize(("stream", "forked"), [("stdout", False), ("stderr", True)])
+def test_a_reader_that_goes_away_does_not_stop_the_run(start: Start, tmp_path: Path, stream: str, forked: bool) -> None:
+    process = start("run", "case.yaml", "--progress", "--set", "experiment.steps=500", forked=forked)
     getattr(process, stream).close()
     setattr(process, stream, None)
     _, err = process.communicate(timeout=60)
@@ -111,9 +114,9 @@ def test_a_reader_that_goes_away_does_not_stop_the_run(start: Start, tmp_path: P
     assert status(tmp_path / "results/case") == "converged"
 
 
-@pytest.mark.parametrize("closed", ["1", "2"])
-def test_a_stream_closed_before_the_start_is_no_error(start: Start, tmp_path: Path, closed: str) -> None:
-    process = start("run", "case.yaml", "--progress", preexec_fn=lambda: os.close(int(closed)))
+@pytest.mark.parametrize(("closed", "forked"), [(1, False), (2, True)])
+def test_a_stream_closed_before_the_start_is_no_error(start: Start, tmp_path: Path, closed: int, forked: bool) -> None:
+    process = start("run", "case.yaml", "--progress", forked=forked, preexec_fn=lambda: os.close(closed))
     process.communicate(timeout=60)
     assert process.returncode == 0
     assert status(tmp_path / "results/case") == "converged"

@@ -21,11 +21,11 @@ from tactsim.mesh.revolved import SweepSymmetry
 
 CASES = Path(__file__).parents[2] / "cases"
 THIN = {
-    "specimen": Specimen(material=NeoHookean(c10=1000.0), thickness=3e-3, radius=7e-3),
+    "specimen": Specimen(material=NeoHookean(c10=1000.0), thickness=3e-3, radius=6e-3),
     "body": Annulus(fillet=0.5e-3),
     "recess": 0.2e-3,
     "stop": "displacement",
-    "displacement": 0.1e-3,
+    "displacement": 0.05e-3,
     "steps": {"first": 0.05e-3},
     "penetration_tolerance": 2e-7,
 }
@@ -112,8 +112,8 @@ def test_half_a_body_is_two_quarters(quarter):
 
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base():
-    coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh
-    experiment = posed(tilt_y=TILT, displacement=0.04e-3, mesh=coarse)
+    coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh and at any penetration
+    experiment = posed(tilt_y=TILT, displacement=0.04e-3, penetration_tolerance=2e-6, mesh=coarse)
     model = experiment.model()
     *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)
     state, contact = last.contact, last.contact.contacts[0]

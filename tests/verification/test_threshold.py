@@ -35,9 +35,10 @@ def in_root(request):
         yield
 
 
-@pytest.fixture(scope="module")
-def icf():
-    experiment = load_case("cases/annulus_icf.yaml").experiment
+@pytest.fixture(scope="module", params=[0.4, pytest.param(1.0, marks=pytest.mark.slow)], ids=["coarse", "whole"])
+def icf(request):
+    """The record of the shipped case and its accepted states, on a coarse mesh and on its own."""
+    experiment = load_case("cases/annulus_icf.yaml", [f"experiment.mesh.refinement={request.param}"]).experiment
     model = experiment.model()
     path = DisplacementPath(experiment, experiment.drive(), model)
     record = IndentationRecord(experiment, model, path)
@@ -92,18 +93,20 @@ def test_force_and_rise_grow_with_the_indentation(icf):
         assert (np.diff([step.values[name] for step in record.steps]) > 0).all(), name
 
 
-def check_halved_steps(case, whole):
+def check_halved_steps(case, whole, refinement=1.0):
     def check(halved):
         assert halved == pytest.approx(whole, rel=STEP_TOLERANCE)
 
-    halved, before = threshold_pressures(case, "experiment.steps.largest=0.075 mm", "experiment.steps.first=1.5 um")
+    steps = "experiment.steps.largest=0.075 mm", "experiment.steps.first=1.5 um"
+    halved, before = threshold_pressures(case, *steps, f"experiment.mesh.refinement={refinement}")
     check(halved)
     assert_kills(check, not_located=(before,))
 
 
 def test_halved_steps_change_little(icf):
     record, _ = icf
-    check_halved_steps("annulus_icf", record.event.values["reaction_force"] / record.setup.body.area)
+    whole = record.event.values["reaction_force"] / record.setup.body.area
+    check_halved_steps("annulus_icf", whole, record.setup.mesh.refinement)
 
 
 @pytest.mark.slow

@@ -127,12 +127,13 @@ def test_a_patch_takes_any_homogeneous_deformation(measure):
 def pressed(material: Material) -> Result:
     """A small sphere pressed into a coarse specimen."""
     case = {
-        "specimen": {"material": material, "radius": "8 mm", "thickness": "5 mm"},
+        "specimen": {"material": material, "radius": "6 mm", "thickness": "3 mm"},
         "body": {"kind": "sphere", "radius": "3 mm"},
         "contact": {"kind": "coulomb", "friction": 0.0},
         "stop": "displacement",
-        "displacement": "0.2 mm",
-        "mesh": {"refinement": 0.3, "adaptive": False},
+        "displacement": "0.1 mm",
+        "steps": {"first": "0.1 mm", "largest": "0.1 mm"},
+        "mesh": {"refinement": 0.2, "adaptive": False},
     }
     return Indentation.model_validate(case).run(lambda step: None)
 

@@ -60,6 +60,8 @@ class Store:
     """Arrays that are there and can be read."""
     faults: dict[str, str] = field(default_factory=dict)
     """Arrays that cannot be read, and why."""
+    _opened: dict[str, zarr.Array[Any]] = field(default_factory=dict, repr=False, compare=False)
+    """Arrays that were asked for: to open one costs as much as to read it."""
 
     @classmethod
     def open(cls, path: str | Path, *, writing: bool = False, damaged: bool = False) -> Store:
@@ -104,10 +106,13 @@ class Store:
 
         if name not in self.described:
             raise StorageError(self.faults.get(name) or _without(self.path, name))
+        if name in self._opened:
+            return self._opened[name]
         with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
             array = self.group[name]
             if not isinstance(array, zarr.Array):
                 raise TypeError("it is no array")
+            self._opened[name] = array
             return array
 
     def read(self, name: str, rows: slice | Array | EllipsisType = ...) -> Array:

@@ -55,8 +55,13 @@ def test_editors_learn_units_and_descriptions(validator: jsonschema.Draft7Valida
     assert "examples" in specimen["radius"]
 
 
-@pytest.mark.parametrize("path", list(shipped_cases()), ids=lambda path: path.name)
-def test_shipped_cases_load_and_pass(path: Path) -> None:
+@pytest.fixture(scope="module")
+def shipped_validator() -> jsonschema.Draft7Validator:
     assert experiment_kinds()
+    return jsonschema.Draft7Validator(case_json_schema())
+
+
+@pytest.mark.parametrize("path", list(shipped_cases()), ids=lambda path: path.name)
+def test_shipped_cases_load_and_pass(path: Path, shipped_validator: jsonschema.Draft7Validator) -> None:
     load_case(path)
-    jsonschema.Draft7Validator(case_json_schema()).validate(read_yaml(path.read_text(encoding="utf-8")).value)
+    shipped_validator.validate(read_yaml(path.read_text(encoding="utf-8")).value)

@@ -14,15 +14,17 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from fork_server import forked_command
 from live_pages import grasp_folder, made_up_store
 
 from tactsim.cli import main
 
 
 @contextmanager
-def page(*arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """The command in a process of its own."""
-    command = [sys.executable, "-W", "error", "-m", "tactsim.cli", "show", *arguments, "--web", "--no-browser"]
+def page(*arguments: str, forked: bool = True) -> Iterator[subprocess.Popen[str]]:
+    """The command in a process that is forked from a loaded one, or starts by itself."""
+    begin = forked_command("-W", "error") if forked else [sys.executable, "-W", "error", "-m", "tactsim.cli"]
+    command = [*begin, "show", *arguments, "--web", "--no-browser"]
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         try:
             yield process
@@ -30,9 +32,11 @@ def page(*arguments: str) -> Iterator[subprocess.Popen[str]]:
             process.kill()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_the_address_is_reported_once_and_a_signal_ends_it_in_good_order(tmp_path: Path, number: signal.Signals) -> None:
-    with page(str(grasp_folder(tmp_path / "a"))) as process:
+@pytest.mark.parametrize(("number", "forked"), [(signal.SIGINT, False), (signal.SIGTERM, True)])
+def test_the_address_is_reported_once_and_a_signal_ends_it_in_good_order(
+    tmp_path: Path, number: signal.Signals, forked: bool
+) -> None:
+    with page(str(grasp_folder(tmp_path / "a")), forked=forked) as process:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{32}/", address)

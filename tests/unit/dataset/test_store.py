@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -26,10 +27,10 @@ from tactsim import code_identity
 from tactsim.dataset.checking import check
 from tactsim.dataset.running import resuming
 from tactsim.dataset.running import run as running
-from tactsim.dataset.running.executors import LocalWorkers
+from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.drawing import drawn_specimen, noise_seed, used_seed
-from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.sampling.sweep import Sweep, load_sweep
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
@@ -260,15 +261,22 @@ def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"),
+    ("asked", "words", "executor"),
     [
-        ("largest_force: Pa", "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa"),
-        ("largest_froce: N", "sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force"),
+        ("largest_force: Pa", "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa", Inline),
+        (
+            "largest_froce: N",
+            "sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force",
+            lambda sweep: LocalWorkers(sweep.text, 1),
+        ),
     ],
+    ids=["another unit in this process", "another name in a worker"],
 )
-def test_a_quantity_that_no_result_has_ends_the_sweep_at_once(tmp_path: Path, asked: str, words: str) -> None:
+def test_a_quantity_that_no_result_has_ends_the_sweep_at_once(
+    tmp_path: Path, asked: str, words: str, executor: Callable[[Sweep], Executor]
+) -> None:
     sweep = load_sweep(sweep_file(tmp_path, TEXT.replace("times: 4", f"times: 4\n  quantities: {{{asked}}}")))
-    workers = LocalWorkers(sweep.text, 1)
+    workers = executor(sweep)
     with opened_run(sweep, tmp_path / "s.zarr") as going, closing(workers), pytest.raises(CaseError, match=words):
         going.compute(workers, lambda tally: None)
     assert (Store.open(tmp_path / "s.zarr").read("status") == 0).all()

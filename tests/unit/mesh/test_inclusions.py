@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, enclosed_volume, irregular, write_cells
+from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, enclosed_volume, irregular, points_about, write_cells
 from pydantic import TypeAdapter, ValidationError
 from solids import assert_close
 
@@ -62,11 +62,11 @@ def test_projected_points_lie_on_the_surface_and_are_nearest(name, tmp_path):
 @pytest.mark.parametrize("name", [*SHAPES, "surface"])
 def test_inside_is_where_the_distance_is_negative_and_has_the_exact_volume(name, tmp_path):
     solid = shape(name, tmp_path).solids(BLOCK)[0]
-    points = np.random.default_rng(1).uniform(0, 1, (20_000, 3)) * BLOCK
+    points, volume = points_about(solid, 4000)
     inside = solid.inside(points)
     distance = solid.signed_distance(points)
     assert (inside == (distance < 0))[np.abs(distance) > 1e-12].all()
-    share = solid.volume() / BLOCK.prod()
+    share = solid.volume() / volume
     tolerance = 5 * np.sqrt(share * (1 - share) / len(points))  # five standard deviations of a count
     assert abs(inside.mean() - share) < tolerance
     assert abs(inside.mean() - 1.5 * share) > tolerance

@@ -1,0 +1,3 @@
+"""The version of tactsim."""
+
+__version__ = "0.1.0"
