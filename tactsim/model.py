@@ -20,11 +20,10 @@ class _MadeInPython(ModelMetaclass):
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
         named = dict(zip((name for name in cls.model_fields if name != "kind"), values, strict=False))  # type: ignore[attr-defined]
-        if len(named) < len(values) or named.keys() & fields.keys():
-            twice = ", ".join(named.keys() & fields.keys())
-            raise TypeError(
-                f"{cls.__name__}: " + (f"{twice} is given twice" if twice else f"at most {len(named)} values by position")
-            )
+        if len(named) < len(values):
+            raise TypeError(f"{cls.__name__} takes at most {len(named)} values by position, {len(values)} were given")
+        if twice := named.keys() & fields.keys():
+            raise TypeError(f"{cls.__name__}: {', '.join(sorted(twice))} is given by position and by name")
         try:
             return super().__call__(**named, **fields)
         except ValidationError as error:

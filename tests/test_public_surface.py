@@ -1,0 +1,234 @@
+"""What ``import tactsim`` offers: names, cases, results and data sets from Python."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pint
+import pytest
+
+import tactsim as ts
+from tactsim.case.writing import case_text
+from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
+from tactsim.shipped import shipped_cases
+
+NAMES = [
+    "Annulus",
+    "Block",
+    "Case",
+    "ClosedForm",
+    "Coulomb",
+    "Ellipsoid",
+    "Embedded",
+    "Estimator",
+    "Experiment",
+    "Grasp",
+    "Inclusion",
+    "Indentation",
+    "InputError",
+    "Material",
+    "MooneyRivlin3",
+    "NeoHookean",
+    "Quantity",
+    "Result",
+    "RigidBody",
+    "SensorFilm",
+    "Specimen",
+    "Sphere",
+    "TactsimError",
+    "TaxelLayout",
+    "TimedIndentation",
+    "Tube",
+    "choice",
+    "close",
+    "kinds",
+    "load_case",
+    "load_data",
+    "load_result",
+    "log_uniform",
+    "material",
+    "normal",
+    "save_case",
+    "sweep",
+    "uniform",
+]
+HEAVY = ("numpy", "scipy", "pydantic", "pint", "numba", "skfem", "matplotlib", "xarray", "pyvista", "zarr", "ruamel", "meshio")
+
+
+@pytest.fixture(scope="module")
+def case() -> ts.Case:
+    return ts.load_case("annulus_dynamic_load", {"experiment.points": 20})
+
+
+@pytest.fixture(scope="module")
+def result(case: ts.Case) -> ts.Result:
+    return case.run()
+
+
+@pytest.fixture
+def grasp() -> ts.Grasp:
+    return ts.Grasp(
+        block=ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable"),
+        inclusions=[ts.Embedded(ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius="4 mm"), material="lump")],
+        loading=ts.close(to="1 mm", duration="1 s"),
+    )
+
+
+def test_the_names_are_these_and_each_is_documented() -> None:
+    assert sorted(NAMES, key=str) == sorted(ts.__all__)
+    assert set(dir(ts)) == {*NAMES, "__version__"}
+    assert [name for name in ts.__all__ if not getattr(ts, name).__doc__] == []
+    with pytest.raises(AttributeError, match="no attribute 'grasp'"):
+        _ = ts.grasp  # type: ignore[attr-defined]
+
+
+def test_nothing_heavy_is_loaded_before_it_is_used() -> None:
+    code = f"import sys, tactsim; dir(tactsim); sys.exit(' '.join(set({HEAVY!r}) & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.strip() == ""
+
+
+def test_a_case_file_loads_its_own_kind_only() -> None:
+    code = (
+        "import sys; from tactsim import load_case; load_case('annulus_icf'); from tactsim.interfaces import Experiment;"
+        "from tactsim.registry import _registered;"
+        "assert {*_registered[Experiment]} == {'indentation'}, _registered[Experiment];"
+        "sys.exit(' '.join({'numba', 'skfem', 'matplotlib', 'scipy.optimize', 'xarray', 'pyvista'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.strip() == ""
+
+
+def test_a_quantity_is_one_type_for_numbers_and_arrays(result: ts.Result) -> None:
+    deepest = result["largest_displacement"]
+    assert deepest.to("mm").value == pytest.approx(1e3 * deepest.value, rel=1e-15)
+    assert (deepest.unit, deepest.to("mm").unit, deepest.array.dims) == ("m", "mm", ())
+    assert float(deepest) == deepest.value == float(deepest.array)
+    assert f"{deepest.to('mm'):.2f}".endswith(" mm")
+    with pytest.raises(InvalidQuantity, match="'kPa' is not a unit of what is in 'm'"):
+        deepest.to("kPa")
+    with pytest.raises(UnknownName, match="did you mean 'largest_displacement'"):
+        _ = result["largest_displacment"]
+    taxels = ts.Quantity([[1.0, 2.0]], "N", "forces")
+    assert taxels.to("mN").value == [[1000.0, 2000.0]]
+    readings = ts.Result(kind="grasp", status=result.status, reason="", quantities={"taxel_force_upper": taxels})
+    assert readings["taxel_force_upper"].array.dims == ("row", "column")
+    assert readings["taxel_force_upper"].array.attrs["units"] == "N"
+
+
+def test_the_history_is_a_dataset_with_units(result: ts.Result) -> None:
+    history = result.history
+    assert history["force"].attrs["units"] == "N"
+    np.testing.assert_array_equal(history["force"], [step.values["force"] for step in result.steps])
+    assert history.sizes == {"step": len(result.steps)}
+
+
+def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path: Path) -> None:
+    again = ts.load_result(result.save(tmp_path / "first"))
+    assert again == result
+    assert again.provenance == result.provenance
+    assert again.scene == result.scene
+    changed = result.quantities | {"force": ts.Quantity(np.nextafter(result["force"].value, 1), "N", result["force"].description)}
+    assert ts.Result(**{**vars(result), "quantities": changed}) != result
+    with pytest.raises(StorageError, match="first"):
+        result.save(tmp_path / "first")
+    assert again.save(tmp_path / "first", force=True).is_dir()
+
+
+def test_an_experiment_without_a_file_is_kept_too(tmp_path: Path) -> None:
+    result = ts.ClosedForm.example().run()
+    again = ts.load_result(result.save(tmp_path / "second"))
+    assert again == result
+    assert again.provenance["case"]["experiment"]["kind"] == "closed_form"
+
+
+def test_a_result_shows_itself(result: ts.Result) -> None:
+    (name, figure), *_ = result.plot().items()
+    assert (name, figure.get_size_inches()[0] > 3) == ("closed_form", True)
+    html = result._repr_html_()
+    assert "converged" in html
+    assert "largest_displacement" in html
+    assert "data:image/png;base64," in html
+    assert repr(result).startswith("<Result of closed_form: converged")
+    with pytest.raises(ts.InputError, match="holds no fields"):
+        result.fields()
+
+
+@pytest.mark.parametrize("path", [p for p in shipped_cases() if "schema: tactsim/case/" in p.read_text()], ids=lambda p: p.stem)
+def test_a_written_case_is_the_same_case(path: Path, tmp_path: Path) -> None:
+    case = ts.load_case(path)
+    text = case_text(case)
+    written = tmp_path / path.name
+    written.write_text(text, encoding="utf-8")
+    for folder in ("data", "surfaces"):
+        if (path.parent / folder).is_dir():
+            (tmp_path / folder).symlink_to(path.parent / folder)
+    assert ts.load_case(written).case_id == case.case_id
+
+
+def test_a_case_built_in_python_is_saved_and_read_as_the_same(grasp: ts.Grasp, tmp_path: Path) -> None:
+    place = ts.save_case(grasp, tmp_path / "my_grasp.yaml")
+    again = ts.load_case(place)
+    assert again.experiment == grasp
+    assert "radius: 4 mm" in place.read_text()
+    assert "material: lump" in place.read_text()
+    with pytest.raises(StorageError, match="exists"):
+        ts.save_case(grasp, place)
+
+
+def test_lengths_may_be_text_pint_or_si() -> None:
+    units = pint.UnitRegistry()
+    assert ts.Sphere((20 * units.mm, "2 cm", 0.02), 4e3 * units.um) == ts.Sphere((0.02, 0.02, 0.02), 4e-3)
+    case = ts.load_case("annulus_icf", {"experiment.recess": 0.4 * units.mm})
+    assert case.experiment.recess == 0.4e-3
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: ts.Block(size=("40", "40 mm", "20 mm"), tissue="icf_stable"), r"Block: size.0: '40' has no unit"),
+        (
+            lambda: ts.Block(tissue="icf_stabel"),
+            r"Block: tissue: unknown material set 'icf_stabel' \(did you mean 'icf_stable'\?\)",
+        ),
+        (lambda: ts.Sphere((0, 0, 0), radius="4 mm", colour=1), r"Sphere: colour: unknown key; allowed: kind, center, radius"),
+        (lambda: ts.Specimen(material="lump", thickness="2 furlong"), r"'furlong', which is not a unit that is read"),
+        (lambda: ts.Indentation(specimen=ts.Specimen(material="lump"), body={"kind": "anulus"}, displacement=1e-3), "'annulus'"),
+        (lambda: ts.load_case("annulus_icf", {"experiment.recess": "4 kPa"}), r"--set experiment.recess: '4 kPa' has the wrong"),
+        (lambda: ts.load_case("annulus_ifc"), r"unknown case 'annulus_ifc' \(did you mean 'annulus_icf'\?\)"),
+    ],
+)
+def test_what_is_wrong_is_refused_in_the_words_of_a_file(make, words: str) -> None:
+    with pytest.raises((CaseError, UnknownName), match=words):
+        make()
+
+
+def test_more_values_than_fields_are_refused() -> None:
+    with pytest.raises(TypeError, match="at most 2 values by position, 3 were given"):
+        ts.Sphere((0, 0, 0), "4 mm", 3)
+    with pytest.raises(TypeError, match="center is given by position and by name"):
+        ts.Sphere((0, 0, 0), center=(1, 1, 1), radius="4 mm")
+
+
+def test_kinds_are_listed_by_the_name_of_their_point() -> None:
+    assert ts.kinds("experiment")["grasp"] is ts.Grasp
+    assert "annulus" in ts.kinds("body")
+    with pytest.raises(UnknownName, match="known: body, contact"):
+        ts.kinds("bodies")
+
+
+def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
+    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    data = ts.sweep(varied, samples=4, out=tmp_path / "annuli.zarr", workers=1, title="Annuli")
+    assert data.sizes["sample"] == 4
+    radii = data["varied_outer_radius"].values
+    assert ((radii > 2e-3) & (radii < 4e-3)).all()
+    assert len(set(radii)) == 4
+    with pytest.raises(ts.InputError, match="outer_radus"):
+        ts.sweep(ts.ClosedForm.example().vary({"outer_radus": ts.uniform("2 mm", "4 mm")}), samples=2, out=tmp_path / "b.zarr")
+    with pytest.raises(ts.InputError, match="uniform"):
+        ts.sweep(ts.ClosedForm.example().vary({"outer_radius": ts.uniform("4 mm", "2 mm")}), samples=2, out=tmp_path / "c.zarr")
+    assert not (tmp_path / "b.zarr").exists()
