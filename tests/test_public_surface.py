@@ -15,46 +15,15 @@ from tactsim.case.writing import case_text
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.shipped import shipped_cases
 
+# fmt: off
 NAMES = [
-    "Annulus",
-    "Block",
-    "Case",
-    "ClosedForm",
-    "Coulomb",
-    "Ellipsoid",
-    "Embedded",
-    "Estimator",
-    "Experiment",
-    "Grasp",
-    "Inclusion",
-    "Indentation",
-    "InputError",
-    "Material",
-    "MooneyRivlin3",
-    "NeoHookean",
-    "Quantity",
-    "Result",
-    "RigidBody",
-    "SensorFilm",
-    "Specimen",
-    "Sphere",
-    "TactsimError",
-    "TaxelLayout",
-    "TimedIndentation",
-    "Tube",
-    "choice",
-    "close",
-    "kinds",
-    "load_case",
-    "load_data",
-    "load_result",
-    "log_uniform",
-    "material",
-    "normal",
-    "save_case",
-    "sweep",
-    "uniform",
+    "Annulus", "Block", "Case", "ClosedForm", "Coulomb", "Ellipsoid", "Embedded", "Estimator", "Experiment", "Grasp",
+    "Inclusion", "Indentation", "InputError", "Material", "MooneyRivlin3", "NeoHookean", "Quantity", "Result",
+    "RigidBody", "SensorFilm", "Specimen", "Sphere", "TactsimError", "TaxelLayout", "TimedIndentation", "Tube",
+    "choice", "close", "kinds", "load_case", "load_data", "load_result", "log_uniform", "material", "normal",
+    "save_case", "sweep", "uniform",
 ]
+# fmt: on
 HEAVY = ("numpy", "scipy", "pydantic", "pint", "numba", "skfem", "matplotlib", "xarray", "pyvista", "zarr", "ruamel", "meshio")
 
 
