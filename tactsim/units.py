@@ -162,6 +162,13 @@ def conversion(given_unit: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(unit)} is not a unit of what is in {shown(given_unit)}") from None
 
 
+def compact_unit(value: float, unit: str) -> str:
+    """The unit with the SI prefix in which a value in SI reads well, such as ``kPa``."""
+    if unit in ("", "1", "rad") or not value or not math.isfinite(value):
+        return unit
+    return f"{_registry().Quantity(value, unit).to_compact().units:~C}".replace("**", "^")
+
+
 def format_quantity(value: float, unit: str) -> str:
     """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``; angles in degrees."""
     if unit in ("", "1"):

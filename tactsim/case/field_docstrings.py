@@ -20,15 +20,21 @@ class SchemaWithDescriptions(GenerateJsonSchema):
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
         """The schema of a model, its fields described."""
         fragment = super().model_schema(schema)
-        described: dict[str, str] = {}
-        for base in reversed(schema["cls"].__mro__):
-            if issubclass(base, BaseModel) and base is not BaseModel:
-                described |= _field_docstrings(base.__module__).get(base.__qualname__, {})
+        described = field_descriptions(schema["cls"])
         for name, field in schema["cls"].model_fields.items():
             entry = fragment.get("properties", {}).get(field.alias or name)
             if entry is not None and name in described and "description" not in entry:
                 entry["description"] = described[name]
         return fragment
+
+
+def field_descriptions(model: type[BaseModel]) -> dict[str, str]:
+    """Field -> docstring of a model and of those that it is derived from."""
+    described: dict[str, str] = {}
+    for base in reversed(model.__mro__):
+        if issubclass(base, BaseModel) and base is not BaseModel:
+            described |= _field_docstrings(base.__module__).get(base.__qualname__, {})
+    return described
 
 
 @cache

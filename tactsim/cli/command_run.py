@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.cli.interruption import Interruption, interruptible
-from tactsim.errors import INTERRUPTED, InvalidQuantity, StorageError, shown
+from tactsim.errors import INTERRUPTED, InputError, InvalidQuantity, StorageError, shown
+from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.case import Case
     from tactsim.results import Result, StepRecord
     from tactsim.results.folder import OutputFolder
 
+COMPARISON = "comparison"
+"""Folder, beside those of several cases, of the table that compares them."""
 NAME = "run"
 SUMMARY = "compute a case and write its result"
 DESCRIPTION = """\
@@ -29,6 +32,9 @@ there is replaced; if the new run does not converge, an earlier result that did 
 it with the ending .earlier. A folder given by --out is replaced only with --force. A folder
 with files that tactsim did not write is never replaced.
 
+Several cases are run one after the other, each into a folder of its name below --out (default:
+results), and then put into one table and one figure: see tactsim compare.
+
 On a terminal every accepted step is reported as it happens; elsewhere only the final report
 is written, unless --progress asks for more. Ctrl+C stops the computation and writes what was
 accepted so far with the status "interrupted"; a second Ctrl+C stops at once. A run that takes
@@ -40,13 +46,19 @@ examples:
   tactsim run cases/annulus_icf.yaml --out soft --set experiment.specimen.thickness="6 mm"
   tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
   tactsim run cases/grasp_lump_icf.yaml --time-limit "5 min"
+  tactsim run grasp_plain grasp_lump_icf --out grasps
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("case", metavar="CASE", type=Path, help="case file (YAML)")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="output folder (default: results/<name of the case file>)")
+    parser.add_argument("cases", metavar="CASE", type=Path, nargs="+", help="case file (YAML), or the name of a shipped case")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="output folder (default: results/<name of the case file>); of several cases, the folder of their folders",
+    )
     parser.add_argument(
         "--set",
         metavar="KEY=VALUE",
@@ -62,23 +74,60 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command; of several cases, that of the first that failed.
+
+    Raises
+    ------
+    InputError
+        If two of several cases have the same name, so that their results would.
+    """
+    if len(arguments.cases) == 1:
+        return _run(arguments.cases[0], arguments.out, arguments)
+    names = [path.stem for path in arguments.cases]
+    if repeated := [name for name in names if names.count(name) > 1]:
+        raise InputError(f"two cases are called {one_line(repeated[0])}; their results would have one folder")
+    root, codes = arguments.out or Path("results"), []
+    for path in arguments.cases:
+        codes.append(_run(path, root / path.stem, arguments))
+        if codes[-1] == INTERRUPTED:
+            return INTERRUPTED
+    _compare([root / name for name in names], root / COMPARISON, arguments)
+    return next((code for code in codes if code), 0)
+
+
+def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) -> None:
+    """Put the results of several cases into one table and one figure."""
+    from tactsim.cli.command_compare import report
+    from tactsim.results import read_result
+
+    if not arguments.quiet:
+        console.out()
+        report({folder.name: read_result(folder, fields=False).result for folder in folders}, place)
+
+
+def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
+    """Exit code of one case."""
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import claimed
+    from tactsim.results.provenance import provenance
 
     seconds = _time_limit(arguments.time_limit)
     with interruptible() as interruption:
-        document, place = read_document(arguments.case, arguments.set)
+        document, place = read_document(path, arguments.set)
         with collected_warnings() as read:
             case = validated_case(document, place)
             listed = check_inputs(case, document, place)
-        directory = arguments.out or Path("results") / arguments.case.stem
-        with claimed(directory, replace=arguments.force or arguments.out is None) as folder:
+        directory = out or Path("results") / path.stem
+        with claimed(directory, replace=arguments.force or arguments.out is None or len(arguments.cases) > 1) as folder:
             with collected_warnings() as raised:
                 result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
+            origin = provenance(
+                case.resolved(), case.case_id, case_file=path.name, overrides=arguments.set, seeds=case.experiment.seeds()
+            )
+            result = replace(result, provenance=origin)
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
 
@@ -141,13 +190,9 @@ def _write(
 ) -> Path | None:
     """Writes and publishes the folder; returns where an earlier result is kept, if it is."""
     from tactsim.results import Status
-    from tactsim.results.provenance import provenance
     from tactsim.results.writing import fill
 
-    case_id = case.case_id
-    seeds = case.experiment.seeds()
-    origin = provenance(case.resolved(), case_id, case_file=arguments.case.name, overrides=arguments.set, seeds=seeds)
-    fill(folder, result, case_id=case_id, provenance=origin, figures=figures)
+    fill(folder, result, case_id=case.case_id, provenance=result.provenance, figures=figures)
     keep = result.status is not Status.CONVERGED and not arguments.force and _converged(folder.path)
     return folder.publish(keep_earlier=keep)
 

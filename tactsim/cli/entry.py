@@ -11,8 +11,12 @@ from pathlib import Path
 from typing import NoReturn
 
 from tactsim.cli import (
+    command_compare,
+    command_completion,
     command_data,
+    command_list,
     command_material,
+    command_new,
     command_run,
     command_schema,
     command_show,
@@ -26,7 +30,19 @@ from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.version import __version__
 
-COMMANDS = (command_run, command_sweep, command_data, command_show, command_material, command_validate, command_schema)
+COMMANDS = (
+    command_run,
+    command_new,
+    command_list,
+    command_show,
+    command_compare,
+    command_sweep,
+    command_data,
+    command_validate,
+    command_material,
+    command_schema,
+    command_completion,
+)
 EXIT_CODES = """\
 exit codes:
   0    done
@@ -58,7 +74,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     debug = False
     try:
         check_environment(os.environ, Path())
-        parsed = _parser().parse_args(arguments)
+        parser = _parser()
+        parsed = parser.parse_args(arguments)
+        if "run" not in parsed:
+            console.out(parser.format_help())
+            raise InputError("name one of the commands")
         debug = parsed.debug
         with _printed_warnings():
             return int(parsed.run(parsed))
@@ -106,7 +126,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"tactsim {__version__}")
     parser.set_defaults(debug=False)
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     for command in COMMANDS:
         sub = commands.add_parser(
             command.NAME,
@@ -117,5 +137,5 @@ def _parser() -> argparse.ArgumentParser:
         )
         command.add_arguments(sub)
         sub.add_argument("--debug", action="store_true", help="show the traceback of an error")
-        sub.set_defaults(run=command.run)
+        sub.set_defaults(run=command.run, parser=_parser)
     return parser

@@ -1,0 +1,81 @@
+"""A commented case file of a kind to begin with: what an example of it needs, and every other key with its default."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from typing import Any
+
+from pydantic import BaseModel
+from ruamel.yaml import YAML
+
+from tactsim.case.field_docstrings import field_descriptions
+from tactsim.case.model import SCHEMA, experiment_class
+from tactsim.case.writing import case_document
+
+WIDTH = 100
+
+
+def template(kind: str) -> str:
+    """The text of a case file that runs as it is.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such kind of experiment, with the nearest one.
+    """
+    cls = experiment_class(kind)
+    example = cls.example()
+    given = case_document(example)["experiment"]
+    every = case_document(example, complete=True)["experiment"]
+    about = (cls.__doc__ or "").partition("\n")[0].strip()
+    lines = [
+        "# yaml-language-server: $schema=case.schema.json",
+        *_comment(about, ""),
+        *_needed(example),
+        f"schema: {SCHEMA}",
+        f"title: {kind.replace('_', ' ').capitalize()}",
+        "experiment:",
+        f"  kind: {kind}",
+    ]
+    described = field_descriptions(cls)
+    for name in given:
+        if name != "kind":
+            lines += ["", *_comment(described.get(name, ""), "  "), *_entry(name, given[name])]
+    left = [name for name in every if name not in given]
+    if left:
+        lines += ["", "  # What follows are defaults: take the # before a key away to change one."]
+    for name in left:
+        lines += ["", *_comment(described.get(name, ""), "  "), *(f"  #{line[2:]}" for line in _entry(name, every[name]))]
+    return "\n".join(lines) + "\n"
+
+
+def _needed(example: BaseModel) -> list[str]:
+    """How to make the stored results that the example names."""
+    folders = sorted({text for text in _texts(example.model_dump(mode="json")) if text.startswith("results/")})
+    commands = [f"tactsim run {folder.removeprefix('results/')}" for folder in folders]
+    return _comment(f"It reads stored results; make them first with: {'; '.join(commands)}", "") if commands else []
+
+
+def _texts(value: Any) -> list[str]:
+    if isinstance(value, dict | list):
+        return [text for item in (value.values() if isinstance(value, dict) else value) for text in _texts(item)]
+    return [value] if isinstance(value, str) else []
+
+
+def _comment(text: str, indent: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# ")
+
+
+def _entry(name: str, value: Any) -> list[str]:
+    """A key and its value as indented lines of YAML."""
+    text, yaml = io.StringIO(), YAML()
+    yaml.width, yaml.default_flow_style = WIDTH, None
+    yaml.representer.add_representer(
+        type(None), lambda representer, _: representer.represent_scalar("tag:yaml.org,2002:null", "null")
+    )
+    yaml.dump({name: value}, text)
+    entry = text.getvalue().rstrip()
+    if entry.startswith("{"):  # a single value: the mapping itself went into one line
+        entry = entry[1:-1]
+    return [f"  {line}" for line in entry.split("\n")]

@@ -1,0 +1,95 @@
+"""``tactsim compare``: several stored results in one table and one figure."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactsim.cli import console
+from tactsim.errors import InputError
+from tactsim.outside.text import one_line
+
+if TYPE_CHECKING:
+    from tactsim.results import Result
+
+NAME = "compare"
+SUMMARY = "put several stored results into one table and one figure"
+DESCRIPTION = """\
+Prints the numbers in which several stored results differ, a column for each result. With --out a
+folder is written: comparison.csv and comparison.md with every number, comparison.png with a curve
+for each result. A folder that holds several results, such as that of tactsim run CASE1 CASE2
+--out DIR, stands for all of them.
+"""
+EXAMPLES = """\
+examples:
+  tactsim compare results/soft results/hard
+  tactsim compare results/designs --out designs
+"""
+LONGEST_NAME = 24
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options."""
+    parser.add_argument("results", metavar="RESULT", type=Path, nargs="+", help="folder of a result, or of several")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="write the table and the figure into this folder")
+    parser.add_argument("--all", action="store_true", help="print every number, those that are the same too")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    InputError
+        If fewer than two results are named.
+    StorageError
+        If a result cannot be read or the folder cannot be written.
+    """
+    from tactsim.results import read_result
+
+    folders = [folder for place in arguments.results for folder in _folders(place)]
+    results = {name: read_result(folder, fields=False).result for name, folder in _named(folders).items()}
+    if len(results) < 2:
+        raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
+    report(results, arguments.out, everything=arguments.all)
+    return 0
+
+
+def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False) -> None:
+    """Print the table, and write it with its figure if a folder is given."""
+    from tactsim.results.comparison import compared
+
+    comparison = compared(results)
+    width = max(len(column.head) for column in comparison.columns) if comparison.columns else 6
+    names = [one_line(name, LONGEST_NAME) for name in comparison.names]
+    cells = [max(10, len(name)) for name in names]
+    console.out("  ".join([" " * width, *(f"{name:>{cell}}" for name, cell in zip(names, cells, strict=True))]))
+    console.out(
+        "  ".join([f"{'status':<{width}}", *(f"{s:>{cell}}" for s, cell in zip(comparison.statuses, cells, strict=True))])
+    )
+    for column in comparison.columns if everything else comparison.differing:
+        numbers = ("-" if value is None else f"{value:.5g}" for value in column.values)
+        console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
+    if out is not None:
+        from tactsim.cli.figures.comparison import comparison_png
+        from tactsim.results.writing import write_files
+
+        picture = comparison_png(results, comparison)
+        texts = {"comparison.csv": comparison.csv_text(), "comparison.md": comparison.markdown_text()}
+        write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
+        console.out(f"comparison {one_line(out)}")
+
+
+def _folders(place: Path) -> list[Path]:
+    """The folder of a result, or those within a folder that holds several."""
+    if (place / "result.json").is_file() or not place.is_dir():
+        return [place]
+    return sorted(path.parent for path in place.glob("*/result.json")) or [place]
+
+
+def _named(folders: list[Path]) -> dict[str, Path]:
+    """Folders by their last names, or by as much of their paths as tells them apart."""
+    names = [folder.name for folder in folders]
+    return {folder.name if names.count(folder.name) == 1 else str(folder): folder for folder in folders}

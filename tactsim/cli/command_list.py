@@ -1,0 +1,91 @@
+"""``tactsim list``: what comes with tactsim, a line for each."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterable
+
+from tactsim.cli import console
+from tactsim.outside.text import one_line
+
+NAME = "list"
+SUMMARY = "list shipped cases, sweeps, materials, kinds, estimators and tables"
+DESCRIPTION = """\
+Lists what comes with tactsim, a line for each: cases (run them by name), sweeps, materials, kinds
+of experiments, estimators of the place of a lump, and the tables of the thesis.
+"""
+EXAMPLES = """\
+examples:
+  tactsim list
+  tactsim list cases
+  tactsim list kinds
+"""
+Lines = Iterable[tuple[str, str]]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options."""
+    parser.add_argument(
+        "what", metavar="WHAT", nargs="?", choices=list(SECTIONS), help=f"one of {', '.join(SECTIONS)}; by default all"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code of the whole command."""
+    for section in [arguments.what] if arguments.what else SECTIONS:
+        lines = list(SECTIONS[section]())
+        if arguments.what is None:
+            console.out(f"{section}:")
+        width = max(len(name) for name, _ in lines)
+        for name, about in lines:
+            console.out(f"{'' if arguments.what else '  '}{name:<{width}}  {one_line(about, 200)}".rstrip())
+        if arguments.what is None:
+            console.out()
+    return 0
+
+
+def _titled(schema: str) -> Lines:
+    """Name and title of the shipped files of a schema."""
+    from tactsim.case.yaml_reading import read_yaml
+    from tactsim.shipped import shipped_cases
+
+    for path in shipped_cases():
+        written = read_yaml(path.read_text(encoding="utf-8")).value
+        if str(written.get("schema", "")).startswith(schema):
+            yield path.stem, f"{written.get('experiment', {}).get('kind', '')}: {written.get('title', '')}"
+
+
+def _materials() -> Lines:
+    from tactsim.materials.library import LIBRARY
+
+    return ((name, f"{entry.material.kind}; {entry.source}") for name, entry in sorted(LIBRARY.items()))
+
+
+def _classes(point: str) -> Callable[[], Lines]:
+    def lines() -> Lines:
+        from tactsim.interfaces.points import kinds
+
+        return ((kind, (cls.__doc__ or "").partition("\n")[0]) for kind, cls in kinds(point).items())
+
+    return lines
+
+
+def _tables() -> Lines:
+    from tactsim.case.yaml_reading import read_yaml
+    from tactsim.shipped import CASES
+
+    for path in sorted((CASES / "thesis").glob("*.yaml")):
+        written = read_yaml(path.read_text(encoding="utf-8")).value
+        if "rows" in written:
+            yield path.stem, str(written.get("title", ""))
+
+
+SECTIONS: dict[str, Callable[[], Lines]] = {
+    "cases": lambda: _titled("tactsim/case/"),
+    "sweeps": lambda: _titled("tactsim/sweep/"),
+    "materials": _materials,
+    "kinds": _classes("experiment"),
+    "estimators": _classes("estimator"),
+    "tables": _tables,
+}
+"""What can be listed -> its lines."""

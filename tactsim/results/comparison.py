@@ -1,0 +1,86 @@
+"""Several results in one table: a row for each, a column for every number that one of them has."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tactsim.results.result import Result
+from tactsim.units import compact_unit, conversion
+
+
+@dataclass(frozen=True)
+class Column:
+    """A number of several results in the unit that suits them; None where a result does not have it."""
+
+    name: str
+    unit: str
+    description: str
+    values: tuple[float | None, ...]
+
+    @property
+    def head(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit not in ("", "1") else self.name
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Names, status and numbers of several results."""
+
+    names: tuple[str, ...]
+    statuses: tuple[str, ...]
+    columns: tuple[Column, ...]
+
+    @property
+    def differing(self) -> tuple[Column, ...]:
+        """The columns in which the results are not all the same."""
+        return tuple(column for column in self.columns if len(set(column.values)) > 1)
+
+    def csv_text(self) -> str:
+        """A row for each result; what it does not have is empty."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(["result", "status", *(column.head for column in self.columns)])
+        for row, (name, status) in enumerate(zip(self.names, self.statuses, strict=True)):
+            writer.writerow([name, status, *("" if (v := column.values[row]) is None else repr(v) for column in self.columns)])
+        return text.getvalue()
+
+    def markdown_text(self) -> str:
+        """A row for each number, a column for each result, five digits."""
+        lines = [f"| | {' | '.join(_cell(name) for name in self.names)} |", f"|---{'|---:' * len(self.names)}|"]
+        lines.append(f"| status | {' | '.join(self.statuses)} |")
+        for column in self.columns:
+            numbers = " | ".join("" if value is None else f"{value:.5g}" for value in column.values)
+            lines.append(f"| {column.head} | {numbers} |")
+        return "\n".join(lines) + "\n"
+
+
+def compared(results: Mapping[str, Result]) -> Comparison:
+    """The numbers of results by their names, in the order in which they come."""
+    names: dict[str, tuple[str, str]] = {}
+    for result in results.values():
+        for name, quantity in result.quantities.items():
+            if isinstance(quantity.value, int | float):
+                names.setdefault(name, (quantity.unit, quantity.description))
+    columns = [_column(name, *about, results) for name, about in names.items()]
+    return Comparison(tuple(results), tuple(str(result.status) for result in results.values()), tuple(columns))
+
+
+def _column(name: str, unit: str, description: str, results: Mapping[str, Result]) -> Column:
+    quantities = [result.quantities.get(name) for result in results.values()]
+    values = [
+        float(one.value) if one is not None and one.unit == unit and isinstance(one.value, int | float) else None
+        for one in quantities
+    ]
+    sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
+    readable = compact_unit(max(sizes, default=0.0), unit)
+    factor = conversion(unit, readable)
+    return Column(name, readable, description, tuple(None if value is None else value * factor for value in values))
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")

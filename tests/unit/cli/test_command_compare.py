@@ -1,0 +1,81 @@
+"""``tactsim compare`` and ``tactsim run`` of several cases."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from tactsim.cli import main
+from tactsim.errors import InputError
+from tactsim.results import Quantity, Result, Status
+from tactsim.results.comparison import compared
+
+CASE = """\
+schema: tactsim/case/1
+experiment:
+  kind: closed_form
+  material: atrial
+  outer_radius: {radius}
+  points: 5
+  loading: {{control: force, pieces: [{{kind: jump, to: 0.1 N, duration: 1 s}}]}}
+"""
+
+
+@pytest.fixture
+def cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    monkeypatch.chdir(tmp_path)
+    for name, radius in (("small", "3 mm"), ("large", "4 mm")):
+        (tmp_path / f"{name}.yaml").write_text(CASE.format(radius=radius))
+    return ["small.yaml", "large.yaml"]
+
+
+def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", *cases, "--out", "designs"]) == 0
+    shown = capsys.readouterr().out
+    assert "comparison designs/comparison" in shown
+    rows = list(csv.DictReader(Path("designs/comparison/comparison.csv").read_text().splitlines()))
+    assert [row["result"] for row in rows] == ["small", "large"]
+    depth = [float(row["displacement [mm]"]) for row in rows]
+    assert depth[0] == pytest.approx(4 / 3 * depth[1], rel=0.2)
+    assert Path("designs/comparison/comparison.png").read_bytes().startswith(b"\x89PNG")
+    table = Path("designs/comparison/comparison.md").read_text()
+    assert table.startswith("| | small | large |")
+    assert main(["run", *cases, "--out", "designs"]) == 0, "results of tactsim give way"
+
+
+def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", *cases, "--out", "designs", "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["compare", "designs"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0].split() == ["large", "small"]
+    assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
+    assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
+    assert "largest_force" in capsys.readouterr().out
+    assert Path("table/comparison.csv").is_file()
+
+
+def test_what_cannot_be_compared_is_said(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", cases[0], "--quiet"]) == 0
+    assert main(["compare", "results/small"]) == 2
+    assert "nothing to be compared with" in capsys.readouterr().err
+    assert main(["compare", "results/small", "nowhere"]) == 5
+    assert main(["run", cases[0], f"./{cases[0]}"]) == 2
+
+
+def test_numbers_of_other_kinds_leave_gaps() -> None:
+    def result(**values: float) -> Result:
+        quantities = {name: Quantity(value, "Pa", name) for name, value in values.items()}
+        return Result(kind="pretence", status=Status.CONVERGED, reason="", quantities=quantities)
+
+    comparison = compared({"a": result(one=2e3, both=1.0), "b": result(two=5.0, both=1.0)})
+    assert {column.head: column.values for column in comparison.columns} == {
+        "one [kPa]": (2.0, None),
+        "both [Pa]": (1.0, 1.0),
+        "two [Pa]": (None, 5.0),
+    }
+    assert [column.name for column in comparison.differing] == ["one", "two"]
+    assert "| one [kPa] | 2 |  |" in comparison.markdown_text()
+    assert InputError.exit_code == 2

@@ -1,0 +1,71 @@
+"""``tactsim new``, ``list`` and ``completion``: how one begins without a checkout."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tactsim.case import SCHEMA, Case, load_case
+from tactsim.case.model import experiment_kinds
+from tactsim.case.template import template
+from tactsim.cli import main
+from tactsim.shipped import shipped_cases
+
+
+@pytest.mark.parametrize("kind", experiment_kinds())
+def test_the_written_case_is_the_example_and_every_comment_a_default(kind: str, tmp_path: Path) -> None:
+    text = template(kind)
+    place = tmp_path / "case.yaml"
+    place.write_text(text, encoding="utf-8")
+    case = load_case(place)
+    assert case.case_id == Case(schema=SCHEMA, title=case.title, experiment=experiment_kinds()[kind].example()).case_id
+    place.write_text(re.sub(r"^  #(?=\S|  )", "  ", text, flags=re.MULTILINE), encoding="utf-8")
+    assert place.read_text() != text or "defaults" not in text
+    assert load_case(place).case_id == case.case_id
+
+
+def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "film_test"]) == 0
+    assert "run it with: tactsim run film_test.yaml" in capsys.readouterr().out
+    (tmp_path / "film_test.yaml").write_text("mine")
+    assert main(["new", "film_test"]) == 5
+    assert (tmp_path / "film_test.yaml").read_text() == "mine"
+    assert "--force" in capsys.readouterr().err
+    assert main(["new", "film_test", "--force"]) == 0
+    assert (tmp_path / "film_test.yaml").read_text() != "mine"
+    assert main(["new", "film_tets", "-"]) == 2
+    assert "did you mean 'film_test'" in capsys.readouterr().err
+    assert main(["new", "film_test", "-"]) == 0
+    assert "schema: tactsim/case/1" in capsys.readouterr().out
+
+
+def test_everything_that_ships_is_listed_with_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    shown = capsys.readouterr().out
+    assert all(f"  {path.stem}" in shown for path in shipped_cases())
+    assert all(word in shown for word in ("icf_stable", "indentation", "hypotheses", "table_3_1"))
+    assert main(["list", "kinds"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(experiment_kinds())
+    assert all(len(line.split()) > 3 for line in lines)
+    assert main(["list", "knids"]) == 2
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_completion_knows_every_command(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert all(command in script for command in ("run", "new", "list", "compare", "validate", "time-limit"))
+    if shell == "bash":
+        assert subprocess.run(["bash", "-n"], input=script, text=True, check=False).returncode == 0
+
+
+def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    shown = capsys.readouterr()
+    assert "compare" in shown.out
+    assert "name one of the commands" in shown.err
