@@ -38,8 +38,12 @@ nitpick_ignore_regex = [
     ("py:.*", r"(pydantic|scipy|skfem|pint|pyvista|matplotlib|numba|zarr|xarray|aiohttp|ruamel|pymoo|argparse|yaml)\b.*"),
     ("py:.*", r"(numpy|np)\..*"),
     ("py:(class|obj)", r"(collections|concurrent|contextlib|dataclasses|enum|functools|pathlib|types|typing)\..*"),
-    ("py:(class|obj)", r"(?:[A-Z]\w*|_\w+)$"),
+    ("py:(class|obj)", r"(pydantic_core|warnings|multiprocessing|math)\..*"),
+    ("py:(class|obj|exc)", r"(?:[A-Z]\w*|_\w+|'\w+'|[\d.e+-]+|Annotated\[.*|[\w\[]*\[str)$"),
+    # Variables of types, and what is private.
+    ("py:(class|obj)", r"tactsim\..*\.(State|Now|Iterate|Function|Made|Model|Key|AnyScene|Number|_\w+|<locals>.*)$"),
 ]
+suppress_warnings = ["ref.python"]  # a word of a docstring that several classes have as an attribute
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 4
@@ -59,6 +63,7 @@ autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_use_param = False
 napoleon_preprocess_types = False
 python_maximum_signature_line_length = 100
 python_display_short_literal_types = True

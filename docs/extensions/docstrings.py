@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import builtins
 import re
 import typing
+from collections.abc import Callable
 from typing import Any
 
 from docutils import nodes
@@ -13,51 +15,86 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.ext.autodoc import _generate
 from sphinx.ext.autodoc._dynamic import _loader, _type_annotations
+from sphinx.ext.napoleon.docstring import NumpyDocstring
+from sphinx.transforms import SphinxTransform
 from sphinx.util import inspect
 
 SECTIONS = ("Parameters", "Attributes", "Returns")
 ENTRY = re.compile(r"^(?P<names>[\w, *]+?) : (?P<text>.+)$")
+NAMES = re.compile(r"^[\w.*]+(, [\w.*]+)*$")
+TYPES = {"float", "str", "int", "bool", "array", "array_like", "(float, float)", "GeneralizedKelvin", "sequence of Segment", "tuple of Harmonic"}
+TYPES |= {"TaxelLayout", "(n,) array", "(n, ...) array", "array of any shape", "array_like of float"}
+"""What stands behind the colon of an entry that has its description below it."""
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Connects what this module does to Sphinx."""
     for module in (_generate, _loader, _type_annotations, inspect):
         _without_metadata(module)
-    app.connect("autodoc-process-docstring", _spread_short_entries, priority=100)  # before napoleon reads the sections
+    app.connect("autodoc-process-docstring", _prepare, priority=100)  # before napoleon reads the sections
     app.connect("autodoc-process-signature", _drop_signature_of_models)
     app.connect("autodoc-skip-member", _skip_machinery)
+    app.add_transform(BuiltinNames)
+    NumpyDocstring._consume_inline_attribute = lambda self: ("", self._dedent(self._consume_to_end()))
     app.connect("missing-reference", _unique_name)
     return {"parallel_read_safe": True}
 
 
 def _without_metadata(module: Any) -> None:
     """Lets a module of autodoc write ``Annotated[float, ...]`` as ``float``."""
-    original = module.stringify_annotation
+    for name in ("stringify_annotation", "restify"):
+        if hasattr(module, name):
+            setattr(module, name, _plainly(getattr(module, name)))
+
+
+def _plainly(write: Callable[..., str]) -> Callable[..., str]:
+    """The function that writes a type as text, without what stands beside the type in ``Annotated``."""
 
     def plain(annotation: Any, *arguments: Any, **options: Any) -> str:
-        return str(original(typing._strip_annotations(annotation), *arguments, **options))  # type: ignore[attr-defined]
+        return write(typing._strip_annotations(annotation), *arguments, **options)  # type: ignore[attr-defined]
 
-    module.stringify_annotation = plain
+    return plain
 
 
-def _spread_short_entries(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    """Turns ``radius : of the ball in m`` into an entry with a description where nothing indented follows."""
-    section, spread = "", []
-    for number, line in enumerate(lines):
+def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Makes a docstring what napoleon and docutils read in it: sections that end, entries with descriptions, plain signs."""
+    section, in_math, prepared = "", False, []
+    for number, line in enumerate(lines):  # noqa: PLW2901
         follows = lines[number + 1] if number + 1 < len(lines) else ""
         if follows.startswith("---") and set(follows) == {"-"}:
-            section = line.strip()
+            section, line = line.strip(), line.replace("Attributes", "Parameters")  # the fields of a dataclass are both
+        elif section and line and not line.startswith((" ", "---")) and not ENTRY.match(line) and not NAMES.match(line):
+            prepared.append("")  # two blank lines end a section
+            section = ""
+        if line.strip():
+            in_math = line.strip().startswith((".. math::", "::")) or (in_math and line.startswith(" "))
         entry = ENTRY.match(line) if section in SECTIONS else None
-        is_type = follows.startswith("    ") and (lines[number].rstrip().endswith(TYPE_WORDS) or "array" in line)
-        if entry is None or is_type:
-            spread.append(line)
+        if entry is not None and not (follows.startswith("    ") and entry["text"] in TYPES):
+            prepared += [entry["names"], f"    {entry['text']}"]
         else:
-            spread += [entry["names"], f"    {entry['text']}"]
-    lines[:] = spread
+            prepared.append(line)
+        if not in_math:
+            prepared[-1] = _plain_signs(prepared[-1])
+    lines[:] = prepared
 
 
-TYPE_WORDS = ("float", "str", "int", "bool", "array", "array_like", "Harmonic", "GeneralizedKelvin", "Segment", "(float, float)")
-"""How an entry ends that names a type, with the description below it."""
+def _plain_signs(line: str) -> str:
+    """The line with signs escaped that docutils would take for marks: ``|s|``, ``*channels``."""
+    parts = re.split(r"(``.*?``|:\w+:`[^`]*`|`[^`]*`)", line)
+    return "".join(part if number % 2 else re.sub(r"(?<![\w\\])([*|])(?=\w)", r"\\\1", part) for number, part in enumerate(parts))
+
+
+class BuiltinNames(SphinxTransform):
+    """A name of Python itself is not looked for among the attributes of the package."""
+
+    default_priority = 5
+
+    def apply(self, **options: Any) -> None:
+        """Make every reference to such a name exact."""
+        for node in self.document.findall(addnodes.pending_xref):
+            if node.get("refdomain") == "py" and hasattr(builtins, node["reftarget"]):
+                for key in ("py:class", "py:module", "refspecific"):
+                    node.attributes.pop(key, None)
 
 
 def _drop_signature_of_models(
@@ -69,7 +106,7 @@ def _drop_signature_of_models(
 
 def _skip_machinery(app: Sphinx, what: str, name: str, obj: Any, skip: bool, options: Any) -> bool | None:
     """What pydantic adds to a class is not a part of the interface."""
-    return True if name.startswith("model_") else None
+    return True if name.startswith("model_") or name == "linregress" else None
 
 
 def _unique_name(app: Sphinx, env: BuildEnvironment, node: addnodes.pending_xref, content: nodes.Element) -> nodes.Node | None:
