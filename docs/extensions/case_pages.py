@@ -1,4 +1,4 @@
-"""The case format from its JSON Schema: a page for each kind of experiment, one for each extension point, one for shared parts."""
+"""The case format from its JSON Schema: a page for each experiment, one for each extension point, one for shared parts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,14 @@ POINTS = {
     "films": ("Sensor films", SensorFilm, "What `film` takes; without a `kind` it is `film`."),
     "estimators": ("Estimators", Estimator, "What `estimator` takes."),
 }
-BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤", "minItems": "at least", "maxItems": "at most"}
+BOUNDS = {
+    "exclusiveMinimum": ">",
+    "minimum": "≥",
+    "exclusiveMaximum": "<",
+    "maximum": "≤",
+    "minItems": "at least",
+    "maxItems": "at most",
+}
 OWN_SWEEP = "sweep_settings_"
 
 
@@ -119,14 +126,16 @@ def case_pages() -> dict[str, str]:
     """Every page of the case format and of the sweep format."""
     whole = case_json_schema()
     schema = Schema(whole["$defs"])
-    experiments = {kind: name for kind, name in _named(schema, Experiment)}
+    experiments = dict(_named(schema, Experiment))
     pages = {f"case/{kind}.md": page(schema.section(name, level=1)) for kind, name in experiments.items()}
     used = set(experiments.values())
     for place, (title, point, what) in POINTS.items():
         names = [name for _, name in _named(schema, point)]
         used.update(names)
         pages[f"case/{place}.md"] = page([f"# {title}", "", what, ""], *(schema.section(name) for name in names))
-    rest = sorted((name for name in schema.definitions if name not in used), key=lambda name: schema.title(name).strip("`").lower())
+    rest = sorted(
+        (name for name in schema.definitions if name not in used), key=lambda name: schema.title(name).strip("`").lower()
+    )
     heading = ["# Shared parts", "", "Parts of a case that several kinds use.", ""]
     pages["case/parts.md"] = page(heading, *(schema.section(name) for name in rest))
     pages["case/materials.md"] = _material_page()
@@ -147,8 +156,18 @@ def _named(schema: Schema, point: type) -> Iterator[tuple[str, str]]:
 
 def _material_page() -> str:
     sets = table(("name", "source"), [(f"`{name}`", first_paragraph(shipped.source)) for name, shipped in LIBRARY.items()])
-    lines = ["(case-materials)=", "# Materials", "", "What `material`, `tissue` and similar keys take: the name of a shipped set,"]
-    lines += ["`{set: NAME}` with a bulk modulus or a relaxation of its own, or a `kind` with its constants.", "", "## Shipped sets", ""]
+    lines = [
+        "(case-materials)=",
+        "# Materials",
+        "",
+        "What `material`, `tissue` and similar keys take: the name of a shipped set,",
+    ]
+    lines += [
+        "`{set: NAME}` with a bulk modulus or a relaxation of its own, or a `kind` with its constants.",
+        "",
+        "## Shipped sets",
+        "",
+    ]
     lines += sets
     for kind, cls in sorted(kinds(Material).items()):
         definition = described(cls)
@@ -160,7 +179,12 @@ def _material_page() -> str:
 def _sweep_page() -> str:
     whole = sweep_json_schema()
     schema = Schema(whole["$defs"])
-    lines = ["# Sweep files", "", "A sweep file is a case in which a distribution may stand for a value, and a section `sweep`.", ""]
+    lines = [
+        "# Sweep files",
+        "",
+        "A sweep file is a case in which a distribution may stand for a value, and a section `sweep`.",
+        "",
+    ]
     lines += ["## `sweep`", "", *schema.body(whole["properties"]["sweep"])]
     own = [name for name in schema.definitions if name.startswith((OWN_SWEEP, "varying_"))]
     for name in own:
@@ -183,10 +207,20 @@ def _alternatives(schema: Schema, definition: Fragment) -> list[str]:
 def _index(schema: Schema, whole: Fragment, experiments: dict[str, str]) -> str:
     required = whole.get("required", ())
     rows = [schema.row(key, value, key in required) for key, value in whole["properties"].items() if key != "experiment"]
-    rows.insert(2, ("`experiment`", "one of the kinds below", "required", first_paragraph(whole["properties"]["experiment"]["description"])))
-    listed = [(f"[`{kind}`]({kind}.md)", first_paragraph(schema.definitions[name].get("description"))) for kind, name in experiments.items()]
+    rows.insert(
+        2,
+        ("`experiment`", "one of the kinds below", "required", first_paragraph(whole["properties"]["experiment"]["description"])),
+    )
+    listed = [
+        (f"[`{kind}`]({kind}.md)", first_paragraph(schema.definitions[name].get("description")))
+        for kind, name in experiments.items()
+    ]
     return page(
-        ["# Case files", "", "These pages are made from the JSON Schema that `tactsim schema` prints. Where the second column is a"],
+        [
+            "# Case files",
+            "",
+            "These pages are made from the JSON Schema that `tactsim schema` prints. Where the second column is a",
+        ],
         ["unit, the value is text with any unit of that dimension, such as `1.5 mm`; a bare number is an error.", ""],
         table(HEADER, rows),
         ["## Kinds of experiment", ""],

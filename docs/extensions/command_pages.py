@@ -23,7 +23,8 @@ def command_pages() -> dict[str, str]:
         ["## Exit codes", "", "```text", *EXIT_CODES.strip().splitlines()[1:], "```"],
     )
     return {"commands/index.md": index} | {
-        f"commands/{command.NAME}.md": _command_page(command.NAME, parsers[command.NAME], command.EXAMPLES) for command in COMMANDS
+        f"commands/{command.NAME}.md": _command_page(command.NAME, parsers[command.NAME], command.EXAMPLES)
+        for command in COMMANDS
     }
 
 

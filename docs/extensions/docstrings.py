@@ -1,4 +1,4 @@
-"""Makes the docstrings of tactsim ready for autodoc: short entries of sections, types without pydantic's machinery, short names."""
+"""Makes the docstrings ready for autodoc: short entries of sections, types without the machinery of pydantic, short names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,18 @@ from sphinx.util import inspect
 SECTIONS = ("Parameters", "Attributes", "Returns")
 ENTRY = re.compile(r"^(?P<names>[\w, *]+?) : (?P<text>.+)$")
 NAMES = re.compile(r"^[\w.*]+(, [\w.*]+)*$")
-TYPES = {"float", "str", "int", "bool", "array", "array_like", "(float, float)", "GeneralizedKelvin", "sequence of Segment", "tuple of Harmonic"}
+TYPES = {
+    "float",
+    "str",
+    "int",
+    "bool",
+    "array",
+    "array_like",
+    "(float, float)",
+    "GeneralizedKelvin",
+    "sequence of Segment",
+    "tuple of Harmonic",
+}
 TYPES |= {"TaxelLayout", "(n,) array", "(n, ...) array", "array of any shape", "array_like of float"}
 """What stands behind the colon of an entry that has its description below it."""
 
@@ -59,7 +70,7 @@ def _plainly(write: Callable[..., str]) -> Callable[..., str]:
 def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
     """Makes a docstring what napoleon and docutils read in it: sections that end, entries with descriptions, plain signs."""
     section, in_math, prepared = "", False, []
-    for number, line in enumerate(lines):  # noqa: PLW2901
+    for number, line in enumerate(lines):
         follows = lines[number + 1] if number + 1 < len(lines) else ""
         if follows.startswith("---") and set(follows) == {"-"}:
             section, line = line.strip(), line.replace("Attributes", "Parameters")  # the fields of a dataclass are both

@@ -16,7 +16,11 @@ def module_pages() -> dict[str, str]:
     """The page of each room, from the lowest to the highest as the layers stand, and the page that lists them."""
     rooms = rooms_upwards()
     pages = {f"modules/{room}.rst": _room_page(room) for room in rooms}
-    lines = [_title("Modules"), "One page for each room; a room uses those before it in this list, see :doc:`/building/house`.", ""]
+    lines = [
+        _title("Modules"),
+        "One page for each room; a room uses those before it in this list, see :doc:`/building/house`.",
+        "",
+    ]
     lines += [".. list-table::", "", *(f"   * - :doc:`{room}`\n     - {_summary(room)}" for room in rooms), ""]
     lines += [".. toctree::", "   :hidden:", "", *(f"   {room}" for room in rooms)]
     return pages | {"modules/index.rst": "\n".join(lines) + "\n"}

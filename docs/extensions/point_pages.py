@@ -33,12 +33,26 @@ def point_pages() -> dict[str, str]:
     for name in ORDER:
         point = getattr(interfaces, name)
         asked = sorted(point.__abstractmethods__)
-        lines += [f"## {name}", "", first_paragraph(point.__doc__), "", f"Interface: {{py:class}}`tactsim.interfaces.{name}`.", ""]
+        lines += [
+            f"## {name}",
+            "",
+            first_paragraph(point.__doc__),
+            "",
+            f"Interface: {{py:class}}`tactsim.interfaces.{name}`.",
+            "",
+        ]
         lines += ["A subclass must define:", "", *table(("name", "what it is"), [_asked(point, member) for member in asked])]
-        lines += ["Registered:", "", *table(("kind", "class", "what it is"), [_kind(*item) for item in sorted(kinds(point).items())])]
+        lines += [
+            "Registered:",
+            "",
+            *table(("kind", "class", "what it is"), [_kind(*item) for item in sorted(kinds(point).items())]),
+        ]
     for what in ("quantity", "drawing"):
         lines += [f"## @{what}", "", first_paragraph(getattr(interfaces, what).__doc__), "", "Registered:", ""]
-        rows = [(f"`{name}`", _unit(marked), first_paragraph(marked.function.__doc__)) for name, marked in sorted(marked_functions("tactsim.validation.quantities", what).items())]
+        rows = [
+            (f"`{name}`", _unit(marked), first_paragraph(marked.function.__doc__))
+            for name, marked in sorted(marked_functions("tactsim.validation.quantities", what).items())
+        ]
         lines += table(("name", "unit", "what it is"), rows)
     return {"points.md": page(lines)}
 

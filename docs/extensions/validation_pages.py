@@ -14,7 +14,7 @@ from tactsim.validation.loading import load_tables
 from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter, Row
 
 ROOT = Path(__file__).parents[2]
-OUTPUT = ROOT / "docs" / "validation" / "records.json"
+OUTPUT = ROOT / "docs" / "verification" / "thesis.json"
 STATES = ("reproduced", "after an erratum", "outside", "finding", "assumption")
 
 
@@ -24,14 +24,20 @@ def validation_pages() -> dict[str, str]:
     stored = json.loads(OUTPUT.read_text(encoding="utf-8"))
     counts = [(found.chapter, name, found.title, Counter(_class_of(row) for row in found.rows)) for name, found in tables.items()]
     whole: Counter[str] = sum((count for *_, count in counts), Counter())
-    rows = [(f"[{name}](#thesis-{name.replace('_', '-')})", title, *(str(count[s] or "") for s in STATES)) for _, name, title, count in counts]
+    rows = [
+        (f"[{name}](#thesis-{name.replace('_', '-')})", title, *(str(count[s] or "") for s in STATES))
+        for _, name, title, count in counts
+    ]
     lines = [*table(("table", "what it holds", *STATES), [*rows, ("all", "", *(str(whole[state]) for state in STATES))])]
-    lines += ["The column *found* holds what this command computed with tactsim " + stored["tactsim"] + ":", "", "```text", stored["command"], "```", ""]
-    lines += ["A table that rests on simulations was not computed anew for this page; its recorded states stand alone.", ""]
+    missing = [f"`{name}`" for name in tables if name not in stored["tables"]]
+    lines += [f"The column *found* holds what `tactsim validate` computed with tactsim {stored['tactsim']}."]
+    lines += [f"Not computed anew for this page, as their simulations take long: {', '.join(missing)}.", ""] if missing else [""]
     for name, found in tables.items():
         computed = stored["tables"].get(name, {})
         lines += [f"(thesis-{name.replace('_', '-')})=", f"## {found.title}", "", f"`{name}`, {found.source}.", ""]
-        lines += table(("number", "place", "printed", "found", "recorded state", "reason"), [_cells(row, computed) for row in found.rows])
+        lines += table(
+            ("number", "place", "printed", "found", "recorded state", "reason"), [_cells(row, computed) for row in found.rows]
+        )
     return {"validation.inc": page(lines)}
 
 
@@ -57,6 +63,12 @@ def _state(row: Row) -> tuple[str, str]:
     if isinstance(state, Assumption):
         return "assumption", state.assumption
     allowed = row.tolerance
-    width = "" if allowed is None else f" ± {allowed.relative:.2g} of it" if allowed.relative is not None else f" ± {allowed.absolute}"
+    width = (
+        ""
+        if allowed is None
+        else f" ± {allowed.relative:.2g} of it"
+        if allowed.relative is not None
+        else f" ± {allowed.absolute}"
+    )
     after = f" after {state.reproduced_after}" if isinstance(state, ReproducedAfter) else ""
     return f"reproduced{after},{width}", allowed.reason if allowed else ""

@@ -14,8 +14,14 @@ HEADER = ("check", "reference", "mesh", "error", "tolerance", "order (theory)")
 KINDS = {
     "exact": ("Exact solutions", "Closed forms and manufactured solutions, evaluated to round-off."),
     "published": ("Published numbers", "Numbers printed by others, or computed by another program."),
-    "invariance": ("Identities", "What must hold whatever the solution is: balance, symmetry, round-off between two forms of one formula."),
-    "convergence": ("Orders of convergence", "Fitted over a ladder of meshes or steps; the style of this project demands theory within 0.1."),
+    "invariance": (
+        "Identities",
+        "What must hold whatever the solution is: balance, symmetry, round-off between two forms of one formula.",
+    ),
+    "convergence": (
+        "Orders of convergence",
+        "Fitted over a ladder of meshes or steps; the style of this project demands theory within 0.1.",
+    ),
 }
 
 

@@ -77,7 +77,7 @@ def exact_rows():
 
 
 @pytest.mark.parametrize(("beta", "kappa", "axis"), exact_rows())
-def test_half_space_table(beta, kappa, axis):
+def test_half_space_table(beta, kappa, axis, verification_record):
     """Mutants: the printed formula of the thesis, and the first term of the rise in the ratio."""
     punch = solve_annular_punch(beta)
 
@@ -87,6 +87,12 @@ def test_half_space_table(beta, kappa, axis):
 
     check(punch.force_factor, punch.rise_factor)
     check(force_factor(beta), rise_factor(beta))
+    known = {"reference": "Chebyshev collocation, converged to 1e-12", "kind": "published", "mesh": "integral equation"}
+    verification_record(
+        "annulus on the half-space, force factor", punch.force_factor, kappa, tolerance=rounding(10) / kappa, **known
+    )
+    rise = punch.rise_factor
+    verification_record("annulus on the half-space, rise", rise, 1 - axis, tolerance=rounding(8) / (1 - axis), **known)
     assert_kills(
         check,
         thesis=(force_factor(beta, "thesis_4_2_21"), punch.rise_factor),
