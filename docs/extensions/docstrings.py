@@ -62,9 +62,24 @@ def _plainly(write: Callable[..., str]) -> Callable[..., str]:
     """The function that writes a type as text, without what stands beside the type in ``Annotated``."""
 
     def plain(annotation: Any, *arguments: Any, **options: Any) -> str:
-        return write(typing._strip_annotations(annotation), *arguments, **options)  # type: ignore[attr-defined]
+        known = isinstance(annotation, str)
+        bare = _first_of_annotated(annotation) if known else typing._strip_annotations(annotation)  # type: ignore[attr-defined]
+        return write(bare, *arguments, **options)
 
     return plain
+
+
+def _first_of_annotated(text: str) -> str:
+    """The text of a type with each ``Annotated[X, ...]`` in it as ``X``."""
+    while (start := text.find("Annotated[")) >= 0:
+        inside, depth, comma = start + len("Annotated["), 1, 0
+        end = inside
+        while depth:
+            depth += {"[": 1, "(": 1, "]": -1, ")": -1}.get(text[end], 0)
+            comma = end if text[end] == "," and depth == 1 and not comma else comma
+            end += 1
+        text = f"{text[:start]}{text[inside : comma or end - 1]}{text[end:]}"
+    return text
 
 
 def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:

@@ -49,8 +49,16 @@ def _class_of(row: Row) -> str:
 
 def _cells(row: Row, computed: dict[str, Any]) -> tuple[str, ...]:
     value = computed.get(row.id)
-    found = "" if value is None else format_quantity(value, row.unit)
+    found = "" if value is None else _in_printed_unit(value, row)
     return row.quantity, row.place, "" if row.printed is None else str(row.printed), found, *_state(row)
+
+
+def _in_printed_unit(value: float, row: Row) -> str:
+    """The found number in the unit in which the number is printed, if it is."""
+    if not isinstance(row.printed, str) or not row.expected:
+        return format_quantity(value, row.unit)
+    number, _, unit = row.printed.partition(" ")
+    return f"{float(number) * value / row.expected:.5g} {unit}"
 
 
 def _state(row: Row) -> tuple[str, str]:
@@ -63,12 +71,11 @@ def _state(row: Row) -> tuple[str, str]:
     if isinstance(state, Assumption):
         return "assumption", state.assumption
     allowed = row.tolerance
-    width = (
-        ""
-        if allowed is None
-        else f" ± {allowed.relative:.2g} of it"
-        if allowed.relative is not None
-        else f" ± {allowed.absolute}"
-    )
+    if allowed is None:
+        width = ""
+    elif allowed.relative is not None:
+        width = f" within {100 * allowed.relative:.2g} %"
+    else:
+        width = f" within {allowed.absolute}"
     after = f" after {state.reproduced_after}" if isinstance(state, ReproducedAfter) else ""
-    return f"reproduced{after},{width}", allowed.reason if allowed else ""
+    return f"reproduced{after}{width}", allowed.reason if allowed else ""

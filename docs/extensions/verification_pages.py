@@ -10,7 +10,8 @@ from typing import Any
 from markdown import page, table
 
 RECORDS = Path(__file__).parents[1] / "verification" / "records.json"
-HEADER = ("check", "reference", "mesh", "error", "tolerance", "order (theory)")
+HEADER = ("check", "reference", "mesh", "error", "tolerance", "test")
+ORDERS = ("check", "reference", "mesh", "order", "theory", "tolerance", "test")
 KINDS = {
     "exact": ("Exact solutions", "Closed forms and manufactured solutions, evaluated to round-off."),
     "published": ("Published numbers", "Numbers printed by others, or computed by another program."),
@@ -32,14 +33,24 @@ def verification_pages() -> dict[str, str]:
     lines = [f"{len(rows)} checks, recorded with tactsim {content['tactsim']} by", "", "```text", content["command"], "```", ""]
     for kind, found in groupby(rows, key=lambda row: row["kind"]):
         title, what = KINDS[kind]
-        lines += [f"## {title}", "", what, ""]
-        for module, checks in groupby(found, key=lambda row: row["test"].partition("::")[0]):
-            lines += [f"### `{module.removeprefix('tests/verification/')}`", "", *table(HEADER, [_cells(row) for row in checks])]
+        header, cells = (ORDERS, _order_cells) if kind == "convergence" else (HEADER, _error_cells)
+        lines += [f"## {title}", "", what, "", *table(header, [cells(row) for row in found])]
     return {"verification.inc": page(lines)}
 
 
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    order = "" if row["order"] is None else f"{row['order']:.2f} ({row['theory']:g})"
-    error = "" if row["error"] is None else f"{row['error']:.1e}"
-    tolerance = "" if row["tolerance"] is None else f"{row['tolerance']:.0e}"
-    return row["check"], row["reference"], row["mesh"], error, tolerance, order
+def _error_cells(row: dict[str, Any]) -> tuple[str, ...]:
+    return row["check"], row["reference"], row["mesh"], _short(row["error"]), _short(row["tolerance"]), _test(row)
+
+
+def _order_cells(row: dict[str, Any]) -> tuple[str, ...]:
+    order, theory, tolerance = f"{row['order']:.2f}", f"{row['theory']:g}", f"{row['tolerance']:g}"
+    return row["check"], row["reference"], row["mesh"], order, theory, tolerance, _test(row)
+
+
+def _short(number: float) -> str:
+    """A small number of two digits that no line break parts."""
+    return f"{number:.1e}".replace("e-0", "e-").replace("-", "\N{NON-BREAKING HYPHEN}")
+
+
+def _test(row: dict[str, Any]) -> str:
+    return f"`{Path(row['test'].partition('::')[0]).stem}`"
