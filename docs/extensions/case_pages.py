@@ -8,13 +8,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from markdown import first_paragraph, page, table, toctree
+from markdown_parts import first_paragraph, page, table, toctree
 
 from tactsim.case.json_schema import case_json_schema, described
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
 from tactsim.interfaces import ContactLaw, Estimator, Experiment, Inclusion, Material, RigidBody, SensorFilm
 from tactsim.materials.library import LIBRARY
 from tactsim.registry import kinds
+from tactsim.units import FrozenModel
 
 Fragment = dict[str, Any]
 HEADER = ("key", "type or unit", "default", "meaning")
@@ -65,16 +66,18 @@ class Schema:
     def body(self, definition: Fragment) -> list[str]:
         """What a definition is, and a row for each key."""
         required = definition.get("required", ())
-        rows = [self.row(key, value, key in required) for key, value in definition.get("properties", {}).items()]
+        model = _model_of(definition)
+        rows = [self.row(key, value, key in required, model) for key, value in definition.get("properties", {}).items()]
         lines = [first_paragraph(definition.get("description")), ""]
         return [*lines, *table(HEADER, rows)] if rows else [*lines, "No keys.", ""]
 
-    def row(self, key: str, value: Fragment, required: bool) -> tuple[str, str, str, str]:
-        """Key, type, default and meaning."""
+    def row(self, key: str, value: Fragment, required: bool, model: Any = None) -> tuple[str, str, str, str]:
+        """Key, type, default and meaning; the schema has no bounds of quantities, which are text there: those of the model."""
         default = "required" if required and "default" not in value else self.default(value)
         if "const" in value:
             default = "required" if required else f"`{value['const']}`"
-        return f"`{key}`", self.type_of(value), default, first_paragraph(value.get("description"))
+        bounds = _bounds(model, key) if "unit" in value else ""
+        return f"`{key}`", self.type_of(value) + bounds, default, first_paragraph(value.get("description"))
 
     def default(self, value: Fragment) -> str:
         """The default as a case file would write it; of a part with keys of its own, those that the part lists."""
@@ -120,6 +123,27 @@ class Schema:
         if kind == "object" and isinstance(value.get("additionalProperties"), dict):
             return f"map of name to {self.type_of(value['additionalProperties'])}"
         return f"{kind}, {bounds}" if bounds else str(kind)
+
+
+def _model_of(definition: Fragment) -> Any:
+    """The class that a definition describes, told by its name and keys; None if several are."""
+    keys = set(definition.get("properties", ()))
+    found = [cls for cls in _models(FrozenModel) if cls.__name__ == definition.get("title") and keys <= set(cls.model_fields)]
+    return found[0] if len(found) == 1 else None
+
+
+def _models(base: Any) -> Iterator[Any]:
+    for cls in base.__subclasses__():
+        yield cls
+        yield from _models(cls)
+
+
+def _bounds(model: Any, key: str) -> str:
+    """Bounds of a field in words, in SI."""
+    metadata = model.model_fields[key].metadata if model is not None else ()
+    signs = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
+    found = [f", {sign} {getattr(one, name):g}" for one in metadata for name, sign in signs.items() if hasattr(one, name)]
+    return "".join(found)
 
 
 def case_pages() -> dict[str, str]:
@@ -221,7 +245,11 @@ def _index(schema: Schema, whole: Fragment, experiments: dict[str, str]) -> str:
             "",
             "These pages are made from the JSON Schema that `tactsim schema` prints. Where the second column is a",
         ],
-        ["unit, the value is text with any unit of that dimension, such as `1.5 mm`; a bare number is an error.", ""],
+        [
+            "unit, the value is text with any unit of that dimension, such as `1.5 mm`; a bare number is an error. Bounds, and bare",
+            "numbers among the defaults, are in that unit.",
+            "",
+        ],
         table(HEADER, rows),
         ["## Kinds of experiment", ""],
         table(("kind", "what it computes"), listed),

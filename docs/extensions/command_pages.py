@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from markdown import page, table, toctree
+from markdown_parts import page, table, toctree
 
 from tactsim.cli import entry
 from tactsim.cli.entry import COMMANDS, EXIT_CODES

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from markdown import first_paragraph, page, table
+from markdown_parts import first_paragraph, page, table
 
 from tactsim import interfaces
 from tactsim.kind import Kind

@@ -7,7 +7,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from markdown import page, table
+from markdown_parts import page, table
 
 from tactsim.units import format_quantity
 from tactsim.validation.loading import load_tables

@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from markdown import page, table
+from markdown_parts import page, table
 
 RECORDS = Path(__file__).parents[1] / "verification" / "records.json"
 HEADER = ("check", "reference", "mesh", "error", "tolerance", "test")
