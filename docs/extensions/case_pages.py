@@ -246,8 +246,8 @@ def _index(schema: Schema, whole: Fragment, experiments: dict[str, str]) -> str:
             "These pages are made from the JSON Schema that `tactsim schema` prints. Where the second column is a",
         ],
         [
-            "unit, the value is text with any unit of that dimension, such as `1.5 mm`; a bare number is an error. Bounds, and bare",
-            "numbers among the defaults, are in that unit.",
+            "unit, the value is text with any unit of that dimension, such as `1.5 mm`; a bare number is an error.",
+            "Bounds, and bare numbers among the defaults, are in that unit.",
             "",
         ],
         table(HEADER, rows),
