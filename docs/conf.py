@@ -30,7 +30,7 @@ extensions = [
     "docstrings",
     "generated_pages",
 ]
-exclude_patterns = ["_build", "extensions", "inventories", "gallery/*.md"]
+exclude_patterns = ["_build", "extensions", "inventories", "gallery/*"]
 default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [

@@ -49,7 +49,7 @@ def _order_cells(row: dict[str, Any]) -> tuple[str, ...]:
 
 def _short(number: float) -> str:
     """A small number of two digits that no line break parts."""
-    return f"{number:.1e}".replace("e-0", "e-").replace("-", "\N{NON-BREAKING HYPHEN}")
+    return "0" if number == 0 else f"{number:.1e}".replace("e-0", "e-").replace("-", "\N{NON-BREAKING HYPHEN}")
 
 
 def _test(row: dict[str, Any]) -> str:
