@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
+from inspect import cleandoc
 
-from markdown_parts import page, table, toctree
+from markdown_parts import of_docstring, page, table, toctree
 
 from tactsim.cli import entry
 from tactsim.cli.entry import COMMANDS, EXIT_CODES
@@ -32,7 +34,7 @@ def _command_page(name: str, parser: argparse.ArgumentParser, examples: str) -> 
     usage = parser.format_usage().removeprefix("usage: ").strip()
     positional = [action for action in parser._actions if not action.option_strings]
     options = [action for action in parser._actions if action.option_strings]
-    lines = [f"# tactsim {name}", "", "```text", usage, "```", "", "```text", (parser.description or "").strip(), "```", ""]
+    lines = [f"# tactsim {name}", "", *_prose(parser.description or ""), "```text", usage, "```", ""]
     for title, actions in (("Arguments", positional), ("Options", options)):
         if actions:
             lines += [f"## {title}", "", *table(("name", "meaning"), [_row(action, parser) for action in actions])]
@@ -40,8 +42,22 @@ def _command_page(name: str, parser: argparse.ArgumentParser, examples: str) -> 
     return page(lines)
 
 
+def _prose(text: str) -> list[str]:
+    """Paragraphs of a text for the terminal; what is indented there stays as it is."""
+    lines = []
+    for paragraph in text.strip("\n").split("\n\n"):
+        shown = paragraph.startswith(" ")
+        lines += ["```text", cleandoc(paragraph), "```", ""] if shown else [_with_options(paragraph), ""]
+    return lines
+
+
+def _with_options(text: str) -> str:
+    """A sentence in which options are set as code."""
+    return of_docstring(re.sub(r"(?<![\w`-])(--[a-z][a-z-]*)", r"`\1`", text))
+
+
 def _row(action: argparse.Action, parser: argparse.ArgumentParser) -> tuple[str, str]:
     values = parser._get_formatter()._format_args(action, (action.metavar or action.dest).upper()) if action.nargs != 0 else ""  # type: ignore[union-attr]
     names = ", ".join(f"`{name}{f' {values}' if values else ''}`" for name in action.option_strings)
     help_text = (action.help or "") % {"default": action.default, "prog": parser.prog}
-    return names or f"`{values}`", help_text
+    return names or f"`{values}`", _with_options(help_text)
