@@ -28,6 +28,7 @@ extensions = [
     "sphinx_design",
     "sphinx_copybutton",
     "docstrings",
+    "doi_links",
     "generated_pages",
 ]
 exclude_patterns = ["_build", "extensions", "inventories", "gallery/*"]
@@ -92,4 +93,5 @@ html_theme_options = {
 }
 mathjax_path = "tex-svg.js"
 mathjax_file = Path(distribution("sphinx-mathjax-offline").locate_file("sphinx-mathjax-offline/static/mathjax/tex-svg.js"))
-html_static_path = [str(mathjax_file)]
+html_static_path = ["_static", str(mathjax_file)]
+html_css_files = ["wide.css"]

@@ -58,6 +58,19 @@ def test_short_entries_of_a_docstring_become_descriptions(made):
     assert lines[-3:] == ["", "", "Source: Hertz 1881."]
 
 
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        ("10.1016/0045-7825(85)90033-7.", "10.1016/0045-7825(85)90033-7"),
+        ("10.1137/060671061).", "10.1137/060671061"),
+        ("10.1098/rsta.1948.0024", "10.1098/rsta.1948.0024"),
+    ],
+)
+def test_an_identifier_ends_before_the_sentence_does(made, found, expected):
+    pytest.importorskip("sphinx", reason="the documentation's packages are not installed")
+    assert made("doi_links").identifier(found) == expected
+
+
 SITE = {
     "index.html": '<a href="other.html#place">there</a> <a href="https://example.org/">outside</a>',
     "other.html": '<p id="place"></p><img src="_static/a.png">',
