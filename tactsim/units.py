@@ -10,18 +10,19 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
 
 from tactsim.errors import InvalidQuantity, shown
+from tactsim.unit_definitions import PREFIXED, PREFIXES, UNPREFIXED
 
 
 class FrozenModel(BaseModel):
     """A closed, immutable value: unknown keys, NaN and later changes are errors."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 _QUANTITY = re.compile(
@@ -34,22 +35,30 @@ _FACTOR = rf"(?:{_WORD})(?:(?:\*\*|\^)-?\d)?|[%°]"
 _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
 
 
-CUSTOMARY = """
-    meter micron angstrom inch foot thou gram pound metric_ton second minute hour day ampere kelvin degree_Celsius mole liter
-    newton dyne force_gram force_kilogram force_pound pascal bar standard_atmosphere torr meter_Hg meter_H2O
-    pound_force_per_square_inch joule erg calorie electron_volt watt volt ohm siemens farad coulomb henry tesla hertz
-    radian degree percent dimensionless poise stokes
-"""
-"""Units, as pint names them, that a case may use with any SI prefix: those of SI and those that laboratories and medicine print.
-Any other one that pint knows, from the furlong to the parsec, is a slip."""
 FEW_UNITS = "m, mm, inch, g, s, min, h, N, kgf, dyn, Pa, kPa, bar, mmHg, cmH2O, psi, V, A, ohm, S, F, J, eV, Hz, deg, rad, %"
 
 
-@lru_cache(maxsize=1)
+@cache
 def _registry() -> Any:
     import pint
 
-    return pint.UnitRegistry(cache_folder=None)
+    return pint.UnitRegistry([*PREFIXES, *PREFIXED, *UNPREFIXED], cache_folder=None)
+
+
+@cache
+def _words() -> frozenset[str]:
+    """Every spelling of a customary unit, with its prefixes."""
+    prefixes, prefixed, unprefixed = (
+        {name.removesuffix("-") for line in lines for name in _names(line)} for lines in (PREFIXES, PREFIXED, UNPREFIXED)
+    )
+    single = {*unprefixed, *prefixed, *(prefix + name for prefix in prefixes for name in prefixed)}
+    return frozenset({*single, *(f"{name}s" for name in single)})
+
+
+def _names(definition: str) -> list[str]:
+    """The names in a definition such as ``meter = [length] = m = metre``."""
+    name, _, *others = (part.strip() for part in definition.split("="))
+    return [name, *others]
 
 
 def check_increasing(**lists: Sequence[float]) -> None:
@@ -76,10 +85,11 @@ def _factor_to(unit: str, given_unit: str) -> float:
 
 @lru_cache(maxsize=1024)
 def _unusual_unit(given_unit: str) -> str | None:
-    """The first word of a unit that is a unit, but none that tissue is measured in."""
+    """The first word of a unit that pint reads, but none that tissue is measured in."""
+    import pint
+
     for word in re.findall(_WORD, given_unit):
-        readings = _registry().parse_unit_name(word)
-        if readings and (readings[0][1] not in CUSTOMARY.split() or readings[0][0].endswith("bi")):  # as in kibi
+        if word not in _words() and pint.UnitRegistry(cache_folder=None).parse_unit_name(word):
             return str(word)
     return None
 

@@ -13,7 +13,8 @@ from block_problem import read
 import tactsim
 from tactsim.fem.body import Body
 from tactsim.fem.linear import solved
-from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.newton import Problem
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 from tactsim.fem.space import TaylorHood

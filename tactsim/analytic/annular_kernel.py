@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import ellipkm1, j0
+import scipy
 
 from tactsim.analytic.layer_kernel import Layer
 
@@ -99,8 +99,8 @@ class LogarithmicRing:
         slenderness = 1 / layer.thickness
         x, weights = wave_quadrature(slenderness * max(1.0, float(r.max(initial=0))))
         amplitudes = -slenderness * weights * layer.deficit(x)
-        waves = amplitudes[:, None] * j0(slenderness * np.outer(x, self.radii)) * (self.weight * self.radii)
-        return j0(slenderness * np.outer(r, x)) @ waves
+        waves = amplitudes[:, None] * scipy.special.j0(slenderness * np.outer(x, self.radii)) * (self.weight * self.radii)
+        return scipy.special.j0(slenderness * np.outer(r, x)) @ waves
 
 
 def split_kernel(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -117,8 +117,8 @@ def split_kernel(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     distance = np.maximum(np.abs(delta), CLOSEST)
     factor = 2 / (1 + np.exp(delta))
-    singular = -2 / np.pi * ellipkm1(np.cosh(distance / 2) ** -2)
-    return factor * singular, factor * (ellipkm1(np.tanh(distance / 2) ** 2) - singular * np.log(distance))
+    singular = -2 / np.pi * scipy.special.ellipkm1(np.cosh(distance / 2) ** -2)
+    return factor * singular, factor * (scipy.special.ellipkm1(np.tanh(distance / 2) ** 2) - singular * np.log(distance))
 
 
 def wave_quadrature(frequency: float) -> tuple[np.ndarray, np.ndarray]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import chebval
 from numpy.typing import ArrayLike
-from scipy.fft import dct
 
 from tactsim.analytic.allowed_range import checked
 from tactsim.analytic.annular_kernel import LogarithmicRing
@@ -125,7 +125,7 @@ class AnnularPunch:
 
     def _ring_pressure(self, r: np.ndarray) -> np.ndarray:
         outer, inner = -np.log(r), np.log(r / self._hole)
-        coefficients = dct(self.density) / self.terms
+        coefficients = scipy.fft.dct(self.density) / self.terms
         coefficients[0] /= 2
         position = (inner - outer) / (inner + outer)
         return chebval(position, coefficients) / (r * np.sqrt(outer * inner))

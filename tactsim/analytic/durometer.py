@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.optimize import brentq
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -101,4 +101,4 @@ def hertz_reading(youngs_modulus: float, scale: DurometerScale, radius: float) -
 
     if surplus(scale.travel) < 0:
         return None
-    return float(scale.reading(brentq(surplus, 0.0, scale.travel, xtol=1e-12 * scale.travel)))
+    return float(scale.reading(scipy.optimize.brentq(surplus, 0.0, scale.travel, xtol=1e-12 * scale.travel)))

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
@@ -185,7 +185,7 @@ def root_offset(constant: float, differences: Array, weights: Array, bounds: tup
     end = math.log(high / low)
     if at_logarithm(end) <= 0:
         return high
-    logarithm = brentq(at_logarithm, 0.0, end, xtol=1e-6, maxiter=1000)
+    logarithm = scipy.optimize.brentq(at_logarithm, 0.0, end, xtol=1e-6, maxiter=1000)
     offset = low * math.exp(logarithm)
     for _ in range(3):
         terms = weights / (differences - offset)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.quasi_linear import quasi_linear
@@ -25,11 +25,11 @@ class ProbeCurve:
     force: Array
     contact_height: Array
     switches: Array
-    _interpolated: PchipInterpolator = field(init=False, repr=False)
+    _interpolated: scipy.interpolate.PchipInterpolator = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         columns = np.column_stack([self.force, self.contact_height, self.switches])
-        object.__setattr__(self, "_interpolated", PchipInterpolator(self.depth, columns, extrapolate=False))
+        object.__setattr__(self, "_interpolated", scipy.interpolate.PchipInterpolator(self.depth, columns, extrapolate=False))
 
     def at(self, depth: Array) -> tuple[Array, Array, Array]:
         """Force (n,), contact height (n,) and switches (n, count) at depths (n,) in m.

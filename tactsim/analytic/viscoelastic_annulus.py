@@ -14,7 +14,6 @@ from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.histories import History
 from tactsim.analytic.interconversion import maxwell_of
 from tactsim.analytic.layer_kernel import Base
-from tactsim.analytic.response import response
 from tactsim.errors import InvalidQuantity
 
 HALVINGS = 60
@@ -94,6 +93,8 @@ class ViscoelasticAnnulus:
         InvalidQuantity
             If a time is not finite.
         """
+        from tactsim.analytic.response import response  # compiled
+
         return response(self.shear_compliance, force_history, times) / self.length
 
     def force(self, displacement_history: History, times: ArrayLike) -> np.ndarray:
@@ -106,6 +107,8 @@ class ViscoelasticAnnulus:
         InvalidQuantity
             If a time is not finite, or the compliance has no relaxation modulus in the range of floats.
         """
+        from tactsim.analytic.response import response
+
         return self.length * response(maxwell_of(self.shear_compliance), displacement_history, times)
 
     def creep_displacement(self, force: ArrayLike, times: ArrayLike) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from tactsim.case.field_docstrings import SchemaWithDescriptions
 from tactsim.case.model import any_experiment, case_class
 from tactsim.units import format_quantity
 
@@ -21,7 +22,7 @@ def case_json_schema() -> dict[str, Any]:
 
 def described(model: type[BaseModel]) -> dict[str, Any]:
     """JSON Schema of a model: quantities as text, in the words of draft 7, members of unions told apart by their keys."""
-    schema = _readable(model.model_json_schema(by_alias=True, mode="validation"))
+    schema = _readable(model.model_json_schema(by_alias=True, mode="validation", schema_generator=SchemaWithDescriptions))
     for key, reference in sorted(_told_apart(schema)):
         definition = schema["$defs"][reference.rpartition("/")[2]]
         definition["required"] = list(dict.fromkeys([key, *definition.get("required", ())]))

@@ -11,11 +11,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from tactsim.case.explaining import as_written, problems_of
-from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_kinds
+from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class, experiment_kinds
 from tactsim.case.overrides import apply_override
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
-from tactsim.errors import CaseError, InputError, suggestion
+from tactsim.errors import CaseError, InputError, UnknownName, suggestion
 from tactsim.outside.files import LIMITS, TooLarge, opened
 from tactsim.outside.text import one_line
 
@@ -102,11 +102,9 @@ def validated_case(document: Document, place: Place) -> Case:
         With one line for every fault.
     """
     _check_version(document, place)
+    problems = _kind_problems(document)
     experiment = document.value.get("experiment")
-    kind = experiment.get("kind") if isinstance(experiment, dict) else None
-    known = experiment_kinds()
-    problems = _kind_problems(document, known)
-    model = case_class(Any if problems else known[str(kind)] if kind else any_experiment())
+    model = case_class(Any if problems else any_experiment() if experiment is None else experiment_class(experiment["kind"]))
     try:
         # Strict JSON: a list may become a tuple, but neither true nor "3" becomes a number.
         context = {"units": "required", "folder": document.folder}
@@ -133,23 +131,30 @@ def _check_version(document: Document, place: Place) -> None:
     raise case_error([Problem(("schema",), document.line(("schema",)), message)], place)
 
 
-def _kind_problems(document: Document, known: dict[str, Any]) -> list[Problem]:
-    choices = f"choices: {', '.join(sorted(known))}"
-    experiment = document.value.get("experiment")
+def _kind_problems(document: Document) -> list[Problem]:
+    """What is wrong with the kind of the experiment; the modules of the other kinds are loaded only to list them."""
     if "experiment" not in document.value:
         return []
+    experiment = document.value["experiment"]
     path: KeyPath = ("experiment",)
-    kind = experiment.get("kind") if isinstance(experiment, dict) else None
-    if isinstance(kind, str) and kind in known:
-        return []
     if not isinstance(experiment, dict):
-        message = f"{as_written(experiment)} is not a mapping with a 'kind'; {choices}"
+        message = f"{as_written(experiment)} is not a mapping with a 'kind'; {_choices()}"
     elif "kind" not in experiment:
-        path, message = (*path, "kind"), f"missing; {choices}"
+        path, message = (*path, "kind"), f"missing; {_choices()}"
     else:
-        path = (*path, "kind")
-        message = f"unknown kind {as_written(kind)}{suggestion(str(kind), known)}; {choices}"
+        kind = experiment["kind"]
+        try:
+            if isinstance(kind, str) and experiment_class(kind):
+                return []
+            unknown = ""
+        except UnknownName:
+            unknown = suggestion(kind, experiment_kinds())
+        path, message = (*path, "kind"), f"unknown kind {as_written(kind)}{unknown}; {_choices()}"
     return [Problem(path, document.line(path), message)]
+
+
+def _choices() -> str:
+    return f"choices: {', '.join(experiment_kinds())}"
 
 
 def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializeAsAny, create_model
 
 from tactsim.interfaces import Experiment
-from tactsim.registry import Registered, kinds
+from tactsim.registry import Registered, kind_class, kinds
 from tactsim.units import FrozenModel
 
 SCHEMA = "tactsim/case/1"
@@ -54,12 +54,22 @@ def experiment_kinds() -> dict[str, type[Experiment]]:
     return kinds(Experiment)
 
 
+def experiment_class(kind: str) -> type[Experiment]:
+    """The experiment of this kind; the modules of the others are loaded only if none bears its name.
+
+    Raises
+    ------
+    UnknownName
+        With the nearest kind.
+    """
+    found: type[Experiment] = kind_class(Experiment, kind)
+    return found
+
+
 @cache
 def case_class(experiment: Any) -> type[Case]:
     """The case whose experiment has this type, which may be ``Any`` to check everything else."""
-    field = Field(description=Case.model_fields["experiment"].description)
-    sourceless = {"use_attribute_docstrings": False}  # pydantic would look for them in every frame of the stack
-    return create_model("Case", __base__=Case, __doc__=Case.__doc__, __cls_kwargs__=sourceless, experiment=(experiment, field))
+    return create_model("Case", __base__=Case, __doc__=Case.__doc__, experiment=(experiment, ...))
 
 
 def any_experiment() -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-from scipy.optimize import brentq
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
@@ -123,7 +123,7 @@ class PathFollower(Generic[State]):
                 found[load] = event.value(states[load])
             return found[load]
 
-        root = brentq(value, before.load, after.load, xtol=event.tolerance)
+        root = scipy.optimize.brentq(value, before.load, after.load, xtol=event.tolerance)
         value(root)
         return states.get(root, after)
 

@@ -17,6 +17,7 @@ from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
 from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.prescribed_force import PrescribedForce
 
 CYCLE_AFTER = 6
@@ -27,27 +28,6 @@ FORCING, LARGEST_FORCING = 0.05, 1e-2
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
-
-
-@dataclass(frozen=True)
-class NewtonOptions:
-    """When Newton stops, and when it gives up."""
-
-    tolerance: float = 1e-10
-    """Largest residual over the largest nodal force (not below round-off), and over the mean nodal volume."""
-    max_iterations: int = 25
-    smallest_damping: float = 1 / 256
-    search_halvings: int = 5
-    """How often a step is halved for a smaller residual, once the residual has cycled."""
-    patience: int = 8
-    """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
-    start_patience: int | None = None
-    """Newton gives up when the first so many iterations have not halved the residual: a shorter load step is cheaper. None means
-    ``patience`` alone."""
-    most_halvings: int = 10
-    """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
-    volume_floor: float = 0.2
-    """A step is shortened until no J falls below this part of the smallest J before it."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-from scipy.optimize import brentq
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
@@ -132,7 +132,7 @@ class TimeMarcher(Generic[State]):
                 states[time] = self._advance(before, time, (1 - share) * before.unknowns + share * after.unknowns)
             return event.value(states[time])
 
-        root = brentq(value, before.time, after.time, xtol=event.tolerance * (after.time - before.time))
+        root = scipy.optimize.brentq(value, before.time, after.time, xtol=event.tolerance * (after.time - before.time))
         value(root)
         return states[root]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.stats import t as student
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
@@ -60,7 +60,7 @@ class CalibrationFit:
         return self._factor() * np.sqrt(np.maximum(force**2 * mm + 2 * force * mn + nn, 0.0))
 
     def _factor(self) -> Array:
-        return student.ppf(0.5 + self.confidence / 2, np.count_nonzero(self.used, axis=0) - 2)
+        return scipy.stats.t.ppf(0.5 + self.confidence / 2, np.count_nonzero(self.used, axis=0) - 2)
 
 
 def fit_calibration_line(
@@ -120,7 +120,7 @@ def fit_calibration_line(
     covariance = noise**2 * _cofactors(forces, sensitivity)
     error = np.where(used, (measured - intercept) / slope - forces, 0.0)
     scale = forces.max(axis=0, where=used, initial=0.0) if full_scale is None else np.full(slope.shape, full_scale)
-    reach = student.ppf(0.5 + confidence / 2, points - 2) * np.sqrt(np.stack([covariance[0, 0], covariance[1, 1]]))
+    reach = scipy.stats.t.ppf(0.5 + confidence / 2, points - 2) * np.sqrt(np.stack([covariance[0, 0], covariance[1, 1]]))
     return CalibrationFit(
         slope=slope,
         intercept=intercept,

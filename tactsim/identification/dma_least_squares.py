@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
@@ -166,7 +166,7 @@ def _refined(start: Array, data: DmaData, deviation: Array) -> tuple[Array, int]
         misfit = part_sensitivities(near(p), data.frequencies) / deviation[..., None]
         return np.concatenate([misfit.reshape(-1, p.size), np.eye(p.size) / PRIOR_DEVIATION])
 
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         errors, start, slopes, method="lm", xtol=TOLERANCE, ftol=TOLERANCE, gtol=TOLERANCE, max_nfev=MOST_EVALUATIONS
     )
     if not np.isfinite(found.x).all():

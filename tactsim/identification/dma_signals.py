@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.array import Array
@@ -219,7 +219,9 @@ def _refined_frequency(signals: DmaSignals) -> float:
 
     reach = 0.5 / np.ptp(signals.time)
     bounds = (max(signals.frequency - reach, signals.frequency / 2), signals.frequency + reach)
-    found = least_squares(residuals, [signals.frequency], bounds=bounds, x_scale=reach, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    found = scipy.optimize.least_squares(
+        residuals, [signals.frequency], bounds=bounds, x_scale=reach, xtol=1e-14, ftol=1e-14, gtol=1e-14
+    )
     unexplained = 2 * found.cost / both.size
     if not found.success or unexplained > MOST_UNEXPLAINED:
         raise ConvergenceError(f"no frequency near {signals.frequency:g} Hz fits the signals; give it within {reach:.2g} Hz")

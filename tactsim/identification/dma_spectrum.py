@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
@@ -61,7 +61,7 @@ def nonnegative_spectrum(basis: Array, compliance: Array, deviation: Array) -> A
     weighted = basis / deviation[:, None]
     size = np.linalg.norm(weighted, axis=0)
     try:
-        found, _ = nnls(weighted / size, compliance / deviation, maxiter=MOST_ITERATIONS)
+        found, _ = scipy.optimize.nnls(weighted / size, compliance / deviation, maxiter=MOST_ITERATIONS)
     except RuntimeError as error:
         raise ConvergenceError(f"retardation spectrum: {error}") from None
     return found / size

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import OptimizeWarning, curve_fit
-from scipy.stats import linregress
-from scipy.stats import t as student
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
@@ -86,8 +84,8 @@ def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> Cree
     start = np.log([stress / first, stress / late, 5 / end])
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", OptimizeWarning)  # an infinite covariance, which is judged below
-            found, covariance = curve_fit(strain, test.time, test.strain, p0=start, maxfev=5000)
+            warnings.simplefilter("ignore", scipy.optimize.OptimizeWarning)  # an infinite covariance, which is judged below
+            found, covariance = scipy.optimize.curve_fit(strain, test.time, test.strain, p0=start, maxfev=5000)
     except RuntimeError as error:
         raise ConvergenceError(f"the creep at {test.force:g} N could not be fitted: {error}") from None
     if not np.isfinite(covariance).all():
@@ -96,7 +94,7 @@ def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> Cree
     change = np.array([[1.0, 0, 0], [0, 1, 0], [0, 1, -1]])
     values = np.exp(change @ found)
     deviations = values * np.sqrt(np.diag(change @ covariance @ change.T))
-    quantile = student.ppf((1 + confidence) / 2, len(test.time) - 3)
+    quantile = scipy.stats.t.ppf((1 + confidence) / 2, len(test.time) - 3)
     return CreepFit(test.force, values, quantile * deviations, test.strain - strain(test.time, *found))
 
 
@@ -111,10 +109,10 @@ def coefficient_lines(fits: Sequence[CreepFit], *, confidence: float = 0.95) -> 
     forces = np.array([fit.force for fit in fits])
     if len(np.unique(forces)) < 3:
         raise InvalidQuantity(f"creep at {len(np.unique(forces))} different forces; allowed: at least 3 for lines with intervals")
-    quantile = student.ppf((1 + confidence) / 2, len(forces) - 2)
+    quantile = scipy.stats.t.ppf((1 + confidence) / 2, len(forces) - 2)
     lines = {}
     for k, name in enumerate(COEFFICIENTS):
-        line = linregress(forces, [fit.coefficients[k] for fit in fits])
+        line = scipy.stats.linregress(forces, [fit.coefficients[k] for fit in fits])
         widths = (quantile * line.stderr, quantile * line.intercept_stderr)
         lines[name] = CoefficientLine(float(line.slope), float(line.intercept), float(widths[0]), float(widths[1]))
     return lines

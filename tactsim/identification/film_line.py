@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -63,7 +63,7 @@ def identify_film(
     contact = 1 / np.sqrt(applied)
     relative = 1 / unit.conductance([0.0, delay], history)[-1] - contact
     columns = np.column_stack([relative, contact]) * measured[:, None]
-    (initial, touching), _ = nnls(columns, np.ones(points))
+    (initial, touching), _ = scipy.optimize.nnls(columns, np.ones(points))
     if min(initial, touching) <= 0:
         raise InvalidQuantity(f"the line {line} S/N, S gives resistances {initial:g} and {touching:g} ohm; both must be positive")
     return FilmLine(float(initial), float(touching), applied, columns @ (initial, touching) - 1)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from pydantic import ValidationError
-from scipy.optimize import nnls
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
@@ -164,7 +164,7 @@ def _elliptic_least_squares(design: Array, target: Array, names: tuple[str, ...]
     normals = np.linalg.solve(R.T, _ellipticity_rows(names).T)
     normals /= np.linalg.norm(normals, axis=0)
     try:
-        multipliers, _ = nnls(normals, -free)
+        multipliers, _ = scipy.optimize.nnls(normals, -free)
     except RuntimeError as error:
         raise ConvergenceError(f"stable fit: {error}") from None
     nearest = free + normals @ multipliers

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -169,7 +169,7 @@ def _beside(firsts: Array, lasts: Array, size: Array) -> Array:
     return np.abs(away[..., 0] * along[:, None, 1] - away[..., 1] * along[:, None, 0]).min(axis=1)
 
 
-def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> csr_array:
+def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> scipy.sparse.csr_array:
     """Weights in m (lines, nx ny) whose product with values at the centres in plan is their integral along each line."""
     counts = np.maximum(1, np.ceil(np.linalg.norm(lasts - firsts, axis=1) / LINE_STEP).astype(int))
     line = np.repeat(np.arange(len(counts)), counts)
@@ -188,7 +188,7 @@ def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> cs
             entries.append(step * (part[0] if i else 1 - part[0]) * (part[1] if j else 1 - part[1]))
             columns.append((lower[0] + i) * len(response.axes[1]) + lower[1] + j)
     shape = (len(counts), len(response.axes[0]) * len(response.axes[1]))
-    return csr_array((np.concatenate(entries), (np.tile(line, 4), np.concatenate(columns))), shape=shape)
+    return scipy.sparse.csr_array((np.concatenate(entries), (np.tile(line, 4), np.concatenate(columns))), shape=shape)
 
 
 def _plan_distance(firsts: Array, lasts: Array, one: int) -> Array:

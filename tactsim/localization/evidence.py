@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+import scipy
 
 from tactsim.array import Array
 from tactsim.localization.candidates import Candidates
@@ -66,7 +66,7 @@ class Change:
         """The evidence of single bodies: one of the candidates alone."""
         along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
         evidence = along**2 / stiff / (2 * self.variance) - np.log(stiff / self.ridge) / 2
-        total = float(logsumexp(evidence))
+        total = float(scipy.special.logsumexp(evidence))
         weights = np.exp(evidence - total)
         numbers = np.arange(len(candidates))
         spreads = self.variance / stiff
@@ -83,16 +83,16 @@ class Change:
         table = _Table(fine, self)
         partners = self._partners(table, coarse)
         likelihoods = [table.beside(partner) for partner in partners]
-        totals = np.array([logsumexp(likelihood) for likelihood in likelihoods])
+        totals = np.array([scipy.special.logsumexp(likelihood) for likelihood in likelihoods])
         q = sum(
             share * np.exp((likelihood - likelihood.max()) / 2) / np.exp((likelihood - likelihood.max()) / 2).sum()
             for share, likelihood in zip(_shares(totals), likelihoods, strict=True)
         )
         drawn = generator.choice(len(fine), DRAWS, p=q / q.sum())
         rows = [table.beside(int(i)) for i in drawn]
-        logs = np.array([logsumexp(row) for row in rows]) - np.log(q[drawn] / q.sum())
-        evidence = float(logsumexp(logs)) - np.log(DRAWS) - 2 * np.log(len(fine))
-        shares = np.exp(logs - logsumexp(logs))
+        logs = np.array([scipy.special.logsumexp(row) for row in rows]) - np.log(q[drawn] / q.sum())
+        evidence = float(scipy.special.logsumexp(logs)) - np.log(DRAWS) - 2 * np.log(len(fine))
+        shares = np.exp(logs - scipy.special.logsumexp(logs))
         first, second = self._paired(fine, drawn, rows, generator)
         mean, spread = table.contrasts(first, second)
         return Found(self._whole(evidence), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
-from scipy.signal import oaconvolve
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -35,13 +34,13 @@ class LumpResponse:
     axes: tuple[Array, Array, Array]
     radii: Array
     values: Array
-    _interpolator: RegularGridInterpolator = field(init=False, repr=False)
+    _interpolator: scipy.interpolate.RegularGridInterpolator = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         shape = (len(self.radii), *map(len, self.axes))
         if self.values.shape[:4] != shape or self.values.ndim != 7 or not np.isfinite(self.values).all():
             raise InvalidQuantity(f"values of shape {self.values.shape}; needed: finite, {shape} and (jaw, row, column)")
-        found = RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
+        found = scipy.interpolate.RegularGridInterpolator((self.radii, *self.axes), self.values, bounds_error=True)
         object.__setattr__(self, "_interpolator", found)
 
     @classmethod
@@ -69,7 +68,7 @@ class LumpResponse:
         values = []
         for radius in radii:
             ball = _ball(float(radius), cell)
-            values.append(oaconvolve(voxels, ball[None], mode="same", axes=(1, 2, 3)))
+            values.append(scipy.signal.oaconvolve(voxels, ball[None], mode="same", axes=(1, 2, 3)))
         table = np.moveaxis(np.stack(values), 1, -1).reshape(len(radii), *counts, *densities.shape[:-1])
         centres = tuple((edge[:-1] + edge[1:]) / 2 for edge in edges)
         return cls(centres, np.asarray(radii, dtype=float), table)  # type: ignore[arg-type]

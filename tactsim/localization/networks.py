@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import scipy
 from pydantic import ValidationError
-from scipy.special import expit
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError
@@ -63,7 +63,7 @@ class LearnedWeights:
 
     def probability(self, features: Array) -> float:
         """That there is a lump, for features (inputs,)."""
-        return float(expit(self.presence((features - self.middle)[None] / self.scale)[0, 0]))
+        return float(scipy.special.expit(self.presence((features - self.middle)[None] / self.scale)[0, 0]))
 
     def place(self, features: Array) -> tuple[Array, Array]:
         """Mean (4,) of x, y, z and radius in m and their covariance (4, 4) in m^2."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from contourpy import contour_generator
-from scipy.stats import chi2
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -128,7 +128,7 @@ class GaussianRegion(Region):
 
     def _quantile(self, probability: float) -> float:
         check_probability(probability)
-        return float(chi2.ppf(probability, 3))
+        return float(scipy.stats.chi2.ppf(probability, 3))
 
 
 def check_probability(probability: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from tactsim.analytic.atrial import atrial_shear_compliance
@@ -81,19 +82,24 @@ ICF_STABLE = MaterialSet(
 
 _ATRIAL_NOTE = "the data tell the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
 
-ATRIAL = MaterialSet(
-    name="atrial",
-    material=neo_hookean_of(atrial_shear_compliance()),
-    source="thesis, Table 4.1: 1/E with retardation times in s, incompressible (the readings that 4.3.8 and the test imply)",
-    note=_ATRIAL_NOTE,
-)
 
-ATRIAL_PRINTED = MaterialSet(
-    name="atrial_printed",
-    material=neo_hookean_of(atrial_shear_compliance(times="viscosities", compliance="half_shear")),
-    source="thesis, Table 4.1 as 4.6.4 uses it: the column of times as viscosities in MPa s, the compliance as 1/(2G)",
-    note=_ATRIAL_NOTE,
-)
+def _atrial() -> MaterialSet:
+    return MaterialSet(
+        name="atrial",
+        material=neo_hookean_of(atrial_shear_compliance()),
+        source="thesis, Table 4.1: 1/E with retardation times in s, incompressible (the readings that 4.3.8 and the test imply)",
+        note=_ATRIAL_NOTE,
+    )
+
+
+def _atrial_printed() -> MaterialSet:
+    return MaterialSet(
+        name="atrial_printed",
+        material=neo_hookean_of(atrial_shear_compliance(times="viscosities", compliance="half_shear")),
+        source="thesis, Table 4.1 as 4.6.4 uses it: the column of times as viscosities in MPa s, the compliance as 1/(2G)",
+        note=_ATRIAL_NOTE,
+    )
+
 
 LUMP = MaterialSet(
     name="lump",
@@ -123,19 +129,28 @@ HARD_TUBE = MaterialSet(
     note="E = 1.5 MPa is an assumption: six times B1-A, 150 times ICF",
 )
 
-LIBRARY = {
-    entry.name: entry
-    for entry in (
-        ARTERY_WALL,
-        ATRIAL,
-        ATRIAL_PRINTED,
-        B1A_PRINTED,
-        B1A_STABLE,
-        HARD_BALL,
-        HARD_TUBE,
-        ICF_PRINTED,
-        ICF_STABLE,
-        LUMP,
-    )
-}
+
+class _Library(Mapping[str, MaterialSet]):
+    """Sets by name; those of the atrium, whose compliance must be converted, are made when they are first asked for."""
+
+    def __init__(self, sets: Iterable[MaterialSet], made: Mapping[str, Callable[[], MaterialSet]]):
+        self._sets = {one.name: one for one in sets}
+        self._made = made
+
+    def __getitem__(self, name: str) -> MaterialSet:
+        if name not in self._sets:
+            self._sets[name] = self._made[name]()
+        return self._sets[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted({*self._sets, *self._made}))
+
+    def __len__(self) -> int:
+        return len({*self._sets, *self._made})
+
+
+LIBRARY: Mapping[str, MaterialSet] = _Library(
+    (ARTERY_WALL, B1A_PRINTED, B1A_STABLE, HARD_BALL, HARD_TUBE, ICF_PRINTED, ICF_STABLE, LUMP),
+    {"atrial": _atrial, "atrial_printed": _atrial_printed},
+)
 """Shipped sets by name."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from tactsim.array import Array
 from tactsim.interfaces import Material
@@ -85,7 +85,7 @@ def lost_intervals(margin: Callable[[Array], Array]) -> tuple[Interval, ...]:
     stretch = np.geomspace(*SCANNED, SAMPLES)
     lost = ~(margin(stretch) > 0)
     ends = [
-        float(brentq(lambda x: float(margin(np.array(x))), stretch[k], stretch[k + 1], xtol=1e-12, rtol=1e-10))
+        float(scipy.optimize.brentq(lambda x: float(margin(np.array(x))), stretch[k], stretch[k + 1], xtol=1e-12, rtol=1e-10))
         for k in np.flatnonzero(lost[1:] != lost[:-1])
     ]
     ends = [SCANNED[0]] * bool(lost[0]) + ends + [SCANNED[1]] * bool(lost[-1])
@@ -115,7 +115,9 @@ def _elliptic_everywhere_within(material: Material) -> float:
     if first[ray] == len(logarithm):
         return SCANNED[1]
     ends = [
-        brentq(lambda t, k=k: float(margin(np.array(t), direction[:, k])), logarithm[first[k] - 1], logarithm[first[k]])
+        scipy.optimize.brentq(
+            lambda t, k=k: float(margin(np.array(t), direction[:, k])), logarithm[first[k] - 1], logarithm[first[k]]
+        )
         for k in np.flatnonzero(first == first[ray])
     ]
     return float(np.exp(min(ends)))

@@ -13,7 +13,8 @@ from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
 from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.external_forces import FollowerLoad
-from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.newton import Problem
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.regularising_springs import RegularisingSprings
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import FACET_POINTS, TaylorHood

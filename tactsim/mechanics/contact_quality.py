@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
 
 from tactsim.fem.body import Body
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
@@ -15,8 +14,6 @@ from tactsim.results.result import Quantity, StepRecord
 
 class ContactQuality:
     """Follows the accepted states of one run; ``stiffest`` as in ``PenetrationEffect``."""
-
-    UNITS: ClassVar[dict[str, str]] = {"penetration_force_error": "1", "poor_volume_fraction": "1"}
 
     def __init__(self, stiffest: float = math.inf):
         self._effect, self._volumes = PenetrationEffect(stiffest), VolumeRatios()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import ClassVar, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -58,15 +58,6 @@ class ContactRecord(ABC, Generic[Model]):
     tolerance : largest penetration in m
     stiffest : as in `PenetrationEffect`
     """
-
-    UNITS: ClassVar[dict[str, str]] = {
-        "max_penetration": "m",
-        "max_pressure": "Pa",
-        "min_volume_ratio": "1",
-        "unstable_volume_fraction": "1",
-        **ContactQuality.UNITS,
-    }
-    """Unit of what is recorded of every state; a run need not record all."""
 
     def __init__(self, model: Model, path: FollowedPath, *, tolerance: float, stiffest: float = math.inf):
         self.model, self.path, self.tolerance = model, path, tolerance

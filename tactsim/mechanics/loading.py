@@ -174,8 +174,7 @@ def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[Froze
     """The piece with its bare floats replaced by the quantity."""
     types = {float: quantity, tuple[float, ...]: tuple[quantity, ...]}
     fields = {key: (types[f.annotation], f) for key, f in cls.model_fields.items() if f.annotation in types and not f.metadata}
-    sourceless = {"use_attribute_docstrings": False}  # pydantic would look for them in every frame of the stack
-    made = create_model(f"{name}{cls.__name__}", __base__=cls, __cls_kwargs__=sourceless, **fields)  # type: ignore[call-overload]
+    made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)  # type: ignore[call-overload]
     made.__doc__ = cls.__doc__
     return made
 

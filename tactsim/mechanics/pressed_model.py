@@ -14,7 +14,8 @@ from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.errors import InputError
 from tactsim.fem.body import Body, RelaxationStep
 from tactsim.fem.external_forces import FollowerLoad
-from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.newton import Problem
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.space import Measure, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody

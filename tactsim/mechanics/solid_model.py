@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
-from enum import Enum
 
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.fem.newton import NewtonOptions
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.interfaces import Material
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.posed_contact import PosedContact
@@ -17,29 +15,11 @@ from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_peaks import surface_peaks
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.revolved import SweepSymmetry
 from tactsim.results.result import FieldFrame
 
 PATIENCE = NewtonOptions(max_iterations=40, patience=12)
 """Friction in space settles more slowly than in a section: the direction of slip is an unknown too."""
-
-
-class SweepSymmetry(Enum):
-    """The part of a body that is computed; its value names the axes that mirror planes are normal to."""
-
-    WHOLE = ()
-    HALF = (1,)
-    QUARTER = (0, 1)
-
-    @property
-    def quarters(self) -> int:
-        """Quarter turns of the part."""
-        return 4 // 2 ** len(self.value)
-
-    @property
-    def mirrors(self) -> Array:
-        """Signs (m, 3) of the coordinates of the m images that make up the whole."""
-        choices = [(1.0, -1.0) if axis in self.value else (1.0,) for axis in range(3)]
-        return np.array(list(itertools.product(*choices)))
 
 
 class SolidModel(PressedModel):

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
 from tactsim.fem.time_steps import TimeControl
 from tactsim.interfaces import Material
-from tactsim.mechanics.history_path import TimeInterval
 from tactsim.units import FrozenModel, Time
+
+if TYPE_CHECKING:
+    from tactsim.mechanics.history_path import TimeInterval
 
 FIRST_SHARE = 1e-3
 """First step of a piece, as a part of its duration or of the shortest relaxation time."""

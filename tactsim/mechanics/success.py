@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from tactsim.fem.newton import NewtonOptions
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.results.result import Status, StepRecord
 from tactsim.units import format_quantity
 

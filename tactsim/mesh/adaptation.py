@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from skfem import MeshTri
+import scipy
 
 from tactsim.array import Array
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
@@ -28,8 +27,8 @@ class Refinement:
     """
 
     mesh: QuadraticMesh
-    nodal: csr_matrix
-    corner: csr_matrix
+    nodal: scipy.sparse.csr_matrix
+    corner: scipy.sparse.csr_matrix
     parents: Array
     barycentric: Array
 
@@ -55,6 +54,8 @@ def refined(mesh: QuadraticMesh, marked: Array, shape: Array) -> Refinement:
     """
     corners = mesh.corner_count
     bits = {f"bit{k}": np.flatnonzero(np.arange(len(mesh.elements)) >> k & 1) for k in range(len(mesh.elements).bit_length())}
+    from skfem import MeshTri
+
     coarse = MeshTri(shape[:corners].T.copy(), mesh.elements[:, :3].T.copy(), sort_t=False).with_subdomains(bits)
     fine = coarse.refined(marked)
     parents = np.zeros(fine.nelements, np.int64)
@@ -97,15 +98,15 @@ def _quadratic(barycentric: Array) -> Array:
 
 def _corner_transfer(
     parents: Array, simplices: Array, barycentric: Array, size: tuple[int, int], *, quadratic: bool
-) -> csr_matrix:
+) -> scipy.sparse.csr_matrix:
     values = _quadratic(barycentric) if quadratic else barycentric
     return _transfer(simplices, parents[:, : values.shape[-1]], values, size)
 
 
-def _transfer(children: Array, parents: Array, values: Array, size: tuple[int, int]) -> csr_matrix:
+def _transfer(children: Array, parents: Array, values: Array, size: tuple[int, int]) -> scipy.sparse.csr_matrix:
     """Rows for each new node from one of its elements: ``values`` (E, new, old) in the parents' numbering."""
     new, first = np.unique(children, return_index=True)
     element, local = np.divmod(first, children.shape[1])
     columns, entries = parents[element], values[element, local]
     rows = np.repeat(new, columns.shape[1])
-    return csr_matrix((entries.ravel(), (rows, columns.ravel())), shape=size)
+    return scipy.sparse.csr_matrix((entries.ravel(), (rows, columns.ravel())), shape=size)

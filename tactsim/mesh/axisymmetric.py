@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from skfem import MeshTri
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -45,6 +44,8 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
         )
     columns = np.linspace(0.0, radius, max(2, round(radius / step)) + 1)
     levels = [np.linspace(a, b, max(1, round((b - a) / step)) + 1)[:-1] for a, b in itertools.pairwise(heights)]
+    from skfem import MeshTri
+
     mesh = MeshTri.init_tensor(columns, np.append(np.concatenate(levels), heights[-1]))
     for _ in range(MOST_BISECTIONS):
         corners = mesh.p.T[mesh.t.T]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from skfem import Mesh
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+
+if TYPE_CHECKING:
+    from skfem import Mesh
 
 FLAT = 1e-12
 """Determinant of an element's sides over a power of the longest below which it is flat: round-off of its coordinates."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from functools import cache
 
 import numpy as np
-from skfem import ElementTetP2
-from skfem.quadrature import get_quadrature
 
 from tactsim.array import Array
 from tactsim.mesh.quadratic import QuadraticMesh
@@ -45,7 +44,9 @@ def determinants(nodes: Array, elements: Array, barycentric: Array) -> Array:
     return np.linalg.det(jacobian)
 
 
-def _checked_points() -> Array:
+@cache
+def checked_points() -> Array:
+    """Corners, middles of edges and of faces, and quadrature points of a tetrahedron, as barycentric coordinates (Q, 4)."""
     corners = np.eye(4)
     middles = np.array([(corners[a] + corners[b]) / 2 for a, b in _EDGES])
     faces = np.array([corners[list(face)].mean(axis=0) for face in itertools.combinations(range(4), 3)])
@@ -53,17 +54,16 @@ def _checked_points() -> Array:
 
 
 def _quadrature(order: int) -> tuple[Array, Array]:
+    from skfem import ElementTetP2
+    from skfem.quadrature import get_quadrature
+
     points, weights = get_quadrature(ElementTetP2(), order)
     return np.vstack([1 - points.sum(axis=0), points]).T, weights
 
 
-CHECKED = _checked_points()
-"""Corners, middles of edges and of faces, and quadrature points, as barycentric coordinates."""
-
-
 def jacobian_ratio(nodes: Array, elements: Array) -> Array:
     """Least over greatest Jacobian of each quadratic tetrahedron (E, 10): 1 if straight, below 0 if inverted somewhere."""
-    values = determinants(nodes, elements, CHECKED)
+    values = determinants(nodes, elements, checked_points())
     return values.min(axis=1) / np.abs(values).max(axis=1)
 
 

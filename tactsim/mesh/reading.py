@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
@@ -58,7 +58,9 @@ def read_mesh(
     if points.shape[1] != 3:
         raise InputError(f"{name}: the mesh has {points.shape[1]} coordinates; allowed: 3")
     used = np.unique(cells)
-    close = cKDTree(points[used]).query_pairs(COINCIDENT * float(np.ptp(points[used], axis=0).max()), output_type="ndarray")
+    close = scipy.spatial.cKDTree(points[used]).query_pairs(
+        COINCIDENT * float(np.ptp(points[used], axis=0).max()), output_type="ndarray"
+    )
     if len(close):
         raise InputError(f"{name}: {len(close)} pairs of nodes coincide, so that its parts may not hang together; merge them")
     mesh = quadratic_mesh(points, cells, regions) if kind == "tetra" else _quadratic(points, cells, regions, name)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -18,6 +20,25 @@ _EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 _THIRDS = np.array([[[0, 0], [1, 0], [2, 0], [2, 1]], [[0, 0], [1, 0], [1, 1], [2, 1]], [[0, 0], [0, 1], [1, 1], [2, 1]]])
 """Corners of the three tetrahedra of a prism: place in the ascending triangle, and 0 before or 1 after the sector. The one in row
 2 - i holds corner i twice, which is flat if that corner lies on the axis."""
+
+
+class SweepSymmetry(Enum):
+    """The part of a body that is computed; its value names the axes that mirror planes are normal to."""
+
+    WHOLE = ()
+    HALF = (1,)
+    QUARTER = (0, 1)
+
+    @property
+    def quarters(self) -> int:
+        """Quarter turns of the part."""
+        return 4 // 2 ** len(self.value)
+
+    @property
+    def mirrors(self) -> Array:
+        """Signs (m, 3) of the coordinates of the m images that make up the whole."""
+        choices = [(1.0, -1.0) if axis in self.value else (1.0,) for axis in range(3)]
+        return np.array(list(itertools.product(*choices)))
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from skfem import MeshTet
 
 from tactsim.array import Array
 from tactsim.interfaces import Inclusion
@@ -54,6 +53,8 @@ def background(
     low, high = bounds[0] - MARGIN * extent.max(), bounds[1] + MARGIN * extent.max()
     step = max(settings.inclusion_size, float((high - low).max()) / MOST_CELLS)
     lines = [np.linspace(a, b, max(2, round((b - a) / step) + 1)) for a, b in zip(low, high, strict=True)]
+    from skfem import MeshTet
+
     grid = MeshTet.init_tensor(*lines)
     points = grid.p.T.copy()
     wanted = edge_lengths(points, size, inclusions, settings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from tactsim.array import Array
 from tactsim.mesh.quality import TO_REGULAR, mean_ratio, regular_map
@@ -40,7 +40,7 @@ def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Arr
             value, gradient = _energy(moved, simplices, BARRIER * size)
             return value, np.einsum("nij,ni->nj", free, gradient).ravel()
 
-        found = minimize(objective, np.zeros(start.size), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
+        found = scipy.optimize.minimize(objective, np.zeros(start.size), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
         step = length * np.einsum("nij,nj->ni", free, found.x.reshape(-1, 3))
         worst = mean_ratio(best, simplices).min()
         tried = (restore(best + share * step) for share in SHARES)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -27,7 +26,7 @@ def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
         With the number of pieces and the place of the smallest, or with the facets of a hole and where it is.
     """
     corners = mesh.elements[:, :4]
-    count, pieces = connected_components(_shared_sides(corners), directed=False)
+    count, pieces = scipy.sparse.csgraph.connected_components(_shared_sides(corners), directed=False)
     if count > 1:
         sizes = np.bincount(pieces)
         place = _place(mesh.nodes[corners[pieces == sizes.argmin()]].reshape(-1, 3).mean(axis=0))
@@ -46,14 +45,14 @@ def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
         )
 
 
-def _shared_sides(corners: Array) -> coo_array:
+def _shared_sides(corners: Array) -> scipy.sparse.coo_array:
     """Which of the tetrahedra (E, 4) share a side, (E, E)."""
     sides = np.sort(np.concatenate([np.delete(corners, k, axis=1) for k in range(4)]), axis=1)
     _, number = np.unique(sides, axis=0, return_inverse=True)
     order = np.argsort(number.reshape(-1), kind="stable")
     same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
     first, second = order[same] % len(corners), order[same + 1] % len(corners)
-    return coo_array((np.ones(len(same)), (first, second)), shape=(len(corners),) * 2)
+    return scipy.sparse.coo_array((np.ones(len(same)), (first, second)), shape=(len(corners),) * 2)
 
 
 def _known(facets: Array, surfaces: Surfaces) -> Array:

@@ -22,7 +22,7 @@ EARLIER_VERSION: Literal[1] = 1
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True)
 
 
 def _rectangular(value: Any) -> Any:

@@ -10,7 +10,6 @@ import numpy as np
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened
-from tactsim.outside.mesh_files import read_mesh_file
 from tactsim.outside.text import one_line
 from tactsim.results.result import FieldFrame
 
@@ -71,6 +70,8 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _read_frame(path: Path, time: float) -> FieldFrame:
+    from tactsim.outside.mesh_files import read_mesh_file  # starts processes, which most runs never need
+
     mesh = read_mesh_file(opened(path, "field file"))
     cell_data = {name: np.concatenate(parts) for name, parts in mesh.cell_data.items()}
     return FieldFrame(time, mesh.points, dict(mesh.cells), mesh.point_data, cell_data)

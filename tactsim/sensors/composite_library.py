@@ -16,8 +16,8 @@ _CREEP: dict[str, Any] = {
     "largest_force": 8.0,
 }
 """Eq. 2.3.1 with errata E3; creep tests at 2, 4, 6 and 8 N."""
-_FILLER: dict[str, Any] = {"volume_fraction": 0.2873, "particle_diameter": 500e-9, "barrier": "0.05 eV"}
-"""Table 2.1 and section 2.1.1."""
+_FILLER: dict[str, Any] = {"volume_fraction": 0.2873, "particle_diameter": 500e-9, "barrier": 8.01088317e-21}
+"""Table 2.1 and section 2.1.1; the barrier of 0.05 eV in J."""
 _RESISTIVITY, _THICKNESS, _HARDNESS = 5.0, 0.2e-3, 52e6
 """Table 2.1: 500 ohm cm, 0.2 mm, Meyer hardness 52, its unit taken as MPa."""
 

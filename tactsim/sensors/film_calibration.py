@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import linregress
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -29,5 +29,5 @@ def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1
 
 def least_squares_line(force: Array, conductance: Array) -> LinearCalibration:
     """The line through conductances (n,) in S over forces (n,) in N; they must rise on the whole."""
-    fit = linregress(force, conductance)
+    fit = scipy.stats.linregress(force, conductance)
     return LinearCalibration(slope=float(fit.slope), intercept=float(fit.intercept))

@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.signal import butter, lfilter, sosfilt_zi, sosfreqz
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -71,7 +71,7 @@ class LowPass(FrozenModel):
         frequency = np.asarray(frequency, dtype=float)
         if sampling_rate is None:
             return 1 / np.sqrt(1 + (frequency / self.cutoff) ** (2 * self.order))
-        _, response = sosfreqz(self._sections(sampling_rate)[0], worN=np.atleast_1d(frequency), fs=sampling_rate)
+        _, response = scipy.signal.sosfreqz(self._sections(sampling_rate)[0], worN=np.atleast_1d(frequency), fs=sampling_rate)
         return np.abs(response).reshape(frequency.shape)
 
     def check(self, sampling_rate: float) -> None:
@@ -82,17 +82,18 @@ class LowPass(FrozenModel):
         InvalidQuantity
             If the cut-off is not below half the sampling rate, or not above a hundred thousandth of it.
         """
+        if SLOWEST * sampling_rate <= self.cutoff <= FASTEST * sampling_rate:
+            return
         cutoff, rate = format_quantity(self.cutoff, "Hz"), format_quantity(sampling_rate, "Hz")
-        if not self.cutoff <= FASTEST * sampling_rate:
-            raise InvalidQuantity(
-                f"cutoff {cutoff} of the low pass must be below half the sampling_rate of {rate} (at most {FASTEST:g} of it); "
-                "sample faster or lower it"
-            )
         if self.cutoff < SLOWEST * sampling_rate:
             raise InvalidQuantity(
                 f"cutoff {cutoff} of the low pass must be at least {SLOWEST:g} of the sampling_rate of {rate}; "
                 "raise it or sample slower"
             )
+        raise InvalidQuantity(
+            f"cutoff {cutoff} of the low pass must be below half the sampling_rate of {rate} (at most {FASTEST:g} of it); "
+            "sample faster or lower it"
+        )
 
     def _sections(self, sampling_rate: float) -> tuple[Array, Array]:
         return _design(self, sampling_rate)
@@ -102,8 +103,8 @@ class LowPass(FrozenModel):
 def _design(low_pass: LowPass, sampling_rate: float) -> tuple[Array, Array]:
     """Second-order sections, shape (s, 6), and their state settled at 1, shape (s, 2); not to be changed."""
     low_pass.check(sampling_rate)
-    sections = butter(low_pass.order, low_pass.cutoff, fs=sampling_rate, output="sos")
-    return sections, sosfilt_zi(sections)
+    sections = scipy.signal.butter(low_pass.order, low_pass.cutoff, fs=sampling_rate, output="sos")
+    return sections, scipy.signal.sosfilt_zi(sections)
 
 
 def _run(sections: Array, settled: Array, samples: Array, state: Array | None) -> tuple[Array, Array]:
@@ -120,5 +121,5 @@ def _run(sections: Array, settled: Array, samples: Array, state: Array | None) -
         raise InvalidQuantity(f"a state of shape {state.shape} for {flat.shape[1]} channels; pass the state of the same channels")
     after = np.empty_like(state)
     for k, section in enumerate(sections):  # not sosfilt, which takes six times longer for a chunk of ten samples
-        flat, after[k] = lfilter(section[:3], section[3:], flat, axis=0, zi=state[k])
+        flat, after[k] = scipy.signal.lfilter(section[:3], section[3:], flat, axis=0, zi=state[k])
     return flat.reshape(samples.shape), after

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import constants
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -32,7 +32,7 @@ def tunnelling_decay(barrier: float) -> float:
     """
     if not barrier > 0:
         raise InvalidQuantity(f"barrier is {barrier} J; allowed: > 0")
-    return float(4 * np.pi / constants.h * np.sqrt(2 * constants.m_e * barrier))
+    return float(4 * np.pi / scipy.constants.h * np.sqrt(2 * scipy.constants.m_e * barrier))
 
 
 def particle_separation(diameter: float, volume_fraction: float) -> float:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import pint
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import InvalidQuantity
-from tactsim.units import Length, format_quantity, parse_quantity
+from tactsim.unit_definitions import PREFIXED, UNPREFIXED
+from tactsim.units import Length, _factor_to, format_quantity, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -76,3 +78,20 @@ def test_a_unit_that_does_not_begin_at_zero_is_refused() -> None:
     assert parse_quantity("3 mK", "K") == 0.003
     with pytest.raises(InvalidQuantity, match="has an unknown unit"):
         parse_quantity("3 degC", "K")
+
+
+def test_customary_units_are_those_of_pint() -> None:
+    everything = pint.UnitRegistry(cache_folder=None)
+    for definition in (*PREFIXED, *UNPREFIXED):
+        name, *others = (part.strip() for part in definition.split("="))
+        for word in (name, *others[1:]):
+            unit = f"{everything.Quantity(0.0, word).to_base_units().units:~}"
+            if "°" in word or name in ("degree", "percent", "degree_Celsius", "kelvin", "radian"):
+                continue  # no dimension, or an offset
+            expected = everything.Quantity(1.0, word).to(unit).magnitude
+            assert _factor_to(unit, word) == pytest.approx(expected, rel=1e-14), word
+
+
+def test_a_prefix_does_not_make_a_unit_out_of_another() -> None:
+    with pytest.raises(InvalidQuantity, match="'ct', which is not a unit that is read"):  # a carat; not a hundredth of a tonne
+        parse_quantity("5 ct", "kg")

@@ -24,7 +24,8 @@ from tactsim.contact.traction import ContactPair
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body
 from tactsim.fem.history_variables import HistoryVariables, elastic_stress, series_of, step_error
-from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.newton import Problem
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.fem.space import TaylorHood
 from tactsim.fem.surface import SurfaceAssembly

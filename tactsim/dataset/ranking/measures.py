@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.stats import binomtest
+import scipy
 
 from tactsim.array import Array
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth
@@ -154,7 +154,7 @@ def share(given: Sequence[bool]) -> dict[str, float] | None:
     0 and 1 too; None without values."""
     if not given:
         return None
-    low, high = binomtest(sum(map(bool, given)), len(given)).proportion_ci(INTERVAL, method="wilson")
+    low, high = scipy.stats.binomtest(sum(map(bool, given)), len(given)).proportion_ci(INTERVAL, method="wilson")
     return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
 
 

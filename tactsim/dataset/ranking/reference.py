@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -85,7 +85,7 @@ class PlainGrasp:
                 f"a sample closes by {asked}, the reference from 0 to {format_quantity(most, 'm')}; "
                 "needed: a reference that closes at least as far as every sample"
             )
-        return PchipInterpolator(self.closings, self.forces, axis=0)(np.minimum(wanted, most))
+        return scipy.interpolate.PchipInterpolator(self.closings, self.forces, axis=0)(np.minimum(wanted, most))
 
 
 def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str) -> None:

@@ -8,7 +8,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+import scipy
 
 from tactsim.array import Array
 from tactsim.dataset.ranking.samples import JudgedSamples
@@ -186,6 +186,6 @@ def _with_uncertainty(bare: LearnedWeights, features: Array, targets: Array) -> 
     scaled = away / height / np.exp(growth[0] + growth[1] * features[:, -2])[:, None]
     covariance = scaled.T @ scaled / len(scaled) + FLOOR * np.eye(4)
     apart = (scaled[:, :3] * np.linalg.solve(covariance[:3, :3], scaled[:, :3].T).T).sum(axis=1)
-    covariance = covariance * float(np.quantile(apart, LEVEL) / chi2.ppf(LEVEL, 3))
+    covariance = covariance * float(np.quantile(apart, LEVEL) / scipy.stats.chi2.ppf(LEVEL, 3))
     counted = len(features) // len(list(mirror_images(bare.block_size, bare.layout.rows, bare.layout.columns)))
     return LearnedWeights(**{**bare.__dict__, "covariance": covariance, "growth": growth, "held_out": counted})

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+import scipy
 
 from tactsim.errors import InvalidQuantity, shown
 from tactsim.units import parse_quantity
@@ -73,9 +73,9 @@ class Continuous(Distribution):
             return self.numbers.written(first + share * (second - first))
         if self.name == "log_uniform":
             return self.numbers.written(first * (second / first) ** share)
-        low, high = (ndtr((limit - first) / second) for limit in self.limits)
+        low, high = (scipy.special.ndtr((limit - first) / second) for limit in self.limits)
         inner = float(np.clip(low + share * (high - low), np.finfo(float).tiny, 1 - np.finfo(float).epsneg))
-        return self.numbers.written(float(np.clip(first + second * ndtri(inner), *self.limits)))
+        return self.numbers.written(float(np.clip(first + second * scipy.special.ndtri(inner), *self.limits)))
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,9 @@ def _normal(entries: list[Any], written: dict[str, Any]) -> Distribution:
     if "within" not in written:
         return Continuous("normal", numbers)
     mean, low, high = measured([entries[0], *_listed("within", written["within"], 2)]).values
-    if low >= high or ndtr((high - mean) / numbers.values[1]) <= ndtr((low - mean) / numbers.values[1]):
+    if low >= high or scipy.special.ndtr((high - mean) / numbers.values[1]) <= scipy.special.ndtr(
+        (low - mean) / numbers.values[1]
+    ):
         raise InvalidQuantity(f"normal: within {shown(written['within'])} must increase and hold a part of the distribution")
     return Continuous("normal", numbers, (low, high))
 

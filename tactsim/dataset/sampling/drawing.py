@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from tactsim.array import Array
 from tactsim.case.loading import validated_case
@@ -150,12 +150,12 @@ def grid_point(sizes: tuple[int, ...], number: int) -> Array:
 
 @lru_cache(maxsize=4)
 def _latin_hypercube(seed: tuple[int, ...], count: int, dimensions: int) -> Array:
-    return qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(count)
+    return scipy.stats.qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(count)
 
 
 @lru_cache(maxsize=8)
 def _sobol(seed: tuple[int, ...], block: int, dimensions: int) -> Array:
-    engine = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+    engine = scipy.stats.qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
     if block:
         engine.fast_forward(block * BLOCK)
     with warnings.catch_warnings():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -11,19 +11,20 @@ from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
-from tactsim.experiments.durometer.report import DurometerRecord
-from tactsim.experiments.indentation.course import Adapted, DisplacementPath
 from tactsim.experiments.indentation.displaced import StepSettings
+from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.fem.loading import Event
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.specimen import Specimen
 from tactsim.units import Force, Length, format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.experiments.indentation.course import Adapted, DisplacementPath
+    from tactsim.mechanics.history_path import TimedState
 
 LEAST_THICKNESS = 6e-3
 """Thickness in m of a specimen that ASTM D2240 asks for; recalled, a declared assumption."""
@@ -60,7 +61,11 @@ class Durometer(Experiment):
     steps: StepSettings = StepSettings()
     """Length of the load steps; by default the first a fiftieth, the largest a tenth of the indentor's radius."""
 
-    history_units: ClassVar[dict[str, str]] = DurometerRecord.UNITS
+    history_units: ClassVar[dict[str, str]] = {
+        name: unit
+        for name, unit in history_units(clock=False, space=False).items()
+        if name not in ("tissue_rise", "tissue_rise_axis", "sensor_force")
+    } | {"spring_force": "N", "hertz_force": "N"}
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -99,6 +104,9 @@ class Durometer(Experiment):
 
     def begin(self) -> Course:
         """Press until tissue and spring balance; see ``DurometerRecord`` for what is reported."""
+        from tactsim.experiments.durometer.report import DurometerRecord
+        from tactsim.experiments.indentation.course import DisplacementPath
+
         setup = self.indentation
         model = setup.model()
         path = DisplacementPath(setup, setup.drive(), model)
@@ -108,6 +116,7 @@ class Durometer(Experiment):
 
     def _balanced(self, path: DisplacementPath, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether tissue and spring balance in it."""
+        from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 
         def surplus(state: ContactEquilibrium) -> float:
             traction = state.contacts[0].at(path.model.displacement(state.unknowns)).traction

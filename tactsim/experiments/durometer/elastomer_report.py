@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.stats import spearmanr
+import scipy
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.durometer import DurometerScale, hertz_modulus, hertz_reading
@@ -229,7 +228,7 @@ def _spearman(first: Sequence[float], second: Sequence[float]) -> float | None:
     """Spearman's rank correlation; None if one of them ranks nothing."""
     if len(set(first)) < 2 or len(set(second)) < 2:
         return None
-    return float(spearmanr(first, second).statistic)
+    return float(scipy.stats.spearmanr(first, second).statistic)
 
 
 def _moment(modulus: float) -> float | None:
@@ -240,4 +239,4 @@ def _moment(modulus: float) -> float | None:
         return float(compliance.creep(10.0**logarithm)) * modulus - 1
 
     low, high = (float(np.log10(time)) for time in TIMES)
-    return float(10.0 ** brentq(surplus, low, high, xtol=1e-12)) if surplus(low) < 0 < surplus(high) else None
+    return float(10.0 ** scipy.optimize.brentq(surplus, low, high, xtol=1e-12)) if surplus(low) < 0 < surplus(high) else None

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq
+import scipy
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.array import Array
@@ -49,8 +48,8 @@ class ForceDepthCurve:
         return float(self.depth[-1])
 
     @cached_property
-    def _interpolated(self) -> PchipInterpolator:
-        return PchipInterpolator(self.depth, self.force_per_modulus)
+    def _interpolated(self) -> scipy.interpolate.PchipInterpolator:
+        return scipy.interpolate.PchipInterpolator(self.depth, self.force_per_modulus)
 
     def force(self, depth: float, youngs_modulus: float) -> float:
         """Force in N at a depth in m on the curve."""
@@ -70,7 +69,7 @@ class ForceDepthCurve:
 
         end = min(self.deepest, scale.travel)
         if surplus(end) >= 0:
-            return float(scale.reading(brentq(surplus, 0.0, end, xtol=1e-12 * end)))
+            return float(scale.reading(scipy.optimize.brentq(surplus, 0.0, end, xtol=1e-12 * end)))
         if end < scale.travel * (1 - 1e-9):
             at, modulus = format_quantity(end, "m"), format_quantity(youngs_modulus, "Pa")
             raise InputError(f"the force-depth curve ends at {at}, before the reading of a modulus of {modulus}")

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import numpy as np
 
 from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
 from tactsim.experiments.durometer.scene import DurometerScene
-from tactsim.experiments.indentation.record import IndentationRecord, StartedPath, history_units
+from tactsim.experiments.indentation.record import IndentationRecord, StartedPath
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.history_path import TimedState
@@ -24,12 +22,6 @@ WIDE = 12e-3
 
 class DurometerRecord(IndentationRecord):
     """Collects the accepted steps of a durometer, among them the balance of tissue and spring."""
-
-    UNITS: ClassVar[dict[str, str]] = {
-        name: unit
-        for name, unit in history_units(clock=False, space=False).items()
-        if name not in ("tissue_rise", "tissue_rise_axis", "sensor_force")
-    } | {"spring_force": "N", "hertz_force": "N"}
 
     def __init__(
         self,

@@ -6,8 +6,8 @@ import itertools
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+import scipy
 from pydantic import Field, model_validator
-from scipy.stats import linregress
 
 from tactsim.array import Array
 from tactsim.experiments.film.scene import FilmTestScene
@@ -120,7 +120,7 @@ class FilmTest(Experiment):
 
     def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""
-        fit, symbol = linregress(forces, read), self.film.signal
+        fit, symbol = scipy.stats.linregress(forces, read), self.film.signal
         slope, intercept = float(fit.slope), float(fit.intercept)
         errors = (read - intercept) / slope - forces
         found = {

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+import scipy
 from pydantic import Field, model_validator
-from scipy.signal import chirp, square
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -80,7 +80,7 @@ class Chirp(Wave):
 
     def share(self, time: Array) -> Array:
         """Half of one plus the chirp, which begins at minus one."""
-        return (1 + chirp(time, self.start_frequency, self.duration, self.end_frequency, phi=180)) / 2
+        return (1 + scipy.signal.chirp(time, self.start_frequency, self.duration, self.end_frequency, phi=180)) / 2
 
 
 class Square(Wave):
@@ -109,7 +109,7 @@ class Square(Wave):
     def share(self, time: Array) -> Array:
         """Zero in the first half of a period, then one or what the increments have reached."""
         phase = self.frequency * np.asarray(time) * (1 + 1e-12)
-        up = (1 - square(2 * np.pi * phase)) / 2
+        up = (1 - scipy.signal.square(2 * np.pi * phase)) / 2
         if self.increment is None:
             return up
         return up * np.minimum(1.0, (np.floor(phase) + 1) * self.increment / (self.high - self.low))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal, Self
 
-from tactsim.experiments.grasp.path import grasp_path
-from tactsim.experiments.grasp.record import GraspRecord
+from tactsim.experiments.grasp.history import UNITS
 from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
@@ -22,7 +21,7 @@ class Grasp(GraspSetup, Experiment):
 
     kind: Literal["grasp"] = "grasp"
 
-    history_units: ClassVar[dict[str, str]] = GraspRecord.UNITS
+    history_units: ClassVar[dict[str, str]] = UNITS
 
     @classmethod
     def example(cls) -> Self:
@@ -36,6 +35,9 @@ class Grasp(GraspSetup, Experiment):
 
     def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
+        from tactsim.experiments.grasp.path import grasp_path
+        from tactsim.experiments.grasp.record import GraspRecord
+
         sourced = self.sourced()
         model = self.model(sourced)
         path = grasp_path(self, model)

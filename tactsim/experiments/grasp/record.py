@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
+from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.overhang import overhang_warnings
 from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
@@ -23,7 +24,6 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import SourcedBlock
-from tactsim.mechanics.contact_quality import ContactQuality
 from tactsim.mechanics.contact_record import ContactRecord
 from tactsim.mechanics.history_path import TimedPath, TimedState
 from tactsim.mechanics.penetration_effect import bonded_block_rate
@@ -31,33 +31,9 @@ from tactsim.results.result import Quantity, Status
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
-MOST_COLUMNS = 8
-"""Rows and columns of a matrix up to which the history has a column for every taxel."""
-MOST_LUMENS = 32
-AXES = "xyz"
-
 
 class GraspRecord(ContactRecord[GraspModel]):
     """Collects the accepted steps of a grasp, with what the taxels of both jaws read."""
-
-    UNITS: ClassVar[dict[str, str]] = {
-        "time": "s",
-        "displacement": "m",
-        "reaction_force": "N",
-        **{f"jaw_force_{side}_{axis}": "N" for side in JAWS for axis in AXES},
-        **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in JAWS},
-        "max_penetration": "m",
-        "min_volume_ratio": "1",
-        "unstable_volume_fraction": "1",
-        **ContactQuality.UNITS,
-        **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
-        **{
-            f"taxel_force_{side}_{row}_{column}": "N"
-            for side in JAWS
-            for row in range(1, MOST_COLUMNS + 1)
-            for column in range(1, MOST_COLUMNS + 1)
-        },
-    }
 
     def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
         super().__init__(model, path, tolerance=experiment.tolerance, stiffest=_stiffest(experiment))

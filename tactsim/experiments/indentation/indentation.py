@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal, Self
 
-from tactsim.experiments.indentation.course import indentation_course
 from tactsim.experiments.indentation.displaced import DisplacedSetup
-from tactsim.experiments.indentation.record import history_units
+from tactsim.experiments.indentation.history import history_units
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.mechanics.specimen import Specimen
@@ -26,4 +25,6 @@ class Indentation(DisplacedSetup, Experiment):
 
     def begin(self) -> Course:
         """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
+        from tactsim.experiments.indentation.course import indentation_course
+
         return indentation_course(self)

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.tilted import Tilt, Tilted
-from tactsim.experiments.indentation.course import indentation_course
 from tactsim.experiments.indentation.displaced import DisplacedSetup
-from tactsim.experiments.indentation.record import history_units
+from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import MeshSettings, Posed
 from tactsim.fem.loading import StepControl
-from tactsim.fem.space import Measure
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.solid_model import SolidModel, SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
-from tactsim.mesh.revolved import largest_offset, shifted_outside, swept
+from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
 from tactsim.units import Length, format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.fem.space import Measure
+    from tactsim.mechanics.solid_model import SolidModel
 
 COARSENING = 3.0
 """Element size at the edges of the body over that of the section's own model: a fillet instead of a third of one."""
@@ -71,6 +72,8 @@ class SpaceIndentation(DisplacedSetup, Experiment):
 
     def begin(self) -> Course:
         """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
+        from tactsim.experiments.indentation.course import indentation_course
+
         return indentation_course(self)
 
     @model_validator(mode="after")
@@ -112,6 +115,8 @@ class SpaceIndentation(DisplacedSetup, Experiment):
 
     def model(self) -> SolidModel:
         """The finite element model in space, the body's axis at the origin of x and y."""
+        from tactsim.mechanics.solid_model import SolidModel
+
         section, symmetry = self.section(), self.symmetry
         swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)
         check_unknowns(3 * swept_nodes, "mesh.finest, mesh.growth, mesh.refinement and mesh.sectors")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from tactsim.experiments.indentation.comparison import Comparison
+from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import (
     Indentation3dScene,
     IndentationScene,
@@ -40,10 +41,6 @@ AT_LAST = {
     "sensor_force": "force of the tissue on the inner sensor",
 }
 """Quantities that are history values of the last step, and their words; the axis is that of the specimen."""
-CLOCK = ("time", "closed_form_displacement", "closed_form_force", "closed_form_difference")
-"""History values of a timed indentation alone."""
-SPACE = ("force_x", "force_y", "moment_x", "moment_y", "moment_z")
-"""History values of an indentation in space alone."""
 
 
 class StartedPath(FollowedPath, Protocol):
@@ -56,25 +53,6 @@ class StartedPath(FollowedPath, Protocol):
 
 class IndentationRecord(ContactRecord[PressedModel]):
     """Collects the accepted steps of an indentation."""
-
-    UNITS: ClassVar[dict[str, str]] = {
-        "time": "s",
-        "displacement": "m",
-        "reaction_force": "N",
-        "force_x": "N",
-        "force_y": "N",
-        "moment_x": "N m",
-        "moment_y": "N m",
-        "moment_z": "N m",
-        "tissue_rise": "m",
-        "tissue_rise_axis": "m",
-        "sensor_force": "N",
-        "base_force": "N",
-        **ContactRecord.UNITS,
-        "closed_form_displacement": "m",
-        "closed_form_force": "N",
-        "closed_form_difference": "1",
-    }
 
     def __init__(self, setup: IndentationSetup, model: PressedModel, path: StartedPath):
         super().__init__(model, path, tolerance=setup.tolerance)
@@ -131,7 +109,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step."""
         last = self.steps[-1].values
-        found = {name: Quantity(last[name], self.UNITS[name], text + LAST) for name, text in AT_LAST.items() if name in last}
+        found = {name: Quantity(last[name], UNITS[name], text + LAST) for name, text in AT_LAST.items() if name in last}
         found |= super().quantities()
         if isinstance(self.model, SolidModel):
             found |= self._around(self.model)
@@ -173,7 +151,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         for name in ("reaction_force", "displacement"):
             most = max(values[name] for values in series)
             text = f"{name.replace('_', ' ')}, the largest of any accepted step"
-            found[f"largest_{name}"] = Quantity(most, self.UNITS[name], text)
+            found[f"largest_{name}"] = Quantity(most, UNITS[name], text)
         if self.event is not None:
             time = self.event.values["time"]
             found["time_of_touch"] = Quantity(time, "s", "time at which the tissue touches the inner sensor")
@@ -230,12 +208,6 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "recess": self.setup.recess,
             "solver": self.solver_report(mesh_adaptations=self.adaptations),
         }
-
-
-def history_units(*, clock: bool, space: bool) -> dict[str, str]:
-    """Units of the history of an indentation with or without a clock, in a section or in space."""
-    left = {*(() if clock else CLOCK), *(() if space else SPACE), *(("sensor_force",) if clock else ())}
-    return {name: unit for name, unit in IndentationRecord.UNITS.items() if name not in left}
 
 
 def contact_oddities(setup: IndentationSetup) -> list[str]:

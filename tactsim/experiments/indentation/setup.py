@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -15,12 +15,9 @@ from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.fem.loading import StepControl
-from tactsim.fem.space import Measure
 from tactsim.interfaces import RigidBody
 from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.pressed_model import PressedModel
-from tactsim.mechanics.section_model import SectionModel
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.step_policy import StepPolicy
 from tactsim.mesh.axisymmetric import Size, edge_graded
@@ -28,6 +25,10 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.registry import Registered
 from tactsim.results.result import Status
 from tactsim.units import FrozenModel, Length, format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.fem.space import Measure
+    from tactsim.mechanics.pressed_model import PressedModel
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody, lambda cls: 2 in cls.dimensions)]
 LARGEST_RATIO = 1e5
@@ -224,6 +225,8 @@ class IndentationSetup(FrozenModel):
 
     def model(self) -> PressedModel:
         """The finite element model of the tissue."""
+        from tactsim.mechanics.section_model import SectionModel
+
         mesh, specimen = self.section(), self.specimen
         top = self.top_edges(mesh)
         return SectionModel(mesh, specimen.materials, base=specimen.base, top=top, measure=self.measure)

@@ -7,8 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from tactsim.contact.coulomb import Coulomb
-from tactsim.experiments.indentation.course import indentation_course
-from tactsim.experiments.indentation.record import history_units
+from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
@@ -50,6 +49,8 @@ class TimedIndentation(IndentationSetup, Experiment):
 
     def begin(self) -> Course:
         """Follow the history to its end or to the touch; see ``IndentationRecord`` for what is reported."""
+        from tactsim.experiments.indentation.course import indentation_course
+
         return indentation_course(self)
 
     @property

@@ -11,7 +11,6 @@ from pydantic import Field, model_validator
 
 from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
-from tactsim.experiments.localization.lump_sensitivity import sensitivity
 from tactsim.experiments.localization.response_store import kept_response
 from tactsim.experiments.localization.scene import DetectabilityScene
 from tactsim.interfaces import Experiment
@@ -196,6 +195,8 @@ class Detectability(Experiment):
 
 def coarse_response(setup: GraspSetup) -> LumpResponse:
     """The response of the taxels of a grasp on a coarse grid of centres and radii."""
+    from tactsim.experiments.localization.lump_sensitivity import sensitivity
+
     found = sensitivity(setup)
     size, densities = setup.block.size, found.densities
     radii = RADII[min(size) > 2 * RADII]

@@ -12,8 +12,7 @@ threshold; ``false_alarm_threshold`` finds it by seeded draws, as the candidates
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ndtr
+import scipy
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
@@ -50,7 +49,7 @@ def detection_probability(match: Array, threshold: float) -> Array:
 
     The largest match over all candidates exceeds it at least as often.
     """
-    return ndtr(match - threshold) + ndtr(-match - threshold)
+    return scipy.special.ndtr(match - threshold) + scipy.special.ndtr(-match - threshold)
 
 
 def smallest_radius(
@@ -74,4 +73,4 @@ def smallest_radius(
         return None
     if found(FEWEST) > 0:
         return FEWEST
-    return float(brentq(found, FEWEST, most, xtol=CLOSE))
+    return float(scipy.optimize.brentq(found, FEWEST, most, xtol=CLOSE))

@@ -15,8 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import splu
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
@@ -107,7 +106,7 @@ class _Adjoint:
         self.model = model
         self.displacement = model.space.split(unknowns)[0]
         size, pattern = model.space.size, model.body.pattern
-        tangent = csr_matrix((model.body.tangent(unknowns), pattern.indices, pattern.indptr), shape=(size, size))
+        tangent = scipy.sparse.csr_matrix((model.body.tangent(unknowns), pattern.indices, pattern.indptr), shape=(size, size))
         self.nodes = {side: np.unique(model.facets[side]) for side in JAWS}
         held = np.concatenate([(nodes[:, None] * 3 + np.arange(3)).ravel() for nodes in self.nodes.values()])
         self.free = np.setdiff1d(np.arange(size), held)
@@ -125,7 +124,9 @@ class _Adjoint:
         products = surface.weights[:, None, None] * surface.values[:, :, None] * surface.values[:, None, :]
         count = surface.values.shape[1]
         places = np.repeat(number[:, :, None], count, axis=2), np.repeat(number[:, None, :], count, axis=1)
-        mass = splu(csr_matrix((products.ravel(), tuple(p.ravel() for p in places)), shape=(len(nodes),) * 2).tocsc())
+        mass = scipy.sparse.linalg.splu(
+            scipy.sparse.csr_matrix((products.ravel(), tuple(p.ravel() for p in places)), shape=(len(nodes),) * 2).tocsc()
+        )
         deformed = surface.interpolate(self.model.mesh.nodes + self.displacement)
         along = self.model.jaws[side].face_coordinates(deformed - place[:, None])
         found = []

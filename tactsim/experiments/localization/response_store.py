@@ -16,7 +16,6 @@ from tactsim.code_identity import code_identity
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.experiments.localization.lump_sensitivity import lump_response
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
@@ -42,6 +41,8 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
     ConvergenceError
         If the plain tissue cannot be grasped.
     """
+    from tactsim.experiments.localization.lump_sensitivity import lump_response
+
     setup = _plain(read_result(folder, fields=False).provenance, folder)
     return kept_response(setup, lambda: lump_response(setup), cache=cache)
 

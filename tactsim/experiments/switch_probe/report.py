@@ -9,7 +9,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
-from tactsim.experiments.switch_probe.setup import COUNT, SwitchProbeSetup
+from tactsim.experiments.switch_probe.setup import COUNT, HISTORY_UNITS, SwitchProbeSetup
 from tactsim.interfaces.run import Findings
 from tactsim.mechanics.plausibility import oddities
 from tactsim.mechanics.success import judged
@@ -17,17 +17,6 @@ from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.sensors.switch_reading import Touch
 from tactsim.units import format_quantity
 
-HISTORY_UNITS = {
-    "tissue": "1",
-    "rate": "m/s",
-    "time": "s",
-    "depth": "m",
-    "force": "N",
-    "contact_height": "m",
-    "read_force": "N",
-    **{f"switch_force_{number}": "N" for number in range(1, COUNT + 1)},
-    **{f"read_switch_force_{number}": "N" for number in range(1, COUNT + 1)},
-}
 POINTS = 100
 """Samples of each touch that the history keeps, evenly spaced, beside the one at the turn; the scene holds every closing."""
 

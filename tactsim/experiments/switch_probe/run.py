@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.analytic.probe_force import ProbeForces, probe_forces
@@ -135,7 +135,7 @@ def _interpolated(states: list[ProbeState], time: Array) -> ProbeForces:
     """Accepted states at other times, monotone between them, zero before the first contact."""
     columns = np.array([(state.force, state.contact_height, *state.switch_forces) for state in states])
     nodes = np.array([0.0, *(state.time for state in states)])
-    found = PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(np.clip(time, 0.0, nodes[-1]))
+    found = scipy.interpolate.PchipInterpolator(nodes, np.vstack([0 * columns[:1], columns]))(np.clip(time, 0.0, nodes[-1]))
     found = np.maximum(found, 0.0)
     return ProbeForces(found[:, 0], found[:, 2:], found[:, 1])
 

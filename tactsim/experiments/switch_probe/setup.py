@@ -25,6 +25,17 @@ COUNT = 5
 """Switches of the probe of chapter 5."""
 LEAST_SAMPLES, MOST_SAMPLES = 2 * COUNT, 1_000_000
 """Samples of one way: two for each switch at least; at most so many that a touch takes about ten seconds."""
+HISTORY_UNITS = {
+    "tissue": "1",
+    "rate": "m/s",
+    "time": "s",
+    "depth": "m",
+    "force": "N",
+    "contact_height": "m",
+    "read_force": "N",
+    **{f"switch_force_{number}": "N" for number in range(1, COUNT + 1)},
+    **{f"read_switch_force_{number}": "N" for number in range(1, COUNT + 1)},
+}
 
 
 class ProbeTissue(FrozenModel):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
@@ -147,8 +147,8 @@ class ContactCurve:
         """The forces over time at a speed in m/s: between the rows monotone cubic, with a kink at the touch."""
         before, after = slice(None, self.touch + 1), slice(self.touch, None)
         d, touch = self.displacement, self.threshold_displacement
-        rising, pressing = (PchipInterpolator(d[part], self.plate[part]) for part in (before, after))
-        small = PchipInterpolator(d[after], self.small[after])
+        rising, pressing = (scipy.interpolate.PchipInterpolator(d[part], self.plate[part]) for part in (before, after))
+        small = scipy.interpolate.PchipInterpolator(d[after], self.small[after])
 
         def forces(times: Array) -> tuple[Array, Array]:
             at = np.minimum(speed * times, d[-1])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.special import logsumexp
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -142,7 +142,7 @@ class HypothesesEstimator(Estimator):
 
     def _probabilities(self, evidence: dict[str, float]) -> dict[str, float]:
         """Posterior probability of each class from the log evidence; zero for classes that are not considered."""
-        total = logsumexp(list(evidence.values()))
+        total = scipy.special.logsumexp(list(evidence.values()))
         return {name: float(np.exp(evidence[name] - total)) if name in evidence else 0.0 for name in CLASSES}
 
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.linalg import cholesky, solve_triangular
-from scipy.special import logsumexp
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -94,7 +93,10 @@ class ModelBasedEstimator(Estimator):
             return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0)
         found = self._candidates(response, readings.block_size)
         evidence, contrasts, spread = self._evidence(found.signals, change, something)
-        total, weights = logsumexp(evidence) - np.log(len(evidence)), np.exp(evidence - logsumexp(evidence))
+        total, weights = (
+            scipy.special.logsumexp(evidence) - np.log(len(evidence)),
+            np.exp(evidence - scipy.special.logsumexp(evidence)),
+        )
         probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
@@ -114,8 +116,8 @@ class ModelBasedEstimator(Estimator):
 
     def _evidence(self, signals: Array, change: Array, covariance: Array) -> tuple[Array, Array, Array]:
         """Logarithmic evidence (n,) over that of no signal, and mean and variance (n,) of the contrast."""
-        root = cholesky(covariance, lower=True)
-        white = solve_triangular(root, np.column_stack([change, signals.T]), lower=True)
+        root = scipy.linalg.cholesky(covariance, lower=True)
+        white = scipy.linalg.solve_triangular(root, np.column_stack([change, signals.T]), lower=True)
         strength, along = (white[:, 1:] ** 2).sum(axis=0), white[:, 0] @ white[:, 1:]
         stiff = strength + 1 / self.contrast_spread**2
         return along**2 / stiff / 2 - np.log(stiff * self.contrast_spread**2) / 2, along / stiff, 1 / stiff
@@ -152,5 +154,5 @@ def _moments(samples: Array, weights: Array, spread: Array) -> tuple[Array, Arra
 
 def _log_density(change: Array, covariance: Array) -> float:
     """Of a Gaussian of this covariance, without the constant of its dimension."""
-    root = cholesky(covariance, lower=True)
-    return float(-(solve_triangular(root, change, lower=True) ** 2).sum() / 2 - np.log(np.diag(root)).sum())
+    root = scipy.linalg.cholesky(covariance, lower=True)
+    return float(-(scipy.linalg.solve_triangular(root, change, lower=True) ** 2).sum() / 2 - np.log(np.diag(root)).sum())

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial import cKDTree
+import scipy
 
 from tactsim.array import Array
 
@@ -30,9 +29,9 @@ class CentreLine:
     beyond: float = 0.0
 
     @cached_property
-    def _spline(self) -> CubicSpline:
+    def _spline(self) -> scipy.interpolate.CubicSpline:
         chords = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        return CubicSpline(np.append(0.0, np.cumsum(chords)), self.points, bc_type="natural")
+        return scipy.interpolate.CubicSpline(np.append(0.0, np.cumsum(chords)), self.points, bc_type="natural")
 
     @cached_property
     def _last(self) -> float:
@@ -78,8 +77,8 @@ class CentreLine:
         return across, np.cross(tangent, across)
 
     @cached_property
-    def _tree(self) -> cKDTree:
-        return cKDTree(self.derivatives(self.stations)[0])
+    def _tree(self) -> scipy.spatial.cKDTree:
+        return scipy.spatial.cKDTree(self.derivatives(self.stations)[0])
 
     def nearest(self, points: Array) -> Array:
         """Parameters (n,) of the points of the line that are nearest to points (n, 3), by Newton's method from samples."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from tactsim.array import Array
 
@@ -33,7 +33,7 @@ def _near_pairs(corners: Array) -> Array:
     """Pairs (p, 2) of triangles whose bounding spheres meet, largest triangles first."""
     centres = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
-    tree, found, total = cKDTree(centres), [np.zeros((0, 2), np.int64)], 0
+    tree, found, total = scipy.spatial.cKDTree(centres), [np.zeros((0, 2), np.int64)], 0
     order = np.argsort(-radius)
     for start in range(0, len(order), 2000):
         chunk = order[start : start + 2000]

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, Self
 
 import numpy as np
-from scipy.spatial import ConvexHull
-from scipy.spatial.transform import Rotation
+import scipy
 
 from tactsim.array import Array
 from tactsim.interfaces import Inclusion
@@ -39,7 +38,7 @@ class Ellipsoid(Inclusion):
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The ellipsoid."""
-        turn = Rotation.from_euler("xyz", self.rotation).as_matrix()
+        turn = scipy.spatial.transform.Rotation.from_euler("xyz", self.rotation).as_matrix()
         return (EllipsoidSolid(np.array(self.center), np.array(self.semi_axes), turn),)
 
 
@@ -80,7 +79,7 @@ class EllipsoidSolid(Solid):
         """Hull of the image of a spiral of points on the unit sphere."""
         count = max(40, round(2 * np.pi * self.semi_axes.max() ** 2 / (EQUILATERAL * edge**2)))
         unit = spiral(count)
-        faces = outward(unit, ConvexHull(unit).simplices, np.zeros(3))
+        faces = outward(unit, scipy.spatial.ConvexHull(unit).simplices, np.zeros(3))
         return unit * self.semi_axes @ self.turn.T + self.center, faces
 
     def volume(self) -> float:

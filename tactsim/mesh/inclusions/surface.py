@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import ClassVar, Literal, Self
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -64,7 +64,7 @@ def _file(path: str) -> tuple[OutsideFile, int]:
 @lru_cache(maxsize=8)
 def _placed(surface: Surface, file: OutsideFile, written: int) -> TriangulatedSolid:
     vertices, triangles = _read_surface(file, written)
-    turn = Rotation.from_euler("xyz", surface.rotation).as_matrix()
+    turn = scipy.spatial.transform.Rotation.from_euler("xyz", surface.rotation).as_matrix()
     placed = vertices * UNITS[surface.unit] @ turn.T + np.array(surface.translation)
     return TriangulatedSolid(placed, triangles, surface.path)
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -49,7 +47,7 @@ class TriangulatedSolid(Solid):
         self._normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
         self._centres = corners.mean(axis=1)
         self._reach = float(np.linalg.norm(corners - self._centres[:, None], axis=2).max())
-        self._tree = cKDTree(self._centres)
+        self._tree = scipy.spatial.cKDTree(self._centres)
         self._at_vertex = _vertex_normals(corners, self._normals, self.faces, len(self.vertices))
         self._at_edge = _edge_normals(self._normals, self.faces, len(self.vertices))
 
@@ -122,8 +120,8 @@ def check_closed(triangles: Array, count: int, name: str) -> None:
     if (directed != 1).any():
         raise InputError(f"{name}: {int((directed > 1).sum())} edges join triangles of opposite orientation")
     used = np.unique(triangles)
-    graph = csr_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
-    pieces = len(np.unique(connected_components(graph, directed=False)[1][used]))
+    graph = scipy.sparse.csr_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
+    pieces = len(np.unique(scipy.sparse.csgraph.connected_components(graph, directed=False)[1][used]))
     if pieces > 1:
         raise InputError(f"{name}: the surface has {pieces} pieces; allowed: one")
 

@@ -6,8 +6,8 @@ from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.optimize import brentq
 
 from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
@@ -187,7 +187,7 @@ def printed_stress_sign(material: SetName) -> float:
 
     if stress(SEARCHED[0]) * stress(SEARCHED[1]) > 0:
         raise InputError(f"the printed stress of {material} keeps its sign up to a stretch of {SEARCHED[1]:g}")
-    return float(brentq(stress, *SEARCHED, xtol=1e-12))
+    return float(scipy.optimize.brentq(stress, *SEARCHED, xtol=1e-12))
 
 
 @quantity(unit="1")

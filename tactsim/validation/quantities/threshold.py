@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.optimize import brentq
 
 from tactsim.analytic.annular_area import annular_area as area_of_annulus
 from tactsim.errors import CaseError, InputError
@@ -70,7 +70,7 @@ def threshold_at_level(
 
     if beyond(approach.duration) < 0:
         raise InputError(f"{curve}: the small sensor never bears {format_quantity(level, 'N')}")
-    plate = approach.at(np.array(brentq(beyond, approach.touch, approach.duration)))[0]
+    plate = approach.at(np.array(scipy.optimize.brentq(beyond, approach.touch, approach.duration)))[0]
     return float(plate) / approach.threshold_force
 
 

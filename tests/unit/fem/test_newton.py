@@ -12,7 +12,8 @@ from solids import body_of, box, facets_where, held, on_plane
 from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
 from tactsim.fem.linear import direct_solver
-from tactsim.fem.newton import NewtonOptions, Problem
+from tactsim.fem.newton import Problem
+from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.pressure import FollowerPressure
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.materials.linear_elastic import LinearElastic

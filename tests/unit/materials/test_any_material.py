@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
+from tactsim.case.json_schema import described
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.library import LIBRARY, named_material
@@ -91,5 +92,5 @@ def test_the_schema_describes_sets_and_every_kind():
 
 def test_every_constant_in_the_schema_is_described():
     for kind, cls in kinds(Material).items():
-        for field, entry in cls.model_json_schema()["properties"].items():
+        for field, entry in described(cls)["properties"].items():
             assert field == "kind" or entry.get("description"), f"{kind}.{field}"

@@ -9,7 +9,7 @@ from solids import facets_where, on_plane
 from tactsim.errors import InputError
 from tactsim.fem.space import TaylorHood
 from tactsim.mesh.axisymmetric import edge_graded, section_mesh
-from tactsim.mesh.quality import CHECKED, determinants, jacobian_ratio, mean_ratio, region_volumes
+from tactsim.mesh.quality import checked_points, determinants, jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.revolved import LARGEST_SQUEEZE, largest_offset, shifted_outside, swept
 
 RADIUS, LAYERS, RING = 10e-3, np.array([1e-3, 5e-3]), 3e-3
@@ -108,10 +108,10 @@ def test_shifted_side_is_a_circle_around_another_axis_and_the_middle_stays():
     np.testing.assert_allclose(np.hypot(nodes[side, 0] + offset, nodes[side, 1]), RADIUS, rtol=1e-12)
     middle = np.hypot(*mesh.nodes.T[:2]) <= rest
     np.testing.assert_array_equal(nodes[middle], mesh.nodes[middle])
-    assert determinants(nodes, mesh.elements, CHECKED).min() > 0
+    assert determinants(nodes, mesh.elements, checked_points()).min() > 0
     assert offset == pytest.approx(LARGEST_SQUEEZE * (RADIUS - rest) / 1.5)
     too_far = shifted_outside(mesh.nodes, -2.5 * offset, radius=RADIUS, rest=rest)
-    assert determinants(too_far, mesh.elements, CHECKED).min() < 0
+    assert determinants(too_far, mesh.elements, checked_points()).min() < 0
 
 
 @pytest.mark.parametrize(

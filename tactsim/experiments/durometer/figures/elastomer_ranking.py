@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
+import scipy
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.stats import rankdata
 
 from tactsim.array import Array
 from tactsim.experiments.durometer.elastomers import Elastomer
@@ -98,7 +98,7 @@ def _draw_ranks(axis: Axes, result: Result, colours: Array) -> None:
     }
     for name, values in zip(_shapes(result), _by_shape(result, "predicted_reading"), strict=True):
         columns["predicted,\n" + name.replace(" ", "\n")] = values
-    ranks = np.array([rankdata(values) for values in columns.values()])
+    ranks = np.array([scipy.stats.rankdata(values) for values in columns.values()])
     for number, (name, colour) in enumerate(zip(_names(result), colours, strict=True)):
         axis.plot(range(len(columns)), ranks[:, number], "o-", color=colour, markersize=8, linewidth=2)
         axis.text(-2.5 * BESIDE, ranks[0, number], name, ha="right", va="center", color=colour)

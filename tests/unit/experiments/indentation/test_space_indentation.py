@@ -10,9 +10,9 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.sphere import Sphere
 from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.solid_model import SweepSymmetry
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.surface_peaks import surface_peaks
+from tactsim.mesh.revolved import SweepSymmetry
 
 SOFT = NeoHookean(c10=1000.0)
 COARSE = SpaceMeshSettings(finest=0.7e-3, growth=2.0, coarsest=2e-3, sectors=2)

@@ -136,7 +136,7 @@ def test_the_coarse_response_does_not_depend_on_its_parts(monkeypatch):
     points = np.random.default_rng(1).random((500, 3)) * [40e-3, 40e-3, 20e-3]
     densities = np.random.default_rng(2).random((2, 3, 3, 500))
     told = lump_sensitivity.Sensitivity(points, np.full(500, 6.4e-8), densities, np.zeros((2, 3, 3)))
-    monkeypatch.setattr(detectability, "sensitivity", lambda setup: told)
+    monkeypatch.setattr(lump_sensitivity, "sensitivity", lambda setup: told)
     setup = Detectability.example().grasp
     whole = coarse_response(setup)
     monkeypatch.setattr(detectability, "ROWS_AT_ONCE", 5)

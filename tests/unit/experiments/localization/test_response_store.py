@@ -6,7 +6,7 @@ import pytest
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.film.film_test import FilmTest
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.experiments.localization import response_store
+from tactsim.experiments.localization import lump_sensitivity
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results import Result, Status
@@ -28,7 +28,7 @@ def computed(monkeypatch):
         axes = tuple(np.linspace(1e-3, side - 1e-3, 3) for side in setup.block.size)
         return LumpResponse(axes, np.array([2e-3, 4e-3]), np.ones((2, 3, 3, 3, 2, 3, 3)))
 
-    monkeypatch.setattr(response_store, "lump_response", response)
+    monkeypatch.setattr(lump_sensitivity, "lump_response", response)
     return seen
 
 

@@ -13,7 +13,7 @@ from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.indentation.setup import MeshSettings
-from tactsim.experiments.switch_probe import switch_probe
+from tactsim.experiments.switch_probe import run
 from tactsim.experiments.switch_probe.figures import switch_panel_figure
 from tactsim.experiments.switch_probe.run import force_noise, touched
 from tactsim.experiments.switch_probe.setup import ProbeTissue
@@ -139,7 +139,7 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
             raise error
         return touched(setup, chosen, rate, generator)
 
-    monkeypatch.setattr(switch_probe, "touched", stopped)
+    monkeypatch.setattr(run, "touched", stopped)
     found = probe(rates=(1e-3, 3e-3)).run()
     assert found.status == status
     assert "forces_1" in found.quantities

@@ -1,0 +1,29 @@
+"""What the history of a grasp holds: its values and their units, without the run that fills it."""
+
+from __future__ import annotations
+
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.mechanics.contact_history import QUALITY_UNITS
+
+MOST_COLUMNS = 8
+"""Rows and columns of a matrix up to which the history has a column for every taxel."""
+MOST_LUMENS = 32
+AXES = "xyz"
+UNITS: dict[str, str] = {
+    "time": "s",
+    "displacement": "m",
+    "reaction_force": "N",
+    **{f"jaw_force_{side}_{axis}": "N" for side in JAWS for axis in AXES},
+    **{f"{part}_force_{side}": "N" for part in ("gap", "outside") for side in JAWS},
+    "max_penetration": "m",
+    "min_volume_ratio": "1",
+    "unstable_volume_fraction": "1",
+    **QUALITY_UNITS,
+    **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
+    **{
+        f"taxel_force_{side}_{row}_{column}": "N"
+        for side in JAWS
+        for row in range(1, MOST_COLUMNS + 1)
+        for column in range(1, MOST_COLUMNS + 1)
+    },
+}

@@ -1,0 +1,26 @@
+"""When Newton's method stops, and when it gives up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class NewtonOptions:
+    """Tolerance and patience."""
+
+    tolerance: float = 1e-10
+    """Largest residual over the largest nodal force (not below round-off), and over the mean nodal volume."""
+    max_iterations: int = 25
+    smallest_damping: float = 1 / 256
+    search_halvings: int = 5
+    """How often a step is halved for a smaller residual, once the residual has cycled."""
+    patience: int = 8
+    """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
+    start_patience: int | None = None
+    """Newton gives up when the first so many iterations have not halved the residual: a shorter load step is cheaper. None means
+    ``patience`` alone."""
+    most_halvings: int = 10
+    """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
+    volume_floor: float = 0.2
+    """A step is shortened until no J falls below this part of the smallest J before it."""

@@ -1,0 +1,12 @@
+"""Units of what every run with contact records of its states; apart from the records, so that a case is read without them."""
+
+QUALITY_UNITS = {"penetration_force_error": "1", "poor_volume_fraction": "1"}
+"""How good a state is: `contact_quality`."""
+CONTACT_UNITS = {
+    "max_penetration": "m",
+    "max_pressure": "Pa",
+    "min_volume_ratio": "1",
+    "unstable_volume_fraction": "1",
+    **QUALITY_UNITS,
+}
+"""A run need not record all."""
