@@ -27,12 +27,12 @@ def module_pages() -> dict[str, str]:
 
 
 def rooms_upwards() -> list[str]:
-    """Names of the rooms, lowest first, as ``pyproject.toml`` holds them; those that no layer names come last."""
+    """Names of the rooms, lowest first, as ``pyproject.toml`` holds them; those that no layer names come first."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
     layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     ordered = [name.strip().removeprefix("tactsim.") for layer in reversed(layers) for name in layer.split("|")]
     present = [module.name for module in pkgutil.iter_modules(tactsim.__path__) if not module.name.startswith("_")]
-    return [*(room for room in ordered if room in present), *(room for room in present if room not in ordered)]
+    return [*(room for room in present if room not in ordered), *(room for room in ordered if room in present)]
 
 
 def _summary(room: str) -> str:
