@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAft
 
 ROOT = Path(__file__).parents[2]
 OUTPUT = ROOT / "docs" / "verification" / "thesis.json"
+ERRATUM = re.compile(r"\bE\d{1,2}\b")
+ERRATA = re.compile(r"E\d{1,2}(, E\d{1,2})*")
 STATES = ("reproduced", "after an erratum", "outside", "finding", "assumption")
 
 
@@ -50,7 +53,17 @@ def _class_of(row: Row) -> str:
 def _cells(row: Row, computed: dict[str, Any]) -> tuple[str, ...]:
     value = computed.get(row.id)
     found = "" if value is None else _in_printed_unit(value, row)
-    return row.quantity, row.place, "" if row.printed is None else str(row.printed), found, *_state(row)
+    state, reason = _state(row)
+    printed = "" if row.printed is None else str(row.printed)
+    leading, colon, rest = reason.partition(":")
+    if ERRATA.fullmatch(leading):
+        reason = f"{_linked(leading)}{colon}{rest}"
+    return row.quantity, row.place, printed, found, _linked(state), reason
+
+
+def _linked(text: str) -> str:
+    """The text with its errata as links; in running text E1 may also be a modulus."""
+    return ERRATUM.sub(lambda found: f"[{found[0]}](/theory/errata.md#{found[0].lower()})", text)
 
 
 def _in_printed_unit(value: float, row: Row) -> str:
