@@ -28,6 +28,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption(OPTION, None) is not None and config.getoption("numprocesses", None):
+        raise pytest.UsageError(f"{OPTION} keeps what one process found; leave --numprocesses out")
     config.stash[FOUND] = {}
 
 
