@@ -5,6 +5,7 @@
     TactsimError
     |-- InputError            2   what the user wrote cannot be used
     |   |-- CaseError             a case file, with file, line and key
+    |   |   `-- Refused                 a part of a case made in Python
     |   |-- InvalidQuantity       a number out of its range, or without its unit
     |   |-- UnknownName           a name that is not registered
     |   `-- AmbiguousKind         a name that is registered twice
@@ -43,10 +44,16 @@ class InputError(TactsimError):
     exit_code = 2
 
 
-class CaseError(InputError, ValueError):
-    """A case, in a file or from Python, is wrong at a place that the message names; ``refused`` holds what its model refused."""
+class CaseError(InputError):
+    """A case, in a file or from Python, is wrong at a place that the message names."""
 
-    refused: Any = None
+
+class Refused(CaseError, ValueError):
+    """A part of a case that was made in Python is wrong; ``reasons`` holds what its model refused."""
+
+    def __init__(self, message: str, reasons: Any):
+        super().__init__(message)
+        self.reasons = reasons
 
 
 class InvalidQuantity(InputError, ValueError):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from tactsim.errors import CaseError
+from tactsim.errors import Refused
 from tactsim.refusals import refusals_of
 
 if TYPE_CHECKING:
@@ -30,9 +30,7 @@ class _MadeInPython(ModelMetaclass):
             refusals = refusals_of(error, _plain(named | fields), cls)  # type: ignore[arg-type]
             places = {".".join(map(str, path)): message for path, message in refusals.items()}
             lines = [": ".join(part for part in (cls.__name__, place, message) if part) for place, message in places.items()]
-            refusal = CaseError("\n".join(lines))
-            refusal.refused = error
-            raise refusal from None
+            raise Refused("\n".join(lines), error) from None
 
 
 def _plain(value: Any) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
-from tactsim.errors import CaseError, shown, suggestion
+from tactsim.errors import Refused, shown, suggestion
 from tactsim.units import format_quantity
 
 Path = tuple[str | int, ...]
@@ -55,8 +55,7 @@ def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> It
     for detail in error.errors(include_url=False):
         place = (*location, *detail["loc"])
         inner = detail.get("ctx", {}).get("error")
-        if isinstance(inner, CaseError) and inner.refused is not None:
-            inner = inner.refused
+        inner = inner.reasons if isinstance(inner, Refused) else inner
         if isinstance(inner, ValidationError):
             yield from _details(inner, place)
         else:
@@ -228,11 +227,11 @@ def _entry(fragment: dict[str, Any], key: str | int) -> dict[str, Any]:
     for part in fragment.get("anyOf", [fragment]):
         if isinstance(key, int):
             prefix = part.get("prefixItems", [])
-            found = prefix[key] if key < len(prefix) else part.get("items")
+            entry = prefix[key] if key < len(prefix) else part.get("items")
         else:
-            found = part.get("properties", {}).get(key) or part.get("additionalProperties")
-        if isinstance(found, dict):
-            return found
+            entry = part.get("properties", {}).get(key) or part.get("additionalProperties")
+        if isinstance(entry, dict):
+            return entry
     return {}
 
 

@@ -34,7 +34,7 @@ def felt(experiment: Grasp) -> np.ndarray:
     return force
 
 
-def pretended_run(experiment: Grasp, *, time_limit: float | None) -> Result:
+def pretended_run(experiment: Grasp, progress: None, *, time_limit: float | None) -> Result:
     """A result with what the data set reads."""
     force, noise = felt(experiment), np.random.default_rng(experiment.readout.seed).normal(0, 1e-3, (2, 3, 3))  # type: ignore[union-attr]
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}

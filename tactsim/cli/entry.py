@@ -78,7 +78,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parsed = parser.parse_args(arguments)
         if "run" not in parsed:
             console.out(parser.format_help())
-            raise InputError("name one of the commands")
+            console.error("name one of the commands")
+            return InputError.exit_code
         debug = parsed.debug
         with _printed_warnings():
             return int(parsed.run(parsed))

@@ -28,9 +28,9 @@ def log_uniform(low: Any, high: Any) -> dict[str, Any]:
     return {"log_uniform": written([low, high])}
 
 
-def normal(mean: Any, deviation: Any, within: tuple[Any, Any] | None = None) -> dict[str, Any]:
-    """Normal with a mean and a standard deviation, cut off outside of ``within`` if that is given."""
-    return {"normal": written([mean, deviation])} | ({} if within is None else {"within": written(within)})
+def normal(mean: Any, deviation: Any, *, low: Any = None, high: Any = None) -> dict[str, Any]:
+    """Normal with a mean and a standard deviation, cut off below ``low`` and above ``high``, which go together."""
+    return {"normal": written([mean, deviation])} | ({} if low is None and high is None else {"within": written([low, high])})
 
 
 def choice(*options: Any, weights: tuple[float, ...] | None = None) -> dict[str, Any]:

@@ -31,7 +31,7 @@ def drawn_figures(
     """File name -> content of those figures that could be drawn, and warnings: of libraries, and why others could not."""
     drawn: dict[str, bytes] = {}
     warnings: list[str] = []
-    with collected_warnings() as said:
+    with collected_warnings() as caught:
         try:
             for name, draw in drawings().items():
                 try:
@@ -40,4 +40,4 @@ def drawn_figures(
                     warnings.append(f"{name} is left out: {error}")
         except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
             warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-    return drawn, said.lines() + warnings
+    return drawn, caught.lines() + warnings

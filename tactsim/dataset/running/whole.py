@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from tactsim.case.overrides import set_value
 from tactsim.case.writing import case_document
 from tactsim.case.yaml_reading import Document, YamlProblems
-from tactsim.dataset.figures.card import FIGURE_FILES, card_figures
 from tactsim.dataset.running.executors import Executor, LocalWorkers, usable_cores
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun, Tally
@@ -115,6 +114,8 @@ def finish(run: SweepRun) -> Sequence[str]:
     """Draw the figures of the card and write it; a warning for what could not be done, which never costs the data."""
     warnings = []
     try:
+        from tactsim.dataset.figures.card import card_figures
+
         for name, draw in card_figures(run.store.path).items():
             OwnFiles(run.store.path).replace(f"{FIGURES}/{name}", draw())
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
@@ -124,6 +125,8 @@ def finish(run: SweepRun) -> Sequence[str]:
 
 def _card(run: SweepRun) -> Sequence[str]:
     """Write the card, unless another file stands in its place; a warning then."""
+    from tactsim.dataset.figures.card import FIGURE_FILES
+
     try:
         adopt_earlier_files(run.store.path, FIGURE_FILES)
         write_card(run.store, run.sweep, run.layout)
