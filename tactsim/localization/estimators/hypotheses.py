@@ -11,10 +11,11 @@ from scipy.special import logsumexp
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
-from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
 from tactsim.localization.evidence import Change, Found, nothing
+from tactsim.localization.posterior import likely_bodies
 from tactsim.units import Length
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
@@ -106,7 +107,8 @@ class HypothesesEstimator(Estimator):
             return Estimate(
                 False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
             )
-        inclusions = _inclusions(*found[likeliest])
+        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
+        inclusions = likely_bodies(*found[likeliest], cell)
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
         return Estimate(True, inclusions, reason, probability, probabilities)
 
@@ -149,24 +151,3 @@ class HypothesesEstimator(Estimator):
 def _steps(limits: tuple[float, float]) -> list[float]:
     """Radii from the least to the largest in steps of a millimetre."""
     return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
-
-
-def _inclusions(found: Found, candidates: Candidates) -> tuple[EstimatedInclusion, ...]:
-    """The bodies of a class, the one with the strongest signal first."""
-    bodies = []
-    for numbers, contrasts, spreads in zip(found.bodies, found.contrasts, found.spreads, strict=True):
-        samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
-        mean, line = found.weights @ samples, None
-        if candidates.kind == "tube":
-            best = int(numbers[found.weights.argmax()])
-            mean[:3] = candidates.centers[best]
-            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
-            line = ((x0, y0, z0), (x1, y1, z1))
-        away = samples - mean
-        covariance = (found.weights[:, None] * away).T @ away
-        covariance[4, 4] += found.weights @ spreads
-        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[found.weights.argmax()]]))
-        x, y, z, radius, contrast = map(float, mean)
-        body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, line=line)
-        bodies.append((signal, body))
-    return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -15,8 +15,18 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
+from tactsim.localization.candidates import ball_candidates
+from tactsim.localization.evidence import Change
+from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.region import CellRegion
 from tactsim.units import Length
+
+EVERY, COARSE = 2, 4
+"""Spacing, in tabulated centres, of the balls of which pairs are made, and of those that are tried in all pairs."""
+RADIUS_STEP = 1e-3
+"""Of the balls of which pairs are made, in m."""
+SEED = 1
+"""Of the draws by which pairs are averaged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +40,7 @@ class Candidates:
 
 
 class ModelBasedEstimator(Estimator):
-    r"""One ball anywhere in the block, or nothing.
+    r"""One ball anywhere in the block, or nothing; two where one does not explain the readings.
 
     The change d of the taxels' forces from the reference is c s(x, r) plus Gaussian errors of covariance S, with the response s
     of a ball at x of radius r. The contrast c has a normal prior and is integrated out; centres and radii are even over the grid
@@ -44,6 +54,9 @@ class ModelBasedEstimator(Estimator):
     with the noise of both readings, the error of the forward model, and the reference p, which is known to a common factor
     1 + b and to e_b from taxel to taxel. Mean, covariance and region are those of the posterior. Nothing is there if that
     explains d better; then S lacks the model's error.
+
+    One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
+    do not overlap (``evidence``), with the same S and on one coarser grid for both. If two are likelier, they are the answer.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -65,6 +78,8 @@ class ModelBasedEstimator(Estimator):
     """Error of the reference from taxel to taxel over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
+    second: Annotated[float, Field(ge=0, le=1)] = 0.2
+    """Prior probability of two balls over that of one, as that of ``hypotheses``; 0 for one ball whatever is read."""
 
     @property
     def title(self) -> str:
@@ -77,7 +92,7 @@ class ModelBasedEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the covariance of place, radius and contrast, and the region of its centre.
+        """One ball, none or two, with the covariance of place, radius and contrast, and the region of each centre.
 
         Raises
         ------
@@ -98,6 +113,9 @@ class ModelBasedEstimator(Estimator):
         probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
+        pair = self._pair(readings.response, readings.block_size, change, something)
+        if pair is not None:
+            return replace(pair, probability=probability)
         mean, covariance = _moments(np.column_stack([found.centers, found.radii, contrasts]), weights, spread)
         shape = tuple(map(len, response.axes))
         cells = np.bincount(found.cells, weights, int(np.prod(shape))).reshape(shape)
@@ -106,6 +124,29 @@ class ModelBasedEstimator(Estimator):
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         words = "softer" if contrast < 0 else "stiffer"
         return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
+
+    def _pair(self, response: TissueResponse, size: Array, change: Array, covariance: Array) -> Estimate | None:
+        """Two balls, if they are likelier than one; None if not."""
+        if self.second == 0:
+            return None
+        steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
+        radii = list(np.linspace(*self.radii, steps))
+        root = cholesky(covariance, lower=True)
+        fine, coarse = (
+            replace(balls, signals=solve_triangular(root, balls.signals.T, lower=True).T)
+            for balls in (
+                ball_candidates(response, size, radii, gap=self.gap, every=EVERY),
+                ball_candidates(response, size, radii[1::2], gap=self.gap, every=COARSE),
+            )
+        )
+        white = Change(solve_triangular(root, change, lower=True), 1.0, self.contrast_spread)
+        two = white.double(fine, coarse, np.random.default_rng(SEED))
+        odds = self.second * float(np.exp(np.clip(two.evidence - white.single(fine).evidence, -700, 700)))
+        if odds <= 1:
+            return None
+        cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
+        words = f"two balls explain the readings better than one, with a probability of {odds / (1 + odds):.3g}"
+        return Estimate(True, likely_bodies(two, fine, cell), words)
 
     def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
         """Covariance S (taxels, taxels) in N^2 of the errors of a change of force."""
