@@ -16,7 +16,7 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import ball_candidates
-from tactsim.localization.evidence import Change
+from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.region import CellRegion
 from tactsim.units import Length
@@ -56,7 +56,7 @@ class ModelBasedEstimator(Estimator):
     explains d better; then S lacks the model's error.
 
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
-    do not overlap (``evidence``), with the same S and on one coarser grid for both. If two are likelier, they are the answer.
+    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -113,7 +113,7 @@ class ModelBasedEstimator(Estimator):
         probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
-        pair = self._pair(readings.response, readings.block_size, change, something)
+        pair = self._pair(readings, change, something, total)
         if pair is not None:
             return replace(pair, probability=probability)
         mean, covariance = _moments(np.column_stack([found.centers, found.radii, contrasts]), weights, spread)
@@ -125,9 +125,10 @@ class ModelBasedEstimator(Estimator):
         words = "softer" if contrast < 0 else "stiffer"
         return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
 
-    def _pair(self, response: TissueResponse, size: Array, change: Array, covariance: Array) -> Estimate | None:
-        """Two balls, if they are likelier than one; None if not."""
-        if self.second == 0:
+    def _pair(self, readings: Readings, change: Array, covariance: Array, one: float) -> Estimate | None:
+        """Two balls, if they are likelier than one, whose log evidence on the finest grid is ``one``; None if not."""
+        response, size = readings.response, readings.block_size
+        if self.second == 0 or response is None:
             return None
         steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
         radii = list(np.linspace(*self.radii, steps))
@@ -141,7 +142,8 @@ class ModelBasedEstimator(Estimator):
         )
         white = Change(solve_triangular(root, change, lower=True), 1.0, self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
-        odds = self.second * float(np.exp(np.clip(two.evidence - white.single(fine).evidence, -700, 700)))
+        single = max(one + nothing(white.values, 1.0), white.single(fine).evidence)
+        odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
         if odds <= 1:
             return None
         cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
