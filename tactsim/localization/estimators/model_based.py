@@ -56,7 +56,8 @@ class ModelBasedEstimator(Estimator):
     explains d better; then S lacks the model's error.
 
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
-    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer.
+    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer; unless they are nearer to each other in plan than
+    the pitch of the taxels, where two may be one of another shape.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -147,8 +148,12 @@ class ModelBasedEstimator(Estimator):
         if odds <= 1:
             return None
         cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
+        bodies = likely_bodies(two, fine, cell)
+        first, other = (np.array(body.center[:2]) for body in bodies)
+        if np.linalg.norm(first - other) < readings.layout.pitch:
+            return None
         words = f"two balls explain the readings better than one, with a probability of {odds / (1 + odds):.3g}"
-        return Estimate(True, likely_bodies(two, fine, cell), words)
+        return Estimate(True, bodies, words)
 
     def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
         """Covariance S (taxels, taxels) in N^2 of the errors of a change of force."""
