@@ -9,6 +9,7 @@ from pydantic import Field
 from scipy.special import logsumexp
 
 from tactsim.array import Array
+from tactsim.deadline import check_time
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
@@ -114,6 +115,7 @@ class HypothesesEstimator(Estimator):
 
     def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Found, Candidates]:
         """How well a class explains the change, and its candidates."""
+        check_time()
         assert readings.response is not None  # checked by estimate
         candidates, coarse = self._bodies(name, readings.response, readings.block_size)
         if coarse is None:

@@ -56,8 +56,8 @@ class ModelBasedEstimator(Estimator):
     explains d better; then S lacks the model's error.
 
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
-    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer; unless they are nearer to each other in plan than
-    the pitch of the taxels, where two may be one of another shape.
+    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer, unless they are
+    nearer to each other in plan than the pitch of the taxels, where two may be one of another shape.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """

@@ -238,7 +238,7 @@ def test_samples_are_picked_by_number_and_filter(tmp_path: Path) -> None:
         await page.until(lambda: abs(page.last["frame"]["forces"].max() / (1.2 * taxel_forces(1).max()) - 1) < 1e-6)
         await page.do("sample", number=4)
         await page.until(lambda: page.last["scene"]["sample"]["number"] == 4)
-        split = page.last["scene"]["sample"]["told"]["split"]
+        split = page.last["scene"]["sample"]["state"]["split"]
         assert page.last["scene"]["notes"] == ["sample 4 is failed: ConvergenceError: residual <i>1</i>"]
         await page.do("sample", number=6)
         await page.until(lambda: "fault" in page.last)
@@ -305,7 +305,7 @@ def test_a_taken_port_is_told(grasp: Content) -> None:
         taken.listen()
         port = taken.getsockname()[1]
         with pytest.raises(StorageError, match=f"cannot serve on 127.0.0.1 port {port}"):
-            serve(grasp, Serving(ready=lambda address: None, tell=lambda line: None, port=port))
+            serve(grasp, Serving(ready=lambda address: None, report=lambda line: None, port=port))
 
 
 def test_nothing_to_show_is_told(tmp_path: Path) -> None:

@@ -22,12 +22,11 @@ from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodi
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 
 VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
 Shown = Literal["force", "pressure"]
 """Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""
-COLOURS = "cividis"
-"""Made to look alike with and without colour blindness (Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239)."""
 JAW = 1.2
 """Thickness in mm with which a jaw is drawn."""
 ROOM = 1.0
@@ -68,7 +67,7 @@ class View:
 
 def colour_table(levels: int) -> list[int]:
     """Red, green and blue, each from 0 to 255, of evenly spaced levels of the colour map, one after another."""
-    return np.round(255 * colormaps[COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
+    return np.round(255 * colormaps[PRESSURE_COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
 
 
 def views_figure(grasp: ViewedGrasp, title: str, shown: Shown = "force") -> Figure:
@@ -97,7 +96,9 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     factor, unit = view.scale(grasp, shown)
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
-    axis.imshow(factor * view.image, cmap=COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1)
+    axis.imshow(
+        factor * view.image, cmap=PRESSURE_COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1
+    )
     size = 1e3 * grasp.scene.size
     block = Rectangle((0, 0), size[view.horizontal], size[view.vertical], fill=False, edgecolor=GREY, linewidth=0.8, zorder=3)
     block.set_linestyle((0, (4, 3)))
@@ -120,7 +121,9 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.set_title(view.what.format("sums" if shown == "force" else "means"), loc="left")
     despined(axis)
     location = "bottom" if view.away != 2 else "right"
-    bar = axis.figure.colorbar(ScalarMappable(norm, COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85)
+    bar = axis.figure.colorbar(
+        ScalarMappable(norm, PRESSURE_COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85
+    )
     bar.set_label(f"{grasp.meaning.replace('force', shown)} in {unit}")
     bar.outline.set_linewidth(0.5)
 
@@ -161,7 +164,7 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     along, summed = ("x", 1) if view.horizontal == 0 else ("y", 2)
     sums, missing = grasp.signal.sum(axis=summed), (~grasp.valid).sum(axis=summed)
     norm = Normalize(0.0, max(float(view.image.max()), 1e-12))
-    colours, borders = colormaps[COLOURS], grasp.scene.borders(along)
+    colours, borders = colormaps[PRESSURE_COLOURS], grasp.scene.borders(along)
     for jaw, side in enumerate(JAWS):
         bottom = 1e3 * grasp.scene.size[2] if side == "upper" else -JAW
         for number, (low, high) in enumerate(borders):

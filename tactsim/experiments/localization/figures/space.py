@@ -14,7 +14,6 @@ from matplotlib.image import imread
 from matplotlib.patches import Patch
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
 from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies
@@ -22,6 +21,7 @@ from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result
 
@@ -66,7 +66,7 @@ def _title(result: Result) -> str:
 def _scale(figure: Figure, axes: Any, grasp: LoadedTaxels, shown: ViewedGrasp) -> None:
     factor, unit = scale_of(grasp.largest_pressure, "Pa")
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+    bar = figure.colorbar(ScalarMappable(norm, PRESSURE_COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
     bar.set_label(f"mean {shown.meaning.replace('force', 'pressure')} on the taxel in {unit}: colour and length of its bar")
     bar.outline.set_linewidth(0.5)
     handles = [Patch(color=TRUE_COLOUR, label="true"), Patch(color=ESTIMATE_COLOUR, label="estimated")]
