@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.interfaces.readings import rising
 
 PROMINENCE = 0.15
 """Rise of a second maximum above the saddle to a higher one, over the strongest, from which the two are separate places. In the
 fast forward model of ``cases/grasp_plain.yaml`` no single ball of 1.5 to 8 mm, wherever it lies, makes a second maximum that
 rises by more than 0.09; the two balls of ``cases/grasp_two_lumps.yaml`` make one of 0.92. Two lumps nearer to each other than
 about two taxels have no saddle between them: only an estimator with a model of the tissue can tell them apart."""
+
+NOISES = 4.0
+"""Standard deviations of the noise, as the threshold of ``ThesisEstimator``, beyond which a maximum rises."""
 
 
 def separate_peaks(sums: Array, least: float) -> list[tuple[int, int]]:
@@ -35,6 +39,12 @@ def separate_peaks(sums: Array, least: float) -> list[tuple[int, int]]:
     peaks.append(_root(peak_of, 0))
     peaks.sort(key=lambda peak: -heights[peak])
     return [(peak // columns, peak % columns) for peak in peaks]
+
+
+def rises_apart(difference: Array, noise: float) -> bool:
+    """Whether a change of readings (jaw, row, column) in N rises at separate places, beyond noise of both readings in N."""
+    sums = np.maximum(rising(difference)[0], 0.0).sum(axis=0)
+    return len(separate_peaks(sums, max(2 * NOISES * noise, PROMINENCE * float(sums.max())))) > 1
 
 
 def nearest_peak(shape: tuple[int, ...], peaks: list[tuple[int, int]]) -> Array:

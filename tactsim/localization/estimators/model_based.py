@@ -19,6 +19,7 @@ from tactsim.localization.candidates import ball_candidates
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.region import CellRegion
+from tactsim.localization.separate_places import rises_apart
 from tactsim.units import Length
 
 EVERY, COARSE = 2, 4
@@ -56,8 +57,10 @@ class ModelBasedEstimator(Estimator):
     explains d better; then S lacks the model's error.
 
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
-    do not overlap (``evidence``), with the same S, on a coarser grid. If two are likelier, they are the answer, unless they are
-    nearer to each other in plan than the pitch of the taxels, where two may be one of another shape.
+    do not overlap (``evidence``), with the same S, on a coarser grid. Two are the answer if they are likelier, if the readings
+    rise at separate places (``separate_places``), or if the mean place lies outside its own region, as between two places where
+    one ball could be; unless they are nearer to each other in plan than the pitch of the taxels, where two may be one of another
+    shape.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -114,22 +117,25 @@ class ModelBasedEstimator(Estimator):
         probability = self._probability(total, change, nothing, something)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
-        pair = self._pair(readings, change, something, total)
-        if pair is not None:
-            return replace(pair, probability=probability)
         mean, covariance = _moments(np.column_stack([found.centers, found.radii, contrasts]), weights, spread)
         shape = tuple(map(len, response.axes))
         cells = np.bincount(found.cells, weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
         region = CellRegion(response.axes, cells)
+        pair = self._pair(readings, something, total, between=not region.contains(mean[:3]))
+        if pair is not None:
+            return replace(pair, probability=probability)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         words = "softer" if contrast < 0 else "stiffer"
         return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
 
-    def _pair(self, readings: Readings, change: Array, covariance: Array, one: float) -> Estimate | None:
-        """Two balls, if they are likelier than one, whose log evidence on the finest grid is ``one``; None if not."""
-        response, size = readings.response, readings.block_size
-        if self.second == 0 or response is None:
+    def _pair(self, readings: Readings, covariance: Array, one: float, *, between: bool) -> Estimate | None:
+        """Two balls, if they are likelier than one, whose log evidence on the finest grid is ``one``; None if not.
+
+        ``between``: the mean place of one ball lies where it hardly can be, between several places where it can.
+        """
+        response, size, difference = readings.response, readings.block_size, readings.difference
+        if self.second == 0 or response is None or difference is None:
             return None
         steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
         radii = list(np.linspace(*self.radii, steps))
@@ -141,11 +147,12 @@ class ModelBasedEstimator(Estimator):
                 ball_candidates(response, size, radii[1::2], gap=self.gap, every=COARSE),
             )
         )
-        white = Change(solve_triangular(root, change, lower=True), 1.0, self.contrast_spread)
+        white = Change(solve_triangular(root, difference.ravel(), lower=True), 1.0, self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
         single = max(one + nothing(white.values, 1.0), white.single(fine).evidence)
         odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
-        if odds <= 1:
+        apart = rises_apart(difference, readings.noise)
+        if odds <= 1 and not apart and not between:
             return None
         cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
         bodies = likely_bodies(two, fine, cell)
@@ -153,6 +160,13 @@ class ModelBasedEstimator(Estimator):
         if np.linalg.norm(first - other) < readings.layout.pitch:
             return None
         words = f"two balls explain the readings better than one, with a probability of {odds / (1 + odds):.3g}"
+        if odds <= 1:
+            why = (
+                "the sums of both jaws fall between them"
+                if apart
+                else "one ball could be in several places, none of them between"
+            )
+            words = f"two places explain the readings better than one, as {why}"
         return Estimate(True, bodies, words)
 
     def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
