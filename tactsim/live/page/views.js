@@ -94,6 +94,7 @@ export class View {
     const beside = (room[0] - this.scale * span[0]) / 2;
     this.origin = [MARGIN.left + beside, MARGIN.top + this.scale * span[1]];
     const key = [this.scale, ...this.origin].join(" ");
+    this.canvas.dataset.scale = this.scale;
     if (key !== this.key) { this.key = key; this.taxelPath = this.outlinePath = null; }
   }
 
