@@ -237,9 +237,7 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
             browser.get(address)
             until(lambda: "Off by" in words(browser, "estimate"))
             sections = "[...document.querySelectorAll('main > section')]"
-            bottoms = dict(
-                browser.execute_script(f"return {sections}.map((one) => [one.id, one.getBoundingClientRect().bottom])")
-            )
+            bottoms = dict(browser.execute_script(f"return {sections}.map((s) => [s.id, s.getBoundingClientRect().bottom])"))
             assert next(iter(bottoms)) == "words"
             assert max(bottoms.values()) <= 640
             bottom = "return document.getElementById(arguments[0]).getBoundingClientRect().bottom"

@@ -99,7 +99,13 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.imshow(
         factor * view.image, cmap=PRESSURE_COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1
     )
+    across, up = (_edges(view, grasp, extent, k) for k in (0, 1))
+    rim = [(int(len(edges) > count + 1),) * 2 for edges, count in zip((up, across), view.image.shape, strict=True)]
+    style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "norm": norm, "rasterized": True, "zorder": 0.9}
+    axis.pcolormesh(across, up, factor * np.pad(view.image, rim, mode="edge"), **style)
     size = 1e3 * grasp.scene.size
+    unknown: dict[str, Any] = {"facecolor": "#eceef0", "edgecolor": "#c3c8ce", "hatch": "////", "linewidth": 0.0, "zorder": 0.5}
+    axis.add_patch(Rectangle((0, 0), size[view.horizontal], size[view.vertical], **unknown))
     block = Rectangle((0, 0), size[view.horizontal], size[view.vertical], fill=False, edgecolor=GREY, linewidth=0.8, zorder=3)
     block.set_linestyle((0, (4, 3)))
     axis.add_patch(block)
@@ -145,6 +151,18 @@ def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]
     if view.horizontal == 1:
         sides[:2] = sides[1::-1]
     return sides[0], sides[1], sides[2], sides[3]
+
+
+def _edges(view: View, grasp: ViewedGrasp, extent: tuple[float, float, float, float], along: int) -> np.ndarray:
+    """Borders in mm of the columns (0) or rows (1) of the image, with the outer halves of the outer taxels as one more each."""
+    first, last = (extent[0], extent[1]) if along == 0 else (extent[3], extent[2])
+    edges = np.linspace(first, last, view.image.shape[1 - along] + 1)
+    axis = (view.horizontal, view.vertical)[along]
+    if axis == 2:
+        return edges
+    borders = grasp.scene.borders("xy"[axis])
+    outer = (borders[0, 0], borders[-1, 1]) if first < last else (borders[-1, 1], borders[0, 0])
+    return np.concatenate([[outer[0]], edges, [outer[1]]]) if len(borders) > 1 else edges
 
 
 def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
@@ -198,7 +216,7 @@ def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.axis("off")
     added = "sums" if shown == "force" else "means"
     handles: list[Any] = [
-        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block"),
+        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block; hatched: no taxel reads there"),
         Line2D([], [], color=INK, linewidth=0.6, label=f"taxels, their {added} in colour on the jaws"),
     ]
     if not grasp.valid.all():
