@@ -182,11 +182,11 @@ def empty_names() -> list[str]:
 
 
 def household_names() -> list[str]:
-    """Functions, arguments and variables of the engine and of mechanics by a household word."""
+    """Functions, arguments and variables of the engine, of mechanics and of the page by a household word."""
     found = set()
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
-        for node in ast.walk(tree(path)) if place.startswith((*ENGINE, "tactsim/mechanics/")) else ():
+        for node in ast.walk(tree(path)) if place.startswith((*ENGINE, "tactsim/mechanics/", "tactsim/live/")) else ():
             names = [getattr(node, field, None) for field in ("name", "id", "attr", "arg")]
             found |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in HOUSEHOLD}
     return sorted(found)
