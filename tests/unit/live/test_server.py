@@ -69,7 +69,7 @@ def test_a_socket_from_another_page_is_refused(grasp: Content, origin: str | Non
 
 
 def test_the_page_loads_nothing_from_elsewhere(grasp: Content) -> None:
-    names = ("", "page.js", "controls.js", "space.js", "taxels.js", "views.js", "wire.js", "page.css", "icon.svg")
+    names = ("", "page.js", "answer.js", "controls.js", "space.js", "taxels.js", "views.js", "wire.js", "page.css", "icon.svg")
     vendored = tuple(
         f"vendor/three/{name}" for name in ("three.module.min.js", "three.core.min.js", "OrbitControls.js", "LICENSE")
     )
