@@ -15,6 +15,7 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.signal import oaconvolve
 
 from tactsim.array import Array
+from tactsim.deadline import check_time
 from tactsim.errors import InvalidQuantity
 
 FINER = 4
@@ -68,6 +69,7 @@ class LumpResponse:
         voxels = np.stack([np.bincount(index, row, int(np.prod(counts))) for row in flat]).reshape(-1, *counts)
         values = []
         for radius in radii:
+            check_time()
             ball = _ball(float(radius), cell)
             values.append(oaconvolve(voxels, ball[None], mode="same", axes=(1, 2, 3)))
         table = np.moveaxis(np.stack(values), 1, -1).reshape(len(radii), *counts, *densities.shape[:-1])

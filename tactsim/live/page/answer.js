@@ -23,7 +23,7 @@ export class Answer {
     get("busy").hidden = !message.busy;
     get("again").hidden = !message.cancelled;
     if (message.busy) {
-      const done = message.systems ? `, ${message.systems} parts done` : "";
+      const done = message.systems ? `, ${message.systems} part${message.systems === 1 ? "" : "s"} done` : "";
       const stage = message.stage ? `: ${message.stage}` : "";
       get("busy-words").textContent = `Computing ${this.#moment(message)}for ${Math.round(message.seconds)} s${done}${stage}`;
     }
