@@ -1,10 +1,10 @@
-"""A limit on the time that a computation may take, for those who would rather lose one case than wait for it."""
+"""A limit on the time that a computation may take, and a way to stop it from another thread."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
@@ -12,6 +12,19 @@ from tactsim.errors import OutOfTime
 
 _LIMIT: ContextVar[tuple[float, float] | None] = ContextVar("limit", default=None)
 """When the computation in this thread must end, on the monotonic clock, and the seconds that it had."""
+
+_STOPPED: ContextVar[Callable[[], bool] | None] = ContextVar("stopped", default=None)
+"""Asked now and then whether the computation in this thread is to stop."""
+
+
+@contextmanager
+def stopped_by(asked: Callable[[], bool]) -> Iterator[None]:
+    """The computation inside ends with an error once ``asked``, called before each linear system, is true."""
+    token = _STOPPED.set(asked)
+    try:
+        yield
+    finally:
+        _STOPPED.reset(token)
 
 
 @contextmanager
@@ -39,8 +52,11 @@ def check_time() -> None:
     Raises
     ------
     OutOfTime
-        If the limit has passed.
+        If the limit has passed, or another thread has stopped the computation.
     """
+    stopped = _STOPPED.get()
+    if stopped is not None and stopped():
+        raise OutOfTime("was stopped")
     limit = _LIMIT.get()
     if limit is not None and seconds_left() < 0:
         raise OutOfTime(f"took longer than the {limit[1]:g} s that it was given")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,7 +23,7 @@ def case_path(named: str | Path) -> Path:
         If it is a bare name, and no shipped case has it.
     """
     path = Path(named)
-    if path.suffix or len(path.parts) != 1 or path.exists():
+    if not re.fullmatch(r"\w+", str(named)) or path.exists():
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:

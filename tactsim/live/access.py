@@ -27,7 +27,7 @@ HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
-"""Sent with every answer: nothing from elsewhere, no address told to elsewhere."""
+"""Sent with every answer: nothing from elsewhere, no address given to elsewhere."""
 
 
 def guard(token: str, host: str) -> Middleware:
@@ -84,5 +84,5 @@ def _known_host(named: str, host: str) -> bool:
 
 
 def same_origin(request: web.Request) -> bool:
-    """Whether a web socket is asked for by a page of this server; browsers always tell the origin."""
+    """Whether a web socket is asked for by a page of this server; browsers always send the origin."""
     return request.headers.get("Origin") == f"{request.scheme}://{request.headers.get('Host', '')}"

@@ -14,7 +14,7 @@ from tactsim.outside.text import one_line
 LOGGER = logging.getLogger("tactsim.live")
 SERVERS = ("tactsim.live", "aiohttp", "asyncio")
 """Loggers of this page and of the libraries that serve it."""
-MOST_TOLD = 10
+MOST_REPORTED = 10
 """Different defects that are reported while the page is open; a client that provokes more of them cannot fill the terminal."""
 OF_CLIENTS = (
     HttpProcessingError,
@@ -35,40 +35,40 @@ def report(error: BaseException) -> str:
 
 
 @contextmanager
-def telling_defects(tell: Callable[[str], None]) -> Iterator[None]:
-    """A block whose logged errors are passed to ``tell`` in one line each; nothing else of the libraries' logs is shown."""
-    teller = _Teller(tell)
+def reporting_defects(write: Callable[[str], None]) -> Iterator[None]:
+    """A block whose logged errors are passed to ``write`` in one line each; nothing else of the libraries' logs is shown."""
+    handler = _Reporter(write)
     loggers = [logging.getLogger(name) for name in SERVERS]
     before = [(logger.propagate, logger.level) for logger in loggers]
     for logger in loggers:
-        logger.addHandler(teller)
+        logger.addHandler(handler)
         logger.propagate = False
         logger.setLevel(logging.ERROR)
     try:
         yield
     finally:
         for logger, (propagate, level) in zip(loggers, before, strict=True):
-            logger.removeHandler(teller)
+            logger.removeHandler(handler)
             logger.propagate = propagate
             logger.setLevel(level)
 
 
-class _Teller(logging.Handler):
+class _Reporter(logging.Handler):
     """Makes one line of a record, unless a client caused it or it was reported before."""
 
-    def __init__(self, tell: Callable[[str], None]):
+    def __init__(self, write: Callable[[str], None]):
         super().__init__(logging.ERROR)
-        self._tell = tell
-        self._told: set[str] = set()
+        self._write = write
+        self._reported: set[str] = set()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Tells the record."""
+        """Reports the record."""
         error = record.exc_info[1] if record.exc_info else None
         if isinstance(error, OF_CLIENTS):
             return
         first = record.getMessage().partition("\n")[0]  # asyncio adds the source of tasks and coroutines below
         words = first if error is None else f"{type(error).__name__}: {one_line(error, 200)}"
         line = f"warning: internal error of the page ({one_line(words, 300)}); please report it"
-        if line not in self._told and len(self._told) < MOST_TOLD:
-            self._told.add(line)
-            self._tell(line)
+        if line not in self._reported and len(self._reported) < MOST_REPORTED:
+            self._reported.add(line)
+            self._write(line)

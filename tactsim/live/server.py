@@ -16,7 +16,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from tactsim.errors import StorageError
 from tactsim.live.access import guard, same_origin
-from tactsim.live.defects import report, telling_defects
+from tactsim.live.defects import report, reporting_defects
 from tactsim.live.session.content import Content
 from tactsim.live.session.session import Session
 from tactsim.live.session.thinking import Threads
@@ -65,7 +65,7 @@ def application(content: Content, token: str, host: str = LOOPBACK) -> web.Appli
 
 def _page_files() -> dict[str, Traversable]:
     """Everything that may be asked for, by its path below the token."""
-    found: dict[str, Traversable] = {}
+    served: dict[str, Traversable] = {}
     folders = [("", files("tactsim.live") / "page")]
     while folders:
         above, folder = folders.pop()
@@ -74,16 +74,16 @@ def _page_files() -> dict[str, Traversable]:
             if entry.is_dir():
                 folders.append((f"{name}/", entry))
             elif PurePosixPath(name).suffix in TYPES:
-                found[name] = entry
-    return found
+                served[name] = entry
+    return served
 
 
 async def _file(request: web.Request) -> web.StreamResponse:
     name = request.match_info.get("name", "index.html")
-    found = request.app[FILES].get(name)
-    if found is None:
+    file = request.app[FILES].get(name)
+    if file is None:
         raise web.HTTPNotFound
-    return web.Response(body=found.read_bytes(), content_type=TYPES[PurePosixPath(name).suffix], charset="utf-8")
+    return web.Response(body=file.read_bytes(), content_type=TYPES[PurePosixPath(name).suffix], charset="utf-8")
 
 
 async def _socket(request: web.Request) -> web.StreamResponse:
@@ -100,7 +100,7 @@ async def _socket(request: web.Request) -> web.StreamResponse:
     sockets.add(socket)
     try:
         await _converse(socket, Session(request.app[CONTENT], socket, request.app[THREADS]))
-    except Exception as error:  # noqa: BLE001  the page is told by the reason of the closing, the user by a line
+    except Exception as error:  # noqa: BLE001  the page gets it as reason of the closing, the user as a line
         await socket.close(code=WSCloseCode.INTERNAL_ERROR, message=report(error).encode()[:LONGEST_REASON])
     finally:
         sockets.discard(socket)
@@ -137,7 +137,7 @@ class Serving:
 
     ready: Callable[[str], None]
     """Called once with the address of the page."""
-    tell: Callable[[str], None]
+    report: Callable[[str], None]
     """Called with a line about every defect of the server."""
     host: str = LOOPBACK
     port: int = 0
@@ -152,7 +152,7 @@ def serve(content: Content, serving: Serving) -> None:
     StorageError
         If the port is taken or the address is not one of this machine.
     """
-    with telling_defects(serving.tell):
+    with reporting_defects(serving.report):
         asyncio.run(_serve(content, serving))
 
 
@@ -178,8 +178,8 @@ async def _serve(content: Content, serving: Serving) -> None:
         try:
             await web.TCPSite(runner, serving.host, serving.port).start()
         except (OSError, ValueError) as error:
-            told = f"{getattr(error, 'strerror', None) or one_line(error)}; give another --port or leave it out"
-            raise StorageError(f"cannot serve on {one_line(serving.host)} port {serving.port}: {told}") from None
+            cause = f"{getattr(error, 'strerror', None) or one_line(error)}; give another --port or leave it out"
+            raise StorageError(f"cannot serve on {one_line(serving.host)} port {serving.port}: {cause}") from None
         serving.ready(f"http://{_in_url(serving.host)}:{runner.addresses[0][1]}/{token}/")
         await stop.wait()
 

@@ -14,6 +14,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
+from tactsim.deadline import check_time
 from tactsim.errors import InvalidQuantity
 
 FINER = 4
@@ -67,6 +68,7 @@ class LumpResponse:
         voxels = np.stack([np.bincount(index, row, int(np.prod(counts))) for row in flat]).reshape(-1, *counts)
         values = []
         for radius in radii:
+            check_time()
             ball = _ball(float(radius), cell)
             values.append(scipy.signal.oaconvolve(voxels, ball[None], mode="same", axes=(1, 2, 3)))
         table = np.moveaxis(np.stack(values), 1, -1).reshape(len(radii), *counts, *densities.shape[:-1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -129,6 +130,53 @@ class GaussianRegion(Region):
     def _quantile(self, probability: float) -> float:
         check_probability(probability)
         return float(scipy.stats.chi2.ppf(probability, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class OutlinedRegion(Region):
+    """A region that is known by its outlines alone, for the one probability ``LEVEL``, as a result keeps it.
+
+    Attributes
+    ----------
+    outlines : by view, closed lines (n, 2) in m
+    """
+
+    outlines: Mapping[str, Sequence[Array]]
+
+    def contains(self, point: Array, probability: float = LEVEL) -> bool:
+        """Whether the point lies within the outlines of every view."""
+        self._check(probability)
+        return all(_within(np.delete(point, away), self.outlines.get(view, ())) for view, away in AWAY.items())
+
+    def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
+        """Of the outlines from above and from the front."""
+        self._check(probability)
+        area = sum(
+            abs((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum()) / 2
+            for line in map(np.asarray, self.outlines.get("top", ()))
+        )
+        heights = np.concatenate([np.asarray(line)[:, 1] for line in self.outlines.get("front", ())] or [np.zeros(1)])
+        return 2 * float(np.sqrt(area / np.pi)), float(np.ptp(heights))
+
+    def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
+        """The outlines as they were kept."""
+        self._check(probability)
+        view = next(name for name, axis in AWAY.items() if axis == away)
+        return [np.asarray(line, dtype=float) for line in self.outlines.get(view, ())]
+
+    def _check(self, probability: float) -> None:
+        if probability != LEVEL:
+            raise InvalidQuantity(f"a kept region of probability {probability}; known: {LEVEL}")
+
+
+def _within(point: Array, lines: Sequence[Array]) -> bool:
+    """Whether a point (2,) lies within closed lines: a ray from it crosses them an odd number of times."""
+    crossings = 0
+    for line in map(np.asarray, lines):
+        (x0, y0), (x1, y1) = line[:-1].T, line[1:].T
+        meets = (y0 > point[1]) != (y1 > point[1])
+        crossings += int((meets & (point[0] < x0 + (x1 - x0) * (point[1] - y0) / np.where(meets, y1 - y0, 1.0))).sum())
+    return crossings % 2 == 1
 
 
 def check_probability(probability: float) -> None:

@@ -20,7 +20,7 @@ from live_pages import description, frame_line, grasp_folder, line, made_up_stor
 from served_pages import FRAMES, OP_TEXT, fault_or_code, framed, received, requests, served
 
 from tactsim.errors import InputError
-from tactsim.live.defects import LOGGER, telling_defects
+from tactsim.live.defects import LOGGER, reporting_defects
 from tactsim.live.session.commands import read_command
 from tactsim.live.sources.feed import Feed
 
@@ -204,7 +204,7 @@ def test_any_command_is_read_or_refused_in_a_line(text: str) -> None:
 
 def test_a_defect_is_reported_in_one_line_and_once() -> None:
     reported: list[str] = []
-    with telling_defects(reported.append):
+    with reporting_defects(reported.append):
         for _ in range(3):
             LOGGER.error("x", exc_info=ValueError("a\x1b[31m\nb"))
         asyncio.run(_failing_task())

@@ -11,6 +11,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset import load
 from tactsim.plotting.canvas import despined, new_figure, png, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 
 if TYPE_CHECKING:
     import xarray
@@ -63,7 +64,7 @@ def taxels(force: Array) -> bytes:
         figure = new_figure(5.2, 2.4)
         for number, (name, values) in enumerate(zip(JAWS, force, strict=True), 1):
             axis = figure.add_subplot(1, 2, number)
-            image = axis.imshow(values, origin="lower", vmin=0.0, vmax=float(force.max()), cmap="viridis")
+            image = axis.imshow(values, origin="lower", vmin=0.0, vmax=float(force.max()), cmap=PRESSURE_COLOURS)
             axis.set_title(f"mean force, {name}")
             axis.set_xticks(range(values.shape[1]), [str(k + 1) for k in range(values.shape[1])])
             axis.set_yticks(range(values.shape[0]), [str(k + 1) for k in range(values.shape[0])])

@@ -87,7 +87,7 @@ class Localization(Experiment):
                 rows(self.history_units, readings.filled.sum(axis=(1, 2))[:, None]),
                 quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
                 assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
-                warnings=self._warnings(stored, plain, readings),
+                warnings=[*self._warnings(stored, plain, readings), *_several_places(estimate)],
                 scene=self._scene(scene, readings, estimate),
             )
         )
@@ -130,6 +130,16 @@ class Localization(Experiment):
         if silent.any():
             warnings.append(f"{silent_words(silent)}; name dead taxels by the key dead")
         return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
+
+
+def _several_places(estimate: Estimate) -> list[str]:
+    """The places of an estimator of one inclusion that several explain better; those of classes state their number anyway."""
+    if estimate.classes is not None or len(estimate.inclusions) < 2:
+        return []
+    places = "; ".join(map(inclusion_in_words, estimate.inclusions))
+    return [
+        f"no one place explains the readings, the quantities are those of the strongest of {len(estimate.inclusions)}: {places}"
+    ]
 
 
 def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:

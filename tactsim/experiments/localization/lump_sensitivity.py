@@ -18,6 +18,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
+from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
@@ -74,6 +75,8 @@ def sensitivity(setup: GraspSetup) -> Sensitivity:
         If the grasp has an inclusion.
     ConvergenceError
         If no step of its history converges.
+    OutOfTime
+        If its time has passed, or it was stopped.
     """
     if setup.inclusions:
         raise InputError("the response is that of plain tissue; give a grasp without inclusions")
@@ -90,6 +93,7 @@ def sensitivity(setup: GraspSetup) -> Sensitivity:
     densities = []
     for side in JAWS:
         for border in adjoint.indicators(side, last.contacts[JAWS.index(side)].place, plain.matrix):
+            check_time()
             gradient = adjoint.gradient(side, border)
             densities.append(np.einsum("ijeq,ijeq->eq", stress, gradient).ravel())
     shape = (len(JAWS), plain.matrix.rows, plain.matrix.columns)

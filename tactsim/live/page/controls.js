@@ -2,6 +2,7 @@
 import { readable } from "./wire.js";
 
 const get = (id) => document.getElementById(id);
+const NEEDED = "no grasp without a lump to compare with; start again with --reference FOLDER";
 
 function option(value, words) {
   const made = document.createElement("option");
@@ -36,10 +37,14 @@ export class Controls {
       const label = document.createElement("label"), input = document.createElement("input");
       Object.assign(input, { type: "radio", name: "estimator", value: one.name, disabled: !one.enabled });
       label.className = one.enabled ? "" : "off";
-      label.title = one.enabled ? `key ${k + 1}` : "needs the same grasp without a lump: --reference FOLDER";
+      label.title = one.enabled ? `key ${k + 1}` : NEEDED;
       label.append(input, document.createTextNode(`${k + 1} ${one.label}`));
       place.append(label);
     });
+    const greyed = message.estimators.flatMap((one, k) => (one.enabled ? [] : [k + 1]));
+    get("missing").hidden = !greyed.length;
+    get("missing").textContent = greyed.length ? `${greyed.join(", ")} greyed: ${NEEDED}` : "";
+    place.append(get("missing"));
     get("samples").hidden = !message.samples;
     if (!message.samples) return;
     get("number").max = message.samples.count - 1;
@@ -53,11 +58,11 @@ export class Controls {
     get("source").replaceChildren(...message.sources.map((one) => option(one.name, one.label)));
     get("source").value = message.source;
     if (!message.sample) return;
-    const { number, split, status, chosen, told } = message.sample;
+    const { number, split, status, chosen, state } = message.sample;
     if (number !== null) get("number").value = number;
     get("split").value = split;
     get("status").value = status;
-    get("sample-words").textContent = `${number === null ? "none" : `${told.split}, ${told.status}`}; ${chosen} to choose from`;
+    get("sample-words").textContent = `${number === null ? "none" : `${state.split}, ${state.status}`}; ${chosen} to choose from`;
   }
 
   times(times, live) {

@@ -5,11 +5,12 @@ import { OrbitControls } from "./vendor/three/OrbitControls.js";
 const PLATE = 0.06, BAR = 0.55, LEAST_BAR = 0.01;        // over the height of the block, as in the stored pictures
 const FROM = [0.55, -1.0, 0.5];                          // from the block to the eye
 const TURN = Math.PI / 12;
+const AWAY = { front: 1, left: 0, top: 2 };            // axis along which each view looks
 const SLOW = 24;                                         // ms after drawing until the browser draws again, from which it is slow
 
 export class Space {
-  constructor(canvas) {
-    this.canvas = canvas;
+  constructor(canvas, labels) {
+    Object.assign(this, { canvas, labels, marks: [] });
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(30, 1, 1, 5000);
@@ -18,22 +19,58 @@ export class Space {
     this.controls.addEventListener("change", () => this.ask());
     this.light = new THREE.DirectionalLight(0xffffff, 1.6);
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 2.2), this.light);
-    this.fixed = new THREE.Group(); this.bodies = new THREE.Group(); this.found = new THREE.Group();
-    this.world.add(this.fixed, this.bodies, this.found);
+    this.fixed = new THREE.Group(); this.bodies = new THREE.Group(); this.estimated = new THREE.Group();
+    this.world.add(this.fixed, this.bodies, this.estimated);
     new ResizeObserver(() => this.ask()).observe(canvas);
   }
 
   setScene(scene) {
     const same = this.scene && String(this.scene.size) === String(scene.size);
     this.scene = scene;
-    for (const group of [this.fixed, this.bodies, this.found]) empty(group);
+    for (const group of [this.fixed, this.bodies, this.estimated]) empty(group);
     const [x, y, z] = scene.size, box = new THREE.BoxGeometry(x, y, z);
     const edges = new THREE.LineSegments(new THREE.EdgesGeometry(box), new THREE.LineBasicMaterial({ color: 0x8b949e }));
     const tissue = new THREE.Mesh(box, glass("#f0b8a0", 0.16));
     for (const part of [edges, tissue]) { part.position.set(x / 2, y / 2, z / 2); this.fixed.add(part); }
     this.jaws = scene.jaws.map((jaw) => this.#jaw(jaw));
+    this.#drawAxes();
     if (!same) this.reset();
     this.ask();
+  }
+
+  // Arrows along x and z from the front left and along y from the front right, beside the jaws, and where the front is.
+  #drawAxes() {
+    const { size, jaws } = this.scene, reach = 0.1 * Math.max(...size), colour = 0x6e7681;
+    const [wide, deep] = ["width", "depth"].map((side, k) => Math.max(size[k], ...jaws.map((jaw) => jaw[side])));
+    const [left, right] = [-1, 1].map((side) => size[0] / 2 + side * (wide / 2 + reach / 2)), front = size[1] / 2 - deep / 2 - reach / 2;
+    this.marks = [];
+    [[0, [left, front, 0]], [1, [right, front, 0]], [2, [left, front, 0]]].forEach(([axis, corner]) => {
+      const from = new THREE.Vector3(...corner), along = new THREE.Vector3();
+      along.setComponent(axis, 1);
+      if (axis < 2) from.setComponent(axis, 0);
+      this.fixed.add(new THREE.ArrowHelper(along, from, size[axis] + reach / 2, colour, 0.5 * reach, 0.25 * reach));
+      this.marks.push({ at: from.clone().addScaledVector(along, size[axis] + 1.2 * reach), words: `${"xyz"[axis]}, ${size[axis]} mm` });
+    });
+    const tip = front - 1.6 * reach, middle = size[0] / 2;
+    const shape = new THREE.BufferGeometry();
+    const points = [middle - reach, front - 0.5 * reach, 0, middle + reach, front - 0.5 * reach, 0, middle, tip, 0];
+    shape.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+    this.fixed.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide })));
+    this.marks.push({ at: new THREE.Vector3(middle, tip - reach, 0), words: "front", kind: "front" });
+    this.labels.replaceChildren(...this.marks.map((mark) => {
+      mark.place = document.createElement("span");
+      mark.place.textContent = mark.words;
+      mark.place.className = mark.kind || "";
+      return mark.place;
+    }));
+  }
+
+  #placeLabels() {
+    for (const { at, place } of this.marks) {
+      const seen = at.clone().project(this.camera);
+      place.style.left = `${(50 * (seen.x + 1)).toFixed(2)}%`;
+      place.style.top = `${(50 * (1 - seen.y)).toFixed(2)}%`;
+    }
   }
 
   #jaw(jaw) {
@@ -69,11 +106,28 @@ export class Space {
     this.ask();
   }
 
-  setEstimate(found) {
+  // The outlines of the region of 90 % in the three views, each in the plane through the estimated centre.
+  #region(one) {
+    const dashes = new THREE.LineDashedMaterial({ color: this.scene.estimate_colour, depthTest: false, dashSize: 0.8, gapSize: 0.5 });
+    return Object.entries(AWAY).flatMap(([view, away]) => (one.region[view] || []).map((flat) => {
+      const points = [];
+      for (let k = 0; k < flat.length; k += 2) {
+        const point = [flat[k], flat[k + 1]];
+        point.splice(away, 0, one.center[away]);
+        points.push(new THREE.Vector3(...point));
+      }
+      const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), dashes);
+      line.computeLineDistances();
+      line.renderOrder = 3;
+      return line;
+    }));
+  }
+
+  setEstimate(inclusions) {
     if (!this.scene) return;
-    empty(this.found);
+    empty(this.estimated);
     const lines = new THREE.LineBasicMaterial({ color: this.scene.estimate_colour, depthTest: false });
-    for (const one of found) {
+    for (const one of inclusions) {
       const group = new THREE.Group(), arm = one.radius || this.scene.pitch / 3;
       const ends = [[arm, 0, 0], [0, arm, 0], [0, 0, arm]].flatMap((end) => [...end.map((v) => -v), ...end]);
       const cross = new THREE.BufferGeometry();
@@ -86,7 +140,7 @@ export class Space {
       }
       group.position.set(...one.center);
       group.renderOrder = 3;
-      this.found.add(group);
+      this.estimated.add(group, ...this.#region(one));
     }
     this.ask();
   }
@@ -177,6 +231,8 @@ export class Space {
     }
     this.light.position.copy(this.camera.position);
     this.renderer.render(this.world, this.camera);
+    this.#placeLabels();
+    this.canvas.dataset.regions = String(this.estimated.children.filter((part) => part.isLine && !part.isLineSegments).length);
     this.canvas.dataset.drawn = String(Number(this.canvas.dataset.drawn || 0) + 1);
     this.canvas.dataset.camera = this.camera.position.toArray().map((v) => v.toFixed(2)).join(" ");
   }

@@ -1,10 +1,11 @@
 // Front, left and top view: the picture in colour, block, jaws with the sums of their taxels, true and estimated inclusions.
-import { readable } from "./wire.js";
+import { evenly, readable } from "./wire.js";
 
 const JAW = 1.2, ROOM = 1.0;                  // thickness with which a jaw is drawn and room around everything, in mm
 const MARGIN = { left: 40, right: 10, top: 4, bottom: 64 };      // in px, for ticks and the colour scale
 const AXES = { front: [0, 2], left: [1, 2], top: [0, 1] };
 const NAMES = ["x", "y", "z"];
+const MOST_OUTLINED = 8;
 
 export class View {
   constructor(section, kind) {
@@ -31,7 +32,8 @@ export class View {
     this.pixels = this.picture.getContext("2d").createImageData(scene.shape[1], scene.shape[0]);
     this.#setRamp(scene.colours);
     this.key = "";
-    this.extent = [...this.#sides(this.across, scene.shape[1]), ...this.#sides(this.up, scene.shape[0])];
+    const across = this.#reach(this.across, scene.shape[1]), up = this.#reach(this.up, scene.shape[0]);
+    this.extent = [across[0], across[3], up[0], up[3]];
     const thick = this.up === 2 ? JAW : 0;
     this.low = [Math.min(0, this.extent[0]) - ROOM, Math.min(0, this.extent[2]) - thick - ROOM];
     this.high = [Math.max(scene.size[this.across], this.extent[1]) + ROOM,
@@ -43,6 +45,14 @@ export class View {
     const pen = this.ramp.getContext("2d"), data = pen.createImageData(256, 1);
     for (let k = 0; k < 256; k++) data.data.set([...colours.slice(3 * k, 3 * k + 3), 255], 4 * k);
     pen.putImageData(data, 0, 0);
+  }
+
+  // Begin, first and last pixel's middle and end in mm along an axis of the picture: the outer taxels reach beyond their centres.
+  #reach(axis, count) {
+    const [first, last] = this.#sides(axis, count);
+    if (axis === 2) return [first, first, last, last];
+    const borders = this.#borders(axis);
+    return [Math.min(borders[0][0], first), first, last, Math.max(borders.at(-1)[1], last)];
   }
 
   // The outermost pixels stand at the centres of the outermost taxels; between the jaws the picture fills the height.
@@ -84,6 +94,7 @@ export class View {
     const beside = (room[0] - this.scale * span[0]) / 2;
     this.origin = [MARGIN.left + beside, MARGIN.top + this.scale * span[1]];
     const key = [this.scale, ...this.origin].join(" ");
+    this.canvas.dataset.scale = this.scale;
     if (key !== this.key) { this.key = key; this.taxelPath = this.outlinePath = null; }
   }
 
@@ -110,9 +121,30 @@ export class View {
       data[4 * k + 2] = table[3 * levels[k] + 2]; data[4 * k + 3] = 255;
     }
     this.picture.getContext("2d").putImageData(this.pixels, 0, 0);
-    const [a0, a1, b0, b1] = this.extent, [x0, y0] = this.#at(a0, b1), [x1, y1] = this.#at(a1, b0);
+    this.#hatchUnknown(pen);
     pen.imageSmoothingEnabled = false;
-    pen.drawImage(this.picture, Math.min(x0, x1), y0, Math.abs(x1 - x0), y1 - y0);
+    const [height, width] = this.scene.shape, across = this.#reach(this.across, width), up = this.#reach(this.up, height);
+    // Over the outer halves of the outer taxels the picture goes on as at their centres: source and length in it, from and to in mm.
+    const parts = (reach, count) => [[0, 1, reach[0], reach[1]], [0, count, reach[1], reach[2]], [count - 1, 1, reach[2], reach[3]]];
+    for (const [u, du, a0, a1] of parts(across, width)) for (const [v, dv, b0, b1] of parts(up, height)) {
+      if (a1 - a0 < 1e-9 || b1 - b0 < 1e-9) continue;
+      const [x0, y0] = this.#at(a0, b1), [x1, y1] = this.#at(a1, b0);
+      const from = this.kind === "left" ? width - u - du : u;
+      pen.drawImage(this.picture, from, height - v - dv, du, dv, Math.min(x0, x1), y0, Math.abs(x1 - x0) + 0.4, y1 - y0 + 0.4);
+    }
+  }
+
+  // Where no taxel reads, the block is hatched.
+  #hatchUnknown(pen) {
+    const [x0, y0] = this.#at(0, this.scene.size[this.up]), [x1, y1] = this.#at(this.scene.size[this.across], 0);
+    const left = Math.min(x0, x1), right = Math.max(x0, x1);
+    pen.save();
+    pen.beginPath(); pen.rect(left, y0, right - left, y1 - y0); pen.clip();
+    pen.fillStyle = this.quiet; pen.globalAlpha = 0.16; pen.fillRect(left, y0, right - left, y1 - y0);
+    pen.globalAlpha = 0.55; pen.strokeStyle = this.quiet; pen.lineWidth = 0.8; pen.beginPath();
+    for (let x = left - (y1 - y0); x < right; x += 6) { pen.moveTo(x, y1); pen.lineTo(x + y1 - y0, y0); }
+    pen.stroke();
+    pen.restore();
   }
 
   #drawBlock(pen) {
@@ -127,7 +159,8 @@ export class View {
       this.taxelPath = new Path2D();
       for (const across of x) for (const along of y) this.#rect(this.taxelPath, ...across, ...along, "rect");
     }
-    for (const [colour, width] of [["#ffffffb0", 1.6], ["#30363d", 0.6]]) {
+    const many = Math.max(rows, columns) > MOST_OUTLINED;      // the outlines of many would hide the map
+    for (const [colour, width] of many ? [["#30363d50", 0.5]] : [["#ffffffb0", 1.6], ["#30363d", 0.6]]) {
       pen.strokeStyle = colour; pen.lineWidth = width;
       pen.stroke(this.taxelPath);
     }
@@ -219,7 +252,7 @@ export class View {
     for (let a = 0; a <= this.scene.size[this.across] + 1e-9; a += step) pen.fillText(String(a), this.#at(a, 0)[0], bottom + 2);
     pen.textAlign = "right"; pen.textBaseline = "middle";
     const edge = Math.min(this.#at(this.low[0], 0)[0], this.#at(this.high[0], 0)[0]);
-    const upStep = 16 / this.scale > 5 ? 10 : 5;
+    const upStep = 22 / this.scale > 10 ? 20 : 22 / this.scale > 5 ? 10 : 5;
     for (let b = 0; b <= this.scene.size[this.up] + 1e-9; b += upStep) pen.fillText(String(b), edge - 2, this.#at(0, b)[1]);
     pen.textAlign = "center"; pen.textBaseline = "top";
     pen.fillText(`${NAMES[this.across]} in mm`, this.origin[0] + this.scale * (this.high[0] - this.low[0]) / 2, bottom + 15);
@@ -234,17 +267,21 @@ export class View {
     const end = frame.scales[k] * (unit === "kPa" ? 1e-3 / (this.scene.area * summed) : 1);
     const small = unit === "N" && end < 0.1, factor = small ? 1e3 : 1;
     const meaning = unit === "kPa" ? frame.meaning.replace("force", "mean pressure") : frame.meaning;
-    const width = Math.min(180, box.width - 200), left = MARGIN.left, y = box.height - 26;
+    const width = Math.min(180, Math.max(60, 0.42 * box.width)), left = MARGIN.left, y = box.height - 26;
     pen.imageSmoothingEnabled = true;
     pen.drawImage(this.ramp, left, y, width, 9);
     pen.strokeStyle = this.quiet; pen.lineWidth = 0.6; pen.strokeRect(left, y, width, 9);
     pen.fillStyle = this.quiet; pen.textBaseline = "top"; pen.font = "11px system-ui, sans-serif";
+    const words = evenly(factor * end, 3);
     [0, 0.5, 1].forEach((share) => {
-      pen.textAlign = "center";
-      pen.fillText(readable(factor * share * end, 3), left + share * width, y + 11);
+      pen.textAlign = share === 0 ? "left" : share === 1 ? "right" : "center";
+      pen.fillText(words(factor * share * end), left + share * width, y + 11);
     });
     pen.textAlign = "left"; pen.textBaseline = "middle"; pen.fillStyle = this.ink;
-    pen.fillText(`${meaning} in ${small ? "mN" : unit}`, left + width + 14, y + 5, Math.max(40, box.width - left - width - 20));
+    const [caption, room] = [`${meaning} in ${small ? "mN" : unit}`, Math.max(40, box.width - left - width - 20)];
+    const half = caption.lastIndexOf(" ", caption.length * 0.6), fits = pen.measureText(caption).width <= room;
+    const lines = fits ? [caption] : [caption.slice(0, half), caption.slice(half + 1)];
+    lines.forEach((line, n) => pen.fillText(line, left + width + 14, y + 5 + (lines.length - 1) * (14 * n - 4), room));
     this.words = `${meaning}, scale to ${readable(factor * end, 3)} ${small ? "mN" : unit}`;
   }
 }

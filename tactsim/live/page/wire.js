@@ -19,3 +19,27 @@ export function readable(value, digits = 4) {
   const size = Math.abs(value);
   return size < 1e-5 || size >= 1e6 ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
 }
+
+// Numbers of one table: all with the decimals that its largest needs for some digits, so that they compare.
+export function evenly(largest, digits = 3) {
+  const size = Math.abs(largest);
+  if (!(size >= 1e-5 && size < 1e6)) return (value) => readable(value, digits);
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return (value) => (Number.isFinite(value) ? value.toFixed(decimals) : "–");
+}
+
+// Draws the colour map as a bar with numbers under its begin, middle and end.
+export function drawRamp(pen, colours, { left, top, width, height }, words) {
+  for (let k = 0; k < width; k++) {
+    const at = 3 * Math.round((255 * k) / Math.max(1, width - 1));
+    pen.fillStyle = `rgb(${colours[at]},${colours[at + 1]},${colours[at + 2]})`;
+    pen.fillRect(left + k, top, 1.5, height);
+  }
+  pen.fillStyle = pen.strokeStyle; pen.textBaseline = "top";
+  pen.lineWidth = 0.6; pen.strokeRect(left, top, width, height);
+  words.forEach((word, k) => {
+    const share = k / (words.length - 1);
+    pen.textAlign = share === 0 ? "left" : share === 1 ? "right" : "center";
+    pen.fillText(word, left + share * width, top + height + 2);
+  });
+}

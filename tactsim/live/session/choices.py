@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import StorageError, TactsimError
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
-from tactsim.interfaces.estimate import PARAMETERS, Estimate, EstimatedInclusion
+from tactsim.interfaces.estimate import PARAMETERS, Estimate, EstimatedInclusion, Region
 from tactsim.interfaces.readings import Readings
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import DAMAGE
 from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.localization.estimators.learned import LearnedEstimator
+from tactsim.localization.region import GaussianRegion, OutlinedRegion
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Quantity
 
 
-class Finder(Protocol):
-    """What finds inclusions: an estimator, or the memory of one."""
+class AnyEstimation(Protocol):
+    """What estimates inclusions: an estimator, or an estimate that was stored."""
 
     @property
     def needs_response(self) -> bool:
@@ -37,25 +40,27 @@ class Choice:
 
     name: str
     label: str
-    estimator: Finder
+    estimator: AnyEstimation
     needs_reference: bool
+    plain: Array | None = field(default=None, repr=False, compare=False)
+    """Forces (jaw, row, column) in N of the reference that the estimate was made with, which are taken off in the views."""
 
 
 def offered_choices() -> tuple[Choice, ...]:
-    """Every variant of every registered estimator, the one that needs least first."""
+    """Every variant of every registered estimator, those that need least before the others."""
     return tuple(Choice(name, one.title, one, one.needs_reference) for name, one in offered_estimators().items())
 
 
 @dataclass(frozen=True)
 class StoredEstimate:
-    """What an estimator found when the result was computed, whatever is read."""
+    """The estimate that was made when the result was computed, whatever is read."""
 
-    found: Estimate
+    stored: Estimate
     needs_response: bool = False
 
     def estimate(self, readings: Readings) -> Estimate:
         """The same for all readings."""
-        return self.found
+        return self.stored
 
 
 def learned_choice(weights: str) -> Choice:
@@ -84,22 +89,42 @@ def stored_choice(folder: str | Path) -> Choice | None:
     try:
         scene = result.scene_as(LocalizedGrasp)
     except TactsimError as error:
-        told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
-        raise StorageError(told) from None
+        where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
+        raise StorageError(where) from None
     try:
         inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(scene.estimates)]
-        found = Estimate(bool(inclusions), tuple(inclusions), result.reason)
+        estimate = Estimate(bool(inclusions), tuple(inclusions), result.reason)
+        plain = _reference(result.quantities)
     except DAMAGE as error:
-        told = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
-        raise StorageError(f"{told}; run it again") from None
-    return Choice("stored", f"As stored: {scene.estimator}"[:60], StoredEstimate(found), False)
+        where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
+        raise StorageError(f"{where}; run it again") from None
+    return Choice("stored", f"As stored: {scene.estimator}"[:60], StoredEstimate(estimate), False, plain)
 
 
-def _inclusion(found: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:
-    """An estimated inclusion; contrast and deviations are told of the first one, in the quantities."""
+def _reference(quantities: dict[str, Quantity]) -> Array | None:
+    """Forces (jaw, row, column) in N of the reference of a stored localization; None if it had none."""
+    if f"taxel_difference_{JAWS[0]}" not in quantities:
+        return None
+    forces, difference = (
+        np.array([quantities[f"{name}_{side}"].value for side in JAWS], dtype=float)
+        for name in ("taxel_force", "taxel_difference")
+    )
+    return forces - difference
+
+
+def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:
+    """An estimated inclusion; contrast and deviations are stated of the first one, in the quantities.
+
+    Its region is the one that was kept; a result of a version that kept none has that of its standard deviations.
+    """
     contrast = float(quantities["estimated_contrast"].value) if "estimated_contrast" in quantities else None
-    covariance = None
+    covariance: Array | None = None
+    region: Region | None = None
     if "center_deviation" in quantities:
         others = (quantities[f"{name}_deviation"].value for name in PARAMETERS[3:])
         covariance = np.diag(np.array([*quantities["center_deviation"].value, *others], dtype=float) ** 2)
-    return EstimatedInclusion(found.kind, found.center, found.radius, contrast, covariance, line=found.line)
+        if (np.diag(covariance)[:3] > 0).all():
+            region = GaussianRegion(np.array(shape.center), covariance[:3, :3])
+    if shape.region is not None:
+        region = OutlinedRegion({view: [np.array(line) for line in lines] for view, lines in shape.region.items()})
+    return EstimatedInclusion(shape.kind, shape.center, shape.radius, contrast, covariance, region, shape.line)

@@ -47,6 +47,18 @@ class Show(_Command):
     step: Number
 
 
+class Cancel(_Command):
+    """The estimate that is being computed is not wanted."""
+
+    do: Literal["cancel"]
+
+
+class EstimateNow(_Command):
+    """An estimate of what is shown is wanted, after it was cancelled."""
+
+    do: Literal["estimate"]
+
+
 class ChooseEstimator(_Command):
     """Another estimator."""
 
@@ -84,13 +96,13 @@ class FilterSamples(_Command):
 
 
 Choosing = ChooseEstimator | ChooseSource | ChooseSample | FilterSamples
-Command = Drawn | Play | Pause | Show | Choosing
+Command = Drawn | Play | Pause | Show | Cancel | EstimateNow | Choosing
 UNKNOWN = ("union_tag_invalid", "union_tag_not_found", "model_attributes_type", "dict_type", "model_type")
 """Kinds of pydantic's errors for something that is no known command at all."""
 _COMMANDS: TypeAdapter[Command] = TypeAdapter(Annotated[Command, Field(discriminator="do")])
 
 
-def read_command(text: str) -> Command:
+def read_command(text: str | bytes) -> Command:
     """The command in the text of a message.
 
     Raises
@@ -98,6 +110,8 @@ def read_command(text: str) -> Command:
     InputError
         If it is none; with what is wrong.
     """
+    if isinstance(text, bytes):
+        raise InputError("a command must be a text message")
     try:
         return _COMMANDS.validate_json(text)
     except ValidationError as error:

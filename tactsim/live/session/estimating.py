@@ -1,4 +1,4 @@
-"""Readings of a frame for an estimator, and what it finds, in words with its errors."""
+"""Readings of a frame for an estimator, and its estimate in words with its errors."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.deadline import stopped_by
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, with_reference
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
@@ -16,10 +17,15 @@ from tactsim.interfaces.readings import Readings, shown_change
 from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
+from tactsim.live.sources.watch import Watch
 from tactsim.localization.region import shadows
 
 DIGITS = 3
 """Decimals in mm of an outline."""
+
+
+BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference takes that off"
+"""Said of an estimate without a reference."""
 
 
 def frame_readings(
@@ -33,6 +39,8 @@ def frame_readings(
         If there is no reference, or it is of another grasp.
     """
     readings = frame.readings(scene if noise is None else replace(scene, noise=noise))
+    if choice.plain is not None and choice.plain.shape == readings.forces.shape:
+        return replace(readings, reference=choice.plain)
     if not choice.needs_reference:
         return readings
     if reference is None:
@@ -47,8 +55,10 @@ def shown_signal(readings: Readings) -> tuple[Array, str]:
     return shown_change(readings.difference)
 
 
-def estimated(scene: PageScene, readings: Readings, choice: Choice, reference: Reference | None) -> dict[str, Any]:
-    """What an estimator finds, as the page shows it.
+def estimated(
+    scene: PageScene, readings: Readings, choice: Choice, reference: Reference | None, watch: Watch | None = None
+) -> dict[str, Any]:
+    """The estimate as the page shows it.
 
     Raises
     ------
@@ -56,20 +66,26 @@ def estimated(scene: PageScene, readings: Readings, choice: Choice, reference: R
         If the estimator cannot be used here; it says why.
     ConvergenceError
         If the response of the tissue cannot be computed.
+    OutOfTime
+        If it is not wanted any more.
     """
+    watch = watch or Watch()
     if choice.estimator.needs_response and reference is not None:
-        readings = replace(readings, response=reference.response(readings.closing))
-    found = choice.estimator.estimate(readings)
+        readings = replace(readings, response=reference.response(readings.closing, watch))
+    watch.stage = "comparing what could be there with the readings"
+    with stopped_by(watch.asked_to_stop):
+        estimate = choice.estimator.estimate(readings)
+    bare = [BARE] if readings.difference is None and estimate.inclusions and choice.name != "stored" else []
     return {
-        "present": found.present,
-        "words": _words(found),
-        "errors": _errors(scene, found),
-        "inclusions": [_drawn(one) for one in found.inclusions],
+        "present": estimate.present,
+        "words": [*_words(estimate), *bare],
+        "errors": _errors(scene, estimate),
+        "inclusions": [_drawn(one) for one in estimate.inclusions],
     }
 
 
 def _drawn(one: EstimatedInclusion) -> dict[str, Any]:
-    """What the page draws of an inclusion, in mm: its centre, radius, centre line and, by view, the outlines of its region."""
+    """The shape of an inclusion on the page, in mm: its centre, radius, centre line and, by view, the outlines of its region."""
     regions = {} if one.region is None else shadows(one.region)
     return {
         "center": (1e3 * np.array(one.center)).tolist(),
@@ -81,16 +97,16 @@ def _drawn(one: EstimatedInclusion) -> dict[str, Any]:
 
 def _outline(line: Sequence[Sequence[float]]) -> list[float]:
     """A line (n, 2) in m as x, y, x, y, ... in mm."""
-    found: list[float] = (1e3 * np.array(line)).round(DIGITS).ravel().tolist()
-    return found
+    flat: list[float] = (1e3 * np.array(line)).round(DIGITS).ravel().tolist()
+    return flat
 
 
-def _words(found: Estimate) -> list[str]:
-    reason = found.reason[0].upper() + found.reason[1:]
-    return [reason, *(line for one in found.inclusions for line in (_told(one), *_uncertainty(one)))]
+def _words(estimate: Estimate) -> list[str]:
+    reason = estimate.reason[0].upper() + estimate.reason[1:]
+    return [reason, *(line for one in estimate.inclusions for line in (_in_words(one), *_uncertainty(one)))]
 
 
-def _told(one: EstimatedInclusion) -> str:
+def _in_words(one: EstimatedInclusion) -> str:
     x, y, z = (1e3 * value for value in one.center)
     kind = "" if one.kind == "unknown" else f"{one.kind} "
     size = "" if one.radius is None else f", radius {1e3 * one.radius:.1f} mm"
@@ -106,18 +122,18 @@ def _uncertainty(one: EstimatedInclusion) -> list[str]:
     return [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm{contrast} (one standard deviation)"]
 
 
-def _errors(scene: PageScene, found: Estimate) -> list[str]:
+def _errors(scene: PageScene, estimate: Estimate) -> list[str]:
     """Errors of the strongest inclusion against the true one nearest to it in plan, where the truth is known."""
     if scene.inclusions is None:
         return []
     if not scene.inclusions:
-        return ["False alarm: there is no inclusion" if found.present else "True: there is no inclusion"]
-    if not found.inclusions:
+        return ["False alarm: there is no inclusion" if estimate.present else "True: there is no inclusion"]
+    if not estimate.inclusions:
         count = len(scene.inclusions)
         return [f"Missed: there {'is one inclusion' if count == 1 else f'are {count} inclusions'}"]
     points = np.concatenate([shape.places(scene.size) for shape in scene.inclusions])
-    _, lateral, depth = away_from_truth(np.array(found.inclusions[0].center), points)
-    size = _radius_error(scene, found.inclusions[0])
+    _, lateral, depth = away_from_truth(np.array(estimate.inclusions[0].center), points)
+    size = _radius_error(scene, estimate.inclusions[0])
     return [f"Off by {1e3 * lateral:.1f} mm in plan and {round(1e3 * depth, 1) + 0.0:+.1f} mm in height{size}"]
 
 

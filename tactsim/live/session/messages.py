@@ -23,7 +23,7 @@ from tactsim.outside.text import one_line
 
 VIEWS = ("front", "left", "top")
 TRUE_COLOUR = "#009e73"
-"""Of the true inclusions; with the estimate's it is told apart by colour-blind users, and the one is filled, the other lines."""
+"""Of the true inclusions; the colour-blind distinguish it from the estimate's, and the one is filled, the other lines."""
 LEVELS = 255
 LONGEST_TEXT = 1000
 """Characters of a note or a reason on the page: more than any of this program's own has."""
@@ -106,11 +106,11 @@ def frame_message(scene: PageScene, frame: Frame, readings: Readings | TactsimEr
     """
     notes, meaning, forces = list(frame.notes()), "force", frame.shown_forces()
     if isinstance(readings, TactsimError):
-        notes, pictures = notes or [str(readings)], [np.zeros(SHAPE) for _ in VIEWS]
+        meaning, pictures = "", [np.zeros(SHAPE) for _ in VIEWS]
     else:
         signal, meaning = shown_signal(readings)
-        found = views(signal, SHAPE)
-        pictures = [found.front, found.left, found.top]
+        three = views(signal, SHAPE)
+        pictures = [three.front, three.left, three.top]
     scales.take(pictures, forces)
     content = {
         "is": "frame",

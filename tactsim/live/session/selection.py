@@ -36,7 +36,7 @@ class Selection:
         self._recordings = content.recordings
         self._sample: int | None = None
         self._fault = ""
-        self.choice: Choice = content.choices[0]
+        self.choice: Choice = _first_choice(content)
         self.source = LIVE if content.feed is not None else next(iter(content.recordings), next(iter(SOURCES)))
         if content.samples is not None:
             self._open_sample(content.samples.near(0, 0, status="done"))
@@ -126,7 +126,7 @@ class Selection:
     def state(self) -> dict[str, Any]:
         """What is chosen now."""
         words = {LIVE: "live", **SOURCES}
-        found: dict[str, Any] = {
+        state: dict[str, Any] = {
             "sources": [{"name": name, "label": words[name]} for name in self._names()],
             "source": self.source,
             "estimator": self.choice.name,
@@ -135,15 +135,15 @@ class Selection:
         }
         samples = self._content.samples
         if samples is not None:
-            told = {} if self._sample is None else samples.told(self._sample)
+            status_of = {} if self._sample is None else samples.status_of(self._sample)
             split, status = self._filter
             count = len(samples.chosen(*self._filter))
-            found["sample"] = {"number": self._sample, "split": split, "status": status, "chosen": count, "told": told}
-        return found
+            state["sample"] = {"number": self._sample, "split": split, "status": status, "chosen": count, "state": status_of}
+        return state
 
     def signals(self) -> list[tuple[Array, Array]]:
         """Signals that the views draw and forces at some steps of the recording, for the ends of the colour scales."""
-        recording, found = self.recording, []
+        recording, signals = self.recording, []
         count = 0 if recording is None else len(recording.times)
         for step in np.unique(np.linspace(0, count - 1, min(count, MOST_RANGED)).astype(int)) if count else ():
             assert recording is not None
@@ -152,8 +152,15 @@ class Selection:
                 readings = frame_readings(recording.scene, frame, self.choice, self._content.reference, self._content.noise)
             except TactsimError:
                 continue
-            found.append((shown_signal(readings)[0], frame.forces))
-        return found
+            signals.append((shown_signal(readings)[0], frame.forces))
+        return signals
+
+
+def _first_choice(content: Content) -> Choice:
+    """The stored estimate, else the simplest estimator that takes off the reference, else the simplest one."""
+    if content.reference is None or content.choices[0].name == "stored":
+        return content.choices[0]
+    return next((one for one in content.choices if one.needs_reference), content.choices[0])
 
 
 class Playback:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
-from tactsim.errors import InputError, TactsimError
+from tactsim.errors import TactsimError
 from tactsim.live.defects import report
-from tactsim.live.session.commands import Choosing, Command, Drawn, Pause, Play, Show, read_command
+from tactsim.live.session.commands import Cancel, Choosing, Command, Drawn, EstimateNow, Pause, Play, Show, read_command
 from tactsim.live.session.content import Content
 from tactsim.live.session.estimating import frame_readings
 from tactsim.live.session.messages import Scales, frame_message, plain_json, scene_message, shapes_message
 from tactsim.live.session.selection import Playback, Selection
-from tactsim.live.session.thinking import Thinking, Threads
+from tactsim.live.session.thinking import Task, Thinking, Threads, busy_message, cancelled_message
 from tactsim.live.sources.scene import Frame, PageScene, Recording
 
 Made = TypeVar("Made")
@@ -22,8 +23,8 @@ IN_FLIGHT = 2
 """Frames that are sent before the page says that it has drawn one: the rest is skipped, so that nothing piles up."""
 PERIOD = 1 / 40
 """Time in s between two pushed frames of a recording that plays."""
-TOLD = 0.25
-"""Time in s between two words about the feed."""
+FEED_PERIOD = 0.25
+"""Time in s between two messages about the feed."""
 MOST_WAITING = 2.0
 """Time in s after which a frame is sent even if the page has not said that it drew the last, as when it is in the background."""
 
@@ -51,6 +52,7 @@ class Session:
         self._scene: PageScene | None = None
         self._shown: Frame | None = None
         self._thinking = Thinking(self._send_text, threads)
+        self._estimating, self._moment = True, dict[str, Any]()
 
     async def run(self) -> None:
         """Sends the scene and then frames, until it is cancelled or the page is gone."""
@@ -58,38 +60,43 @@ class Session:
         if feed is not None:
             feed.listen(self._changed)
         self._changed.set()
-        words = asyncio.create_task(self._tell_feed())
+        feed_states = asyncio.create_task(self._send_feed_states())
         try:
             await self._send_text(plain_json(self._chosen.offered()))
             while True:
                 await self._wait()
-                await self._push_or_tell()
+                await self._push_or_explain()
         finally:
-            words.cancel()
-            self._thinking.cancel()
+            feed_states.cancel()
+            self._thinking.end()
             if feed is not None:
                 feed.forget(self._changed)
 
-    async def _push_or_tell(self) -> None:
+    async def _push_or_explain(self) -> None:
         """What there is to send, or why it cannot be sent; what is chosen next may be."""
         try:
             await self._push()
         except ConnectionError:
             raise
-        except Exception as error:  # noqa: BLE001  whatever the data hold, the page goes on and tells it
+        except Exception as error:  # noqa: BLE001  whatever the data hold, the page goes on and states it
             self._playback.pause()
-            await self._tell_fault(str(error) if isinstance(error, TactsimError) else report(error))
+            words = str(error) if isinstance(error, TactsimError) else report(error)
+            await self._send_fault(words)
+            await self._send_text(cancelled_message(self._chosen.choice, {}, "there are no readings"))
 
     async def receive(self, text: str | bytes) -> None:
         """Takes a command of the page; one that cannot be used is answered by a fault."""
         try:
-            if isinstance(text, bytes):
-                raise InputError("a command must be a text message")
-            self._do(read_command(text))
+            command = read_command(text)
+            self._do(command)
+            if isinstance(command, Cancel):
+                await self._send_text(cancelled_message(self._chosen.choice, self._moment, "cancelled"))
+            elif isinstance(command, Show | EstimateNow | Choosing):
+                await self._send_text(busy_message(self._chosen.choice, {}))
         except TactsimError as error:
-            await self._tell_fault(str(error))
-        except Exception as error:  # noqa: BLE001  whatever a stored sample does, the page goes on and tells it
-            await self._tell_fault(report(error))
+            await self._send_fault(str(error))
+        except Exception as error:  # noqa: BLE001  whatever a stored sample does, the page goes on and states it
+            await self._send_fault(report(error))
 
     def _do(self, command: Command) -> None:
         recording = self._chosen.recording
@@ -97,6 +104,13 @@ class Session:
             self._in_flight = max(0, self._in_flight - 1)
             self._drawn.set()
             return
+        if isinstance(command, Cancel):
+            self._estimating = False
+            self._thinking.drop_estimate(cancelled=True)
+            return
+        if isinstance(command, Show | EstimateNow | Choosing):
+            self._estimating, self._shown = True, None
+            self._thinking.drop_estimate()
         if isinstance(command, Play):
             if recording is not None:
                 self._playback.play(recording)
@@ -104,7 +118,7 @@ class Session:
             self._playback.pause()
             if recording is not None and isinstance(command, Show):
                 self._playback.go_to(recording, command.step)
-        else:
+        elif not isinstance(command, EstimateNow):
             self._choose(command)
         self._changed.set()
 
@@ -151,8 +165,8 @@ class Session:
         times = [] if self._chosen.live or recording is None else recording.times.tolist()
         reference = self._content.reference
         notes = [*scene.notes, *(() if reference is None else reference.notes)]
-        told = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
-        await self._send_text(scene_message(scene, **told))
+        state = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
+        await self._send_text(scene_message(scene, **state))
         self._thinking.shape(scene, shapes_message)
 
     async def _send_frame(self, scene: PageScene, frame: Frame, recording: Recording | None) -> None:
@@ -165,28 +179,33 @@ class Session:
         self._shown = frame
         self._in_flight += 1
         await self._socket.send_bytes(message)
-        self._thinking.estimate(scene, readings, choice, content.reference)
+        steps = 0 if recording is None or self._chosen.live else len(recording.times)
+        self._moment = moment_of(frame, step, steps)
+        if self._estimating:
+            self._thinking.estimate(Task(scene, readings, choice, content.reference, self._moment))
 
-    async def _tell_feed(self) -> None:
+    async def _send_feed_states(self) -> None:
         """How the feed is doing, when that has changed."""
         feed, before = self._content.feed, ""
         while feed is not None:
-            counts = feed.counts
-            told = plain_json(
-                {"is": "feed", "name": feed.name, "state": feed.state, "frames": counts.frames, "malformed": counts.malformed}
-                | {"fault": counts.fault}
-            )
-            if told != before:
-                await self._send_text(told)
-                before = told
-            await asyncio.sleep(TOLD)
+            message = plain_json({"is": "feed", **feed.state_now()})
+            if message != before:
+                await self._send_text(message)
+                before = message
+            await asyncio.sleep(FEED_PERIOD)
 
-    async def _tell_fault(self, words: str) -> None:
+    async def _send_fault(self, words: str) -> None:
         await self._send_text(plain_json({"is": "fault", "words": words}))
 
     async def _send_text(self, text: str) -> None:
         with suppress(ConnectionError):
             await self._socket.send_str(text)
+
+
+def moment_of(frame: Frame, step: int, steps: int) -> dict[str, Any]:
+    """When a frame was read: step counted from 1 of how many, time in s, closing in mm; steps are 0 of a live feed."""
+    closing = None if frame.closing is None or not math.isfinite(frame.closing) else 1e3 * frame.closing
+    return {"step": step + 1, "steps": steps, "time": frame.time, "closing": closing}
 
 
 def readings_or_fault(make: Callable[[], Made]) -> Made | TactsimError:

@@ -30,7 +30,7 @@ DIGITS = 4
 
 def drawn_inclusions(scene: PageScene) -> list[dict[str, Any]]:
     """Name, triangles in mm and outlines by view of every true inclusion; one whose surface file is missing has no shape."""
-    found = []
+    shapes = []
     for number, inclusion in enumerate(scene.inclusions or (), 1):
         drawn: dict[str, Any] = {"name": inclusion_name(number, inclusion), "points": [], "triangles": [], "outlines": {}}
         try:
@@ -43,8 +43,8 @@ def drawn_inclusions(scene: PageScene) -> list[dict[str, Any]]:
             drawn["name"] += f" (cannot be drawn: {one_line(error, LONGEST_REASON)})"
         except (TactsimError, OSError):
             drawn["name"] += " (its surface file is not at hand)"
-        found.append(drawn)
-    return found
+        shapes.append(drawn)
+    return shapes
 
 
 def _clipped(body: Solid, size: Array) -> tuple[Array, Array]:

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+import math
+import time
 from collections import Counter
 from dataclasses import dataclass
+from typing import Any
 
 from tactsim.errors import InputError
-from tactsim.live.sources.frame_lines import LONGEST_LINE, LineSplitter, read_line
+from tactsim.live.sources.frame_lines import LineSplitter, read_line
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.outside.text import one_line
+
+STANDS = 3.0
+"""Time in s without a frame after which the picture is no longer that of now."""
+RECENT = 10.0
+"""Time in s for which the page shows a line that could not be read; it stays counted."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +39,8 @@ class Feed:
         self.state = "waiting"
         self._count: Counter[str] = Counter()
         self._fault = ""
+        self._ended = False
+        self._last_frame, self._last_fault = -math.inf, -math.inf
         self._listeners: set[asyncio.Event] = set()
 
     @property
@@ -53,31 +63,43 @@ class Feed:
     def take(self, line: bytes | None, number: int) -> bool:
         """Takes a line, None for one that was too long; whether it could be read."""
         try:
-            if line is None:
-                raise InputError(f"longer than {LONGEST_LINE} bytes")
-            found = read_line(line, self.scene)
+            content = read_line(line, self.scene)
         except InputError as error:
             self.blame(f"line {number}: {error}")
             return False
-        if isinstance(found, PageScene):
-            self.scene, self.frame = found, None
+        if isinstance(content, PageScene):
+            self.scene, self.frame = content, None
         else:
-            self.frame = found
+            self.frame = content
             self._count["frame"] += 1
-        self.state = "running"
+        self.state, self._ended, self._last_frame = "running", False, time.monotonic()
         self._wake()
         return True
 
     def blame(self, fault: str) -> None:
         """Counts something that could not be read."""
         self._count["malformed"] += 1
-        self._fault = one_line(fault)
+        self._fault, self._last_fault = one_line(fault), time.monotonic()
         self._wake()
 
-    def tell(self, state: str) -> None:
-        """Says how the source is: waiting, running, ended."""
-        self.state = state
+    def end(self, state: str) -> None:
+        """Notes that nothing comes any more, or for now, and why."""
+        self.state, self._ended = state, True
         self._wake()
+
+    def state_now(self) -> dict[str, Any]:
+        """What the page says of it; ``over`` if the picture is not of now, a fault only for some seconds after it came."""
+        silent = time.monotonic() - self._last_frame
+        still = self.state == "running" and silent > STANDS
+        return {
+            "name": self.name,
+            "state": f"no frame for {int(silent)} s" if still else self.state,
+            "frames": self._count["frame"],
+            "malformed": self._count["malformed"],
+            "fault": self._fault,
+            "over": still or self._ended,
+            "recent": time.monotonic() - self._last_fault < RECENT,
+        }
 
     def _wake(self) -> None:
         for event in self._listeners:

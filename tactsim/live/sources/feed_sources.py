@@ -124,16 +124,16 @@ async def feeding(feed: Feed, place: FeedPlace) -> AsyncIterator[None]:
             await task
 
 
-async def _follow(feed: Feed, found: OutsideFile) -> None:
+async def _follow(feed: Feed, source: OutsideFile) -> None:
     """Reads a file from its begin and goes on when it grows; one that is shorter than before, or another, is read anew."""
     while True:
         try:
-            with found.stream() as file:
-                await _follow_file(feed, found.path, file.read, file.fileno())
+            with source.stream() as file:
+                await _follow_file(feed, source.path, file.read, file.fileno())
         except StorageError as error:
-            feed.tell(one_line(error))
+            feed.end(one_line(error))
         except OSError as error:
-            feed.tell(f"{one_line(found.path.name)} cannot be read: {error.strerror}")
+            feed.end(f"{one_line(source.path.name)} cannot be read: {error.strerror}")
         await asyncio.sleep(0.2)
 
 
@@ -155,12 +155,12 @@ async def _follow_file(feed: Feed, path: Path, read: Callable[[int], bytes], des
 def _read_input(feed: Feed, loop: asyncio.AbstractEventLoop) -> None:
     """Reads standard input in a separate thread, which may wait for ever and ends with the process."""
     if sys.stdin is None:  # the caller closed it before the start
-        feed.tell("standard input is closed")
+        feed.end("standard input is closed")
         return
     stream, descriptor = feed.stream(), sys.stdin.fileno()
 
     async def take(chunk: bytes) -> None:
-        stream.take(chunk) if chunk else feed.tell("the input has ended; the last frame stays")
+        stream.take(chunk) if chunk else feed.end("the input has ended; the last frame stays")
 
     def read() -> None:
         try:
@@ -219,4 +219,4 @@ async def _receive(feed: Feed, reader: asyncio.StreamReader) -> None:
             feed.blame("a connection was closed: its first line is neither a description nor a frame")
             return
         await asyncio.sleep(0)
-    feed.tell("the sender has gone; the last frame stays")
+    feed.end("the sender has gone; the last frame stays")

@@ -13,7 +13,7 @@ Each line is one JSON object in UTF-8 and ends with a newline. The first describ
 ``time`` is in s, forces are in N pressing into the taxels, [row][column], row 1 nearest the front (smallest y), column 1 the
 smallest x. ``null`` or ``"NaN"`` stands for a taxel that gives no number. May be left out: ``closing``, of each jaw from first
 touch in m; ``saturated_upper`` and ``saturated_lower``, [row][column] of true and false. Another description may follow at any
-time: it begins anew. A line that cannot be read is counted and told, and the stream goes on. The latest frame wins.
+time: it begins anew. A line that cannot be read is counted and reported, and the stream goes on. The latest frame wins.
 """
 
 from __future__ import annotations
@@ -55,14 +55,16 @@ class Description(FrozenModel):
         return plain_scene(one_line(self.title), np.array(self.block_size), self.matrix)
 
 
-def read_line(line: bytes, scene: PageScene | None) -> PageScene | Frame:
-    """What a line says, after the description that is in force, None before the first.
+def read_line(line: bytes | None, scene: PageScene | None) -> PageScene | Frame:
+    """The content of a line, None for one that was too long, after the description that is in force, None before the first.
 
     Raises
     ------
     InputError
         If it cannot be read: what is wrong with it, and where.
     """
+    if line is None:
+        raise InputError(f"longer than {LONGEST_LINE} bytes")
     try:
         content = json.loads(line)
     except (ValueError, RecursionError) as error:
@@ -95,8 +97,8 @@ def _frame(content: dict[str, Any], scene: PageScene) -> Frame:
     large = np.argwhere(np.isfinite(forces) & (np.abs(forces) > LARGEST_FORCE))
     if len(large):
         jaw, row, column = (int(k) for k in large[0])
-        told = f"{forces[jaw, row, column]:g} N; allowed: up to {LARGEST_FORCE:g} N"
-        raise InputError(f"taxel_force_{JAWS[jaw]}: row {row + 1}, column {column + 1} is {told}")
+        value = f"{forces[jaw, row, column]:g} N; allowed: up to {LARGEST_FORCE:g} N"
+        raise InputError(f"taxel_force_{JAWS[jaw]}: row {row + 1}, column {column + 1} is {value}")
     saturated = [_matrix(content, f"saturated_{side}", scene, missing=0.0) for side in JAWS]
     return Frame(forces, np.isfinite(forces) & (np.stack(saturated) == 0), time, _number(content, "closing"))
 

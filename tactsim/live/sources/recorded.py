@@ -110,7 +110,7 @@ def _saturated(result: Result, name: str) -> Array | None:
 
 
 def _closings(result: Result, times: Array) -> Array | None:
-    """Closing of each jaw at some times in m, None if the result does not tell it."""
+    """Closing of each jaw at some times in m, None if the result does not hold it."""
     quantities = result.quantities
     if "displacement_history" in quantities:
         known = quantities["time_history"].numbers

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from tactsim.dataset.ranking.reference import PlainGrasp
-from tactsim.errors import InputError
+from tactsim.deadline import stopped_by
+from tactsim.errors import InputError, OutOfTime
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
+from tactsim.interfaces.readings import Readings
 from tactsim.live.sources.recorded import SOURCES, result_recordings
 from tactsim.live.sources.scene import Frame, PageScene, Recording
+from tactsim.live.sources.watch import Watch
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.units import format_quantity
+
+COMPUTING = "solving the plain tissue and its response to lumps, once for this reference; it takes a minute or two"
+LOCK_PERIOD = 0.2
+"""Time in s after which a thread that waits for the model of another one looks whether it is still wanted."""
 
 
 @dataclass(eq=False)
@@ -38,12 +45,29 @@ class PlainResult:
         """Closing of each jaw at its end in m."""
         return self.any_recording.frame(len(self.any_recording.times) - 1).closing
 
-    def response(self) -> LumpResponse:
-        """The fast forward model; computed once, which may take half a minute, and kept."""
-        with self._lock:
+    def response(self, watch: Watch | None = None) -> LumpResponse:
+        """The fast forward model; computed once, which may take a minute or two, and kept.
+
+        A thread that waits for another one's model gives up once it is dropped; the computation stops only if it is cancelled, as
+        the next estimate needs it as well.
+
+        Raises
+        ------
+        OutOfTime
+            If the user has cancelled it.
+        """
+        watch = watch or Watch()
+        watch.stage = COMPUTING
+        while not self._lock.acquire(timeout=LOCK_PERIOD):
+            if watch.dropped or watch.cancelled:
+                raise OutOfTime("another estimate was wanted meanwhile")
+        try:
             if self._response is None:
-                self._response = stored_response(self.folder)
+                with stopped_by(watch.asked_to_cancel):
+                    self._response = stored_response(self.folder)
             return self._response
+        finally:
+            self._lock.release()
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,31 +106,49 @@ class Reference:
         """What the user must know about it."""
         return reference_notes(self.scene.inclusions or ())
 
-    def response(self, closing: float | None) -> LumpResponse:
-        """The fast forward model of the tissue: that at the end of the reference, or of the one of several nearest in closing.
+    def response(self, closing: float | None, watch: Watch | None = None) -> LumpResponse:
+        """The fast forward model of the tissue at a closing in m, by interpolation between those at the ends of the references.
+
+        Between the ends of references the response over the force that plain tissue reads is interpolated; below the first end it
+        stays. The response is an integral of stress, and stress rises as the force does: so scaled from a closing of 1 mm to one
+        of 0.6 mm, that of ``cases/grasp_plain.yaml`` misses the computed one by 6 % (median over balls; 8 % at most for 99 in
+        100), a sixth of the error of the forward model that the estimators state.
 
         Raises
         ------
         InputError
-            If the jaws have closed by another way in m than one single reference at its end, for which the model holds.
+            If the jaws have closed by more than any reference.
+        OutOfTime
+            If the user has cancelled its computation.
         """
-        if len(self.results) > 1 and closing is not None:
-            return min(self.results, key=lambda result: abs((result.closing or 0.0) - closing)).response()
-        last = self.results[-1].closing
-        if closing is not None and last is not None and abs(closing - last) > SAME_CLOSING * abs(last):
-            raise InputError(
-                f"the model of the tissue holds for a closing of {format_quantity(last, 'm')}, where the reference ends; "
-                f"here it is {format_quantity(closing, 'm')}: go to that step, or give a reference that ends here too"
-            )
-        return self.results[-1].response()
+        ends = [result.closing for result in self.results]
+        if closing is None or ends[-1] is None or abs(closing - ends[-1]) <= SAME_CLOSING * abs(ends[-1]):
+            return self.results[-1].response(watch)
+        known = np.array(ends, dtype=float)
+        self._check_reach(closing, float(known[-1]))
+        upper = int(np.searchsorted(known, closing))
+        force = self._total_force(closing)
+        parts = [(upper, 1.0)]
+        if upper > 0:
+            share = float((closing - known[upper - 1]) / (known[upper] - known[upper - 1]))
+            parts = [(upper - 1, 1 - share), (upper, share)]
+        tables = [(self.results[k].response(watch), force / self._total_force(float(known[k])) * share) for k, share in parts]
+        first = tables[0][0]
+        return LumpResponse(first.axes, first.radii, np.sum([share * table.values for table, share in tables], axis=0))
+
+    def _total_force(self, closing: float) -> float:
+        """Sum in N of what all taxels read on plain tissue at a closing in m."""
+        recording = self.results[-1].any_recording
+        end = recording.frame(len(recording.times) - 1)
+        return float(np.nansum(self.frame_for(replace(end, time=None, closing=closing)).forces))
 
     def frame_for(self, frame: Frame) -> Frame:
-        """What the reference reads, by the same means, at the closing of a frame.
+        """Readings of the reference by the same means at the closing of a frame, by monotone interpolation over the closing.
 
         Raises
         ------
         InputError
-            If the reference was not read through sensors but the frame was, or several do not reach its closing.
+            If the reference was not read through sensors but the frame was, or its closings do not reach that of the frame.
         """
         if any(frame.source not in result.recordings for result in self.results):
             raise InputError(
@@ -114,28 +156,54 @@ class Reference:
                 f"or choose {next(iter(SOURCES.values()))}"
             )
         recordings = [result.recordings[frame.source] for result in self.results]
+        if len(recordings) == 1 and (known := _known_frame(recordings[0], frame)) is not None:
+            return known
         if len(recordings) == 1:
-            return _on_the_way(recordings[0], frame)
-        ends = [recording.frame(len(recording.times) - 1) for recording in recordings]
-        closings = np.array([result.closing for result in self.results], dtype=float)
-        if frame.closing is None or not 0 <= frame.closing <= closings[-1] * (1 + SAME_CLOSING):
-            known = ", ".join(format_quantity(float(closing), "m") for closing in closings)
-            here = "not known" if frame.closing is None else format_quantity(frame.closing, "m")
-            raise InputError(f"the closing is {here}, those of the references are {known}; needed: at most the largest")
-        forces = np.stack([np.zeros_like(ends[0].forces), *(end.forces for end in ends)])
-        between = PlainGrasp(np.append(0.0, closings), forces, ends[-1].readings(self.scene)).at(frame.closing)
-        return Frame(between, np.logical_and.reduce([end.valid for end in ends]), frame.time, frame.closing, frame.source)
+            closings, forces, valid = recordings[0].closings, recordings[0].forces, recordings[0].valid
+        else:
+            ends = [recording.frame(len(recording.times) - 1) for recording in recordings]
+            closings = np.array([result.closing for result in self.results], dtype=float)
+            forces, valid = np.stack([end.forces for end in ends]), np.stack([end.valid for end in ends])
+        assert closings is not None  # of one recording by _known_frame, of several since they were opened
+        if frame.closing is None:
+            raise InputError("the closing of these readings is not known; needed to choose between several references")
+        self._check_reach(frame.closing, float(closings[-1]))
+        if len(closings) < 2:
+            raise InputError(
+                f"the reference is known at a closing of {format_quantity(float(closings[0]), 'm')} only, here it is "
+                f"{format_quantity(frame.closing, 'm')}; needed between: a reference that closes in several steps "
+                "(--set experiment.time.steps=12), or several results (more --reference FOLDER)"
+            )
+        if closings[0] > 0:
+            closings, forces = np.append(0.0, closings), np.concatenate([np.zeros_like(forces[:1]), forces])
+        plain = PlainGrasp(closings, np.where(np.isfinite(forces), forces, 0.0), self._end_readings())
+        return Frame(plain.at(frame.closing), np.asarray(valid.all(axis=0)), frame.time, frame.closing, frame.source)
+
+    def _end_readings(self) -> Readings:
+        end = self.results[-1].any_recording
+        return end.frame(len(end.times) - 1).readings(self.scene)
+
+    def _check_reach(self, closing: float, most: float) -> None:
+        if not 0 <= closing <= most * (1 + SAME_CLOSING):
+            known = ", ".join("unknown" if one.closing is None else format_quantity(one.closing, "m") for one in self.results)
+            raise InputError(
+                f"the jaws have closed by {format_quantity(closing, 'm')}, those of the reference by {known}; "
+                "needed: a reference that closes at least as far (another --reference FOLDER)"
+            )
 
 
-def _on_the_way(recording: Recording, frame: Frame) -> Frame:
-    """The recording at the closing of a frame: at the same time, else anywhere on its way to its closing, else at its end."""
+def _known_frame(recording: Recording, frame: Frame) -> Frame | None:
+    """The recording at the time of a frame if it has the closing of the frame then; None if it is to be interpolated.
+
+    A recording whose closing does not rise from step to step is compared at its end.
+    """
     closing, last = frame.closing, recording.frame(len(recording.times) - 1)
     if closing is None or recording.closings is None:
         return last
     if frame.time is not None:
-        found = recording.at(frame.time)
-        if found.closing is not None and abs(found.closing - closing) <= SAME_CLOSING * abs(closing):
-            return found
-    way = recording.closings
-    rising = len(way) > 1 and bool((np.diff(way) > 0).all()) and way[0] <= closing <= way[-1]
-    return recording.at(float(np.interp(closing, way, recording.times))) if rising else last
+        then = recording.at(frame.time)
+        if then.closing is not None and abs(then.closing - closing) <= SAME_CLOSING * abs(closing):
+            return then
+    rising = recording.closings[0] >= 0 and bool((np.diff(recording.closings) > 0).all())
+    same = last.closing is not None and abs(last.closing - closing) <= SAME_CLOSING * abs(closing)
+    return last if same or not rising else None

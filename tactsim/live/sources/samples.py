@@ -100,7 +100,7 @@ class Samples:
         beyond = chosen[chosen > number] if move > 0 else chosen[chosen < number][::-1]
         return int(beyond[0]) if len(beyond) else int(chosen[0] if move > 0 else chosen[-1])
 
-    def told(self, number: int) -> dict[str, str]:
+    def status_of(self, number: int) -> dict[str, str]:
         """Split, status and reason of a sample."""
         row = self.data[["split", "status", "reason"]].isel(sample=number)
         split = self.splits[int(row["split"])]
@@ -123,19 +123,19 @@ class Samples:
         times = np.atleast_1d(np.asarray(row["time_s"].values, dtype=float))
         if not np.isfinite(times).all():
             times = np.arange(len(times), dtype=float)
-        found = {}
+        recordings = {}
         for name in (name for name in SOURCES if name in row):
             forces = np.asarray(row[name].values, dtype=float)
             closings = np.asarray(row["displacement"].values, dtype=float)
             known = closings if np.isfinite(closings).all() else None
-            found[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known, name)
-        return found
+            recordings[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known, name)
+        return recordings
 
     def _scene(self, number: int, status: int) -> PageScene:
-        told = self.told(number)
-        title = f"{self.data.attrs.get('title') or self.place.name}: sample {number} ({told['split']})"
+        state = self.status_of(number)
+        title = f"{self.data.attrs.get('title') or self.place.name}: sample {number} ({state['split']})"
         notes: tuple[str, ...] = (
-            () if status == DONE else (f"sample {number} is {told['status']}: {told['reason'] or 'it was not computed'}",)
+            () if status == DONE else (f"sample {number} is {state['status']}: {state['reason'] or 'it was not computed'}",)
         )
         experiment, same = self._experiment(number, status)
         if not same:

@@ -92,8 +92,8 @@ def check_extent(size: Array) -> None:
         With the allowed range.
     """
     if np.shape(size) != (3,) or not ((size >= SHORTEST_LENGTH) & (size <= LONGEST_LENGTH)).all():
-        told = f"needed: three lengths of {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m"
-        raise InputError(f"block_size is {shown(np.asarray(size).tolist())} m; {told}")
+        needed = f"needed: three lengths of {SHORTEST_LENGTH:g} to {LONGEST_LENGTH:g} m"
+        raise InputError(f"block_size is {shown(np.asarray(size).tolist())} m; {needed}")
 
 
 def plain_scene(title: str, size: Array, layout: TaxelLayout) -> PageScene:
@@ -136,12 +136,12 @@ class Frame:
         """What the user must know about this frame: taxels that are not to be trusted."""
         if any(not good.any() for good in self.valid):
             return (f"no taxel of a jaw gives a number ({named_taxels(~self.valid)}): there is nothing to draw",)
-        told = []
+        notes = []
         if not self.valid.all():
-            told.append(f"dead or saturated taxels, interpolated from their neighbours: {named_taxels(~self.valid)}")
+            notes.append(f"dead or saturated taxels, interpolated from their neighbours: {named_taxels(~self.valid)}")
         if (silent := silent_taxels(self.forces) & self.valid).any():
-            told.append(silent_words(silent))
-        return tuple(told)
+            notes.append(silent_words(silent))
+        return tuple(notes)
 
     def shown_forces(self) -> Array:
         """The forces as they are drawn and sent: NaN where the number is no force."""

@@ -9,12 +9,14 @@ import scipy
 from pydantic import Field
 
 from tactsim.array import Array
+from tactsim.deadline import check_time
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
-from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
 from tactsim.localization.evidence import Change, Explanation, nothing
+from tactsim.localization.posterior import likely_bodies
 from tactsim.units import Length
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
@@ -108,12 +110,14 @@ class HypothesesEstimator(Estimator):
             return Estimate(
                 False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
             )
-        inclusions = _inclusions(*explained[likeliest])
+        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
+        inclusions = likely_bodies(*explained[likeliest], cell)
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
         return Estimate(True, inclusions, reason, probability, probabilities)
 
     def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Explanation, Candidates]:
         """How well a class explains the change, and its candidates."""
+        check_time()
         assert readings.response is not None  # checked by estimate
         candidates, coarse = self._bodies(name, readings.response, readings.block_size)
         if coarse is None:
@@ -151,24 +155,3 @@ class HypothesesEstimator(Estimator):
 def _steps(limits: tuple[float, float]) -> list[float]:
     """Radii from the least to the largest in steps of a millimetre."""
     return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
-
-
-def _inclusions(explanation: Explanation, candidates: Candidates) -> tuple[EstimatedInclusion, ...]:
-    """The bodies of a class, the one with the strongest signal first."""
-    bodies = []
-    for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
-        samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
-        mean, line = explanation.weights @ samples, None
-        if candidates.kind == "tube":
-            best = int(numbers[explanation.weights.argmax()])
-            mean[:3] = candidates.centers[best]
-            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
-            line = ((x0, y0, z0), (x1, y1, z1))
-        away = samples - mean
-        covariance = (explanation.weights[:, None] * away).T @ away
-        covariance[4, 4] += explanation.weights @ spreads
-        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
-        x, y, z, radius, contrast = map(float, mean)
-        body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, line=line)
-        bodies.append((signal, body))
-    return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, Self
 
@@ -11,6 +12,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
+from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.networks import inputs, read_weights
 from tactsim.localization.region import GaussianRegion
 from tactsim.outside.input_path import InputPath
@@ -20,7 +22,7 @@ LEAST_RADIUS = 0.1e-3
 
 
 class LearnedEstimator(Estimator):
-    """One lump at most, as an ensemble of networks saw it in training.
+    """One lump at most, as an ensemble of networks saw it in training; several places where the readings rise apart.
 
     ``tactsim data train`` makes the weights from a data set of grasps. What the networks take are the changes of the taxels'
     forces from the reference over their size, and that size and the noise over the whole force. Readings of another matrix or
@@ -60,7 +62,7 @@ class LearnedEstimator(Estimator):
         return cls(weights=str(path))
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the region of its centre.
+        """At most one ball, with the region of its centre; the places of `ThesisEstimator` where it tells several apart.
 
         Raises
         ------
@@ -75,6 +77,9 @@ class LearnedEstimator(Estimator):
         probability = learned.probability(features)
         if probability < 0.5:
             return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
+        apart = ThesisEstimator(background="reference").estimate(readings)
+        if len(apart.inclusions) > 1:
+            return replace(apart, probability=probability)
         mean, covariance = learned.place(features)
         x, y, z = map(float, np.clip(mean[:3], 0.0, learned.block_size))
         radius = max(float(mean[3]), LEAST_RADIUS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -14,8 +14,19 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
+from tactsim.localization.candidates import ball_candidates
+from tactsim.localization.evidence import Change, nothing
+from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.region import CellRegion
+from tactsim.localization.separate_places import rises_apart
 from tactsim.units import Length
+
+EVERY, COARSE = 2, 4
+"""Spacing, in tabulated centres, of the balls of which pairs are made, and of those that are tried in all pairs."""
+RADIUS_STEP = 1e-3
+"""Of the balls of which pairs are made, in m."""
+SEED = 1
+"""Of the draws by which pairs are averaged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +40,7 @@ class Candidates:
 
 
 class ModelBasedEstimator(Estimator):
-    r"""One ball anywhere in the block, or nothing.
+    r"""One ball anywhere in the block, or nothing; two where one does not explain the readings.
 
     The change d of the taxels' forces from the reference is c s(x, r) plus Gaussian errors of covariance S, with the response s
     of a ball at x of radius r. The contrast c has a normal prior and is integrated out; centres and radii are even over the grid
@@ -43,6 +54,12 @@ class ModelBasedEstimator(Estimator):
     with the noise of both readings, the error of the forward model, and the reference p, which is known to a common factor
     1 + b and to e_b from taxel to taxel. Mean, covariance and region are those of the posterior. Nothing is there if that
     explains d better; then S lacks the model's error.
+
+    One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
+    do not overlap (``evidence``), with the same S, on a coarser grid. Two are the answer if they are likelier, if the readings
+    rise at separate places (``separate_places``), or if the mean place lies outside its own region, as between two places where
+    one ball could be; unless they are nearer to each other in plan than the pitch of the taxels, where two may be one of another
+    shape.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -64,6 +81,8 @@ class ModelBasedEstimator(Estimator):
     """Error of the reference from taxel to taxel over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
+    second: Annotated[float, Field(ge=0, le=1)] = 0.2
+    """Prior probability of two balls over that of one, as that of ``hypotheses``; 0 for one ball whatever is read."""
 
     @property
     def title(self) -> str:
@@ -76,7 +95,7 @@ class ModelBasedEstimator(Estimator):
         return cls()
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the covariance of place, radius and contrast, and the region of its centre.
+        """One ball, none or two, with the covariance of place, radius and contrast, and the region of each centre.
 
         Raises
         ------
@@ -105,9 +124,52 @@ class ModelBasedEstimator(Estimator):
         cells = np.bincount(candidates.cells, weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
         region = CellRegion(response.axes, cells)
+        pair = self._pair(readings, something, total, between=not region.contains(mean[:3]))
+        if pair is not None:
+            return replace(pair, probability=probability)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         words = "softer" if contrast < 0 else "stiffer"
         return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
+
+    def _pair(self, readings: Readings, covariance: Array, one: float, *, between: bool) -> Estimate | None:
+        """Two balls, if they are likelier than one, whose log evidence on the finest grid is ``one``; None if not.
+
+        ``between``: the mean place of one ball lies where it hardly can be, between several places where it can.
+        """
+        response, size, difference = readings.response, readings.block_size, readings.difference
+        if self.second == 0 or response is None or difference is None:
+            return None
+        steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
+        radii = list(np.linspace(*self.radii, steps))
+        root = scipy.linalg.cholesky(covariance, lower=True)
+        fine, coarse = (
+            replace(balls, signals=scipy.linalg.solve_triangular(root, balls.signals.T, lower=True).T)
+            for balls in (
+                ball_candidates(response, size, radii, gap=self.gap, every=EVERY),
+                ball_candidates(response, size, radii[1::2], gap=self.gap, every=COARSE),
+            )
+        )
+        white = Change(scipy.linalg.solve_triangular(root, difference.ravel(), lower=True), 1.0, self.contrast_spread)
+        two = white.double(fine, coarse, np.random.default_rng(SEED))
+        single = max(one + nothing(white.values, 1.0), white.single(fine).evidence)
+        odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
+        apart = rises_apart(difference, readings.noise)
+        if odds <= 1 and not apart and not between:
+            return None
+        cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
+        bodies = likely_bodies(two, fine, cell)
+        first, other = (np.array(body.center[:2]) for body in bodies)
+        if np.linalg.norm(first - other) < readings.layout.pitch:
+            return None
+        words = f"two balls explain the readings better than one, with a probability of {odds / (1 + odds):.3g}"
+        if odds <= 1:
+            why = (
+                "the sums of both jaws fall between them"
+                if apart
+                else "one ball could be in several places, none of them between"
+            )
+            words = f"two places explain the readings better than one, as {why}"
+        return Estimate(True, bodies, words)
 
     def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
         """Covariance S (taxels, taxels) in N^2 of the errors of a change of force."""

@@ -14,11 +14,12 @@ from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, rising
 from tactsim.localization.bands import Form
 from tactsim.localization.section_image import depth_share
+from tactsim.localization.separate_places import PROMINENCE, nearest_peak, separate_peaks
 from tactsim.units import format_quantity
 
 
 class ThesisEstimator(Estimator):
-    r"""One inclusion at most, read off the views of thesis 6.3 at real positions instead of pixels.
+    r"""One inclusion, read off the views of thesis 6.3 at real positions instead of pixels; several where they stand apart.
 
     The signal is the force of each taxel, or with ``background: reference`` what it reads more than the tissue without a lump
     (less, where the strongest change is a loss: an inclusion softer than the tissue). Its sum over both jaws is the top view.
@@ -27,6 +28,9 @@ class ThesisEstimator(Estimator):
     base is zero and the deviation 2 noise, as the reference has noise of its own. Without, the base is the median of the sums
     and the deviation :math:`\sqrt 2` noise; then the unevenness of plain tissue under the jaws counts as a signal, the known
     weakness of the thesis's algorithm. The depth is a/(a + b) of eq. .2.3, of the undeformed thickness.
+
+    The centroid of two lumps lies between them, where nothing is. Sums with several separate maxima, none of which one ball could
+    make beside another (``separate_places``), therefore give a place for each, of the taxels nearest to it, and say so.
 
     Source: thesis, 6.3.1 to 6.3.4 and Appendix .2, errata E13, E24, E25.
     """
@@ -62,7 +66,7 @@ class ThesisEstimator(Estimator):
         return self.background == "reference"
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one inclusion, without radius, contrast or covariance."""
+        """An inclusion for every separate place, without radius, contrast or covariance, the strongest first."""
         signal, softer = self._signal(readings)
         upper, lower = np.maximum(signal, 0.0)
         total = upper + lower
@@ -73,11 +77,20 @@ class ThesisEstimator(Estimator):
         limit = f"{self.threshold:g} standard deviations of the noise, {format_quantity(least, 'N')}"
         if strength <= least:
             return Estimate(False, (), f"nothing there: {words}, within {limit}")
+        peaks = [peak for peak in separate_peaks(total, max(least, PROMINENCE * strength)) if total[peak] - base > least]
+        if len(peaks) > 1:
+            words = f"{len(peaks)} places explain the readings better than one, as the sums fall between them; {words}"
+        nearest = nearest_peak(total.shape, peaks)
+        parts = [np.where(nearest == number, total, base) for number in range(len(peaks))]
+        places = [self._place(part, base, upper, lower, readings) for part in parts]
+        return Estimate(True, tuple(EstimatedInclusion("unknown", place) for place in places), f"{words}, beyond {limit}")
+
+    def _place(self, total: Array, base: float, upper: Array, lower: Array, readings: Readings) -> tuple[float, float, float]:
+        """Centre in m of what rises in sums (row, column) above their base."""
         weights = self._weights(total, base)
         x, y = readings.taxel_places()
         share = float(depth_share((weights * upper).sum(), (weights * lower).sum(), self.form))
-        place = (float(weights.sum(axis=0) @ x), float(weights.sum(axis=1) @ y), float((1 - share) * readings.block_size[2]))
-        return Estimate(True, (EstimatedInclusion("unknown", place),), f"{words}, beyond {limit}")
+        return float(weights.sum(axis=0) @ x), float(weights.sum(axis=1) @ y), float((1 - share) * readings.block_size[2])
 
     def _signal(self, readings: Readings) -> tuple[Array, bool]:
         """Signal (jaw, row, column) in N, and whether it is a loss, as over something softer than the tissue."""

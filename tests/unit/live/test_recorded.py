@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, taxel_forces
+from made_grasps import response
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
@@ -18,7 +19,7 @@ from tactsim.live.session.estimating import estimated, frame_readings, shown_sig
 from tactsim.live.session.messages import Scales, frame_message
 from tactsim.live.session.thinking import estimate_message
 from tactsim.live.sources.recorded import result_recordings
-from tactsim.live.sources.reference import Reference
+from tactsim.live.sources.reference import PlainResult, Reference
 from tactsim.live.sources.samples import Samples
 from tactsim.results import Quantity, write_result
 
@@ -170,7 +171,7 @@ def test_several_references_serve_samples_of_other_closings(tmp_path: Path) -> N
         found = reference.frame_for(replace(frame, closing=closing))
         np.testing.assert_allclose(found.forces, 0.1 * closing / 1e-3, rtol=1e-9)  # plain tissue reads 0.1 N at 1 mm
         assert found.closing == closing
-    with pytest.raises(InputError, match=r"is 2 mm, those of the references are 500 µm, 1 mm, 1.5 mm"):
+    with pytest.raises(InputError, match=r"closed by 2 mm, those of the reference by 500 µm, 1 mm, 1.5 mm"):
         reference.frame_for(replace(frame, closing=2e-3))
     with pytest.raises(InputError, match="need different closings"):
         Reference.open([folders[0], folders[0]])
@@ -192,8 +193,29 @@ def test_an_estimator_without_its_reference_says_what_it_needs(tmp_path: Path) -
     with pytest.raises(InputError, match="another block or another matrix"):
         frame_readings(recording.scene, recording.at(1.0), BY_NAME["model_based"], reference)
     same = Reference.open([str(grasp_folder(tmp_path / "c", taxel_forces(2), lump=False))])
-    with pytest.raises(InputError, match="holds for a closing of 1 mm"):
-        same.response(0.5e-3)
+    with pytest.raises(InputError, match=r"closed by 1.5 mm, those of the reference by 1 mm; needed: .* at least as far"):
+        same.response(1.5e-3)
+
+
+def test_the_model_of_the_tissue_follows_the_closing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = response()
+    monkeypatch.setattr(PlainResult, "response", lambda self, watch=None: table)
+    steps = np.array([0.25, 0.5, 0.75, 1.0])
+    forces = 0.1 * (steps**2)[:, None, None, None] * np.ones((1, 2, 3, 3))  # tissue that stiffens
+    reference = Reference.open([str(grasp_folder(tmp_path / "a", forces, lump=False))])
+    for closing, share in ((1e-3, 1.0), (0.75e-3, 0.75**2), (0.6e-3, 0.6**2)):
+        found = reference.response(closing)
+        np.testing.assert_allclose(found.values, share * table.values, rtol=3e-2)  # a parabola by monotone cubics
+    single = Reference.open([str(grasp_folder(tmp_path / "b", forces[-1:], lump=False))])
+    np.testing.assert_array_equal(single.response(1e-3).values, table.values)
+    with pytest.raises(InputError, match=r"known at a closing of 1 mm only, here it is 600 µm; needed between: .*steps=12"):
+        single.response(0.6e-3)
+    two = Reference.open(
+        [str(closed_by(grasp_folder(tmp_path / "c", forces[1:2], lump=False), 0.5e-3)), single.results[0].folder]
+    )
+    np.testing.assert_allclose(two.response(0.5e-3).values, table.values)
+    lower = two.response(0.25e-3).values / table.values
+    assert lower.max() < 0.5
 
 
 def test_a_model_that_cannot_be_had_is_told_in_words(tmp_path: Path) -> None:

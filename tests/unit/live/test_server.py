@@ -3,82 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import socket
-import struct
-from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from aiohttp import ClientWebSocketResponse, WSMsgType, WSServerHandshakeError
-from aiohttp.test_utils import TestClient, TestServer
+from aiohttp import WSServerHandshakeError
 from live_pages import TITLE, description, frame_line, grasp_folder, line, made_up_store, taxel_forces
+from open_pages import TOKEN, Client, opened_page, with_client
 
 from tactsim.errors import InputError, StorageError
-from tactsim.live.server import Serving, application, serve
+from tactsim.live.server import Serving, serve
 from tactsim.live.session import session
 from tactsim.live.session.content import Content, opened_content
 from tactsim.live.sources.feed import Feed
-
-TOKEN = "a-token_1"
-Client = TestClient[Any, Any]
-
-
-def with_client(content: Content, act: Callable[[Client], Awaitable[None]], host: str = "127.0.0.1") -> None:
-    """Runs ``act`` against a server of its own."""
-
-    async def run() -> None:
-        async with TestClient(TestServer(application(content, TOKEN, host))) as client:
-            async with asyncio.timeout(40):
-                await act(client)
-
-    asyncio.run(run())
-
-
-class Page:
-    """What a page does with its socket: says that it drew every frame, keeps the last of every message."""
-
-    def __init__(self, socket: ClientWebSocketResponse, draws: bool = True):
-        self.socket, self.draws = socket, draws
-        self.last: dict[str, dict[str, Any]] = {}
-        self.frames = 0
-
-    async def until(self, condition: Callable[[], bool]) -> None:
-        """Receives until a condition holds."""
-        while not condition():
-            message = await self.socket.receive()
-            if message.type is WSMsgType.TEXT:
-                content = json.loads(message.data)
-            elif message.type is WSMsgType.BINARY:
-                content = self._frame(message.data)
-                self.frames += 1
-                if self.draws:
-                    await self.do("drawn")
-            else:
-                raise AssertionError(f"the socket ended: {message}")
-            self.last[content["is"]] = content
-
-    def _frame(self, data: bytes) -> dict[str, Any]:
-        (length,) = struct.unpack_from("<I", data)
-        assert length % 4 == 0, "the numbers must stand at a multiple of four"
-        content = json.loads(data[4 : 4 + length])
-        scene = self.last["scene"]
-        count = 2 * scene["rows"] * scene["columns"]
-        content["forces"] = np.frombuffer(data, "<f4", count, 4 + length).reshape(2, scene["rows"], -1)
-        content["pictures"] = np.frombuffer(data, np.uint8, offset=4 + length + 4 * count).reshape(3, *scene["shape"])
-        return content
-
-    async def do(self, what: str, **more: object) -> None:
-        """Sends a command."""
-        await self.socket.send_str(json.dumps({"do": what, **more}))
-
-
-async def opened_page(client: Client, **options: Any) -> Page:
-    """A page whose socket is open."""
-    return Page(await client.ws_connect(f"/{TOKEN}/ws", headers={"Origin": str(client.make_url("")).rstrip("/")}), **options)
 
 
 @pytest.fixture
@@ -130,7 +69,7 @@ def test_a_socket_from_another_page_is_refused(grasp: Content, origin: str | Non
 
 
 def test_the_page_loads_nothing_from_elsewhere(grasp: Content) -> None:
-    names = ("", "page.js", "controls.js", "space.js", "taxels.js", "views.js", "wire.js", "page.css", "icon.svg")
+    names = ("", "page.js", "answer.js", "controls.js", "space.js", "taxels.js", "views.js", "wire.js", "page.css", "icon.svg")
     vendored = tuple(
         f"vendor/three/{name}" for name in ("three.module.min.js", "three.core.min.js", "OrbitControls.js", "LICENSE")
     )
@@ -238,7 +177,7 @@ def test_samples_are_picked_by_number_and_filter(tmp_path: Path) -> None:
         await page.until(lambda: abs(page.last["frame"]["forces"].max() / (1.2 * taxel_forces(1).max()) - 1) < 1e-6)
         await page.do("sample", number=4)
         await page.until(lambda: page.last["scene"]["sample"]["number"] == 4)
-        split = page.last["scene"]["sample"]["told"]["split"]
+        split = page.last["scene"]["sample"]["state"]["split"]
         assert page.last["scene"]["notes"] == ["sample 4 is failed: ConvergenceError: residual <i>1</i>"]
         await page.do("sample", number=6)
         await page.until(lambda: "fault" in page.last)
@@ -305,7 +244,7 @@ def test_a_taken_port_is_told(grasp: Content) -> None:
         taken.listen()
         port = taken.getsockname()[1]
         with pytest.raises(StorageError, match=f"cannot serve on 127.0.0.1 port {port}"):
-            serve(grasp, Serving(ready=lambda address: None, tell=lambda line: None, port=port))
+            serve(grasp, Serving(ready=lambda address: None, report=lambda line: None, port=port))
 
 
 def test_nothing_to_show_is_told(tmp_path: Path) -> None:

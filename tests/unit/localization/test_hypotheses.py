@@ -144,6 +144,8 @@ def test_two_lumps_lie_where_they_are(response):
         reach = 3 * np.sqrt(np.diag(body.covariance)[:3]) + 1.5e-3
         assert np.all(np.abs(center - place) < reach)
         assert not np.all(np.abs(center - (places.sum(axis=0) - place)) < reach)
+        assert body.region.contains(place, 0.99)
+        assert not body.region.contains(places.sum(axis=0) - place, 0.99)
 
 
 @pytest.mark.parametrize("contrast", [3.0, -1.2])

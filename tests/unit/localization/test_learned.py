@@ -1,5 +1,6 @@
 """The learned estimator: trained on made-up grasps, kept, read again, refused."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +42,7 @@ def kept(folder, written):
 
 def readings(layout=LAYOUT, size=SIZE):
     change = 0.01 * np.random.default_rng(1).standard_normal((2, layout.rows, layout.columns))
+    change[:, 0, 0] = 0.1
     plain = np.full(change.shape, 0.3)
     return Readings(plain + change, layout, size, reference=plain, noise=NOISE)
 
@@ -55,6 +57,17 @@ def test_weights_are_read_as_they_were_written(tmp_path):
     assert estimate.present
     assert estimate.inclusions[0].region.contains(np.array(estimate.inclusions[0].center))
     assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(given).present
+
+
+def test_where_the_readings_rise_apart_no_one_place_is_stated(tmp_path):
+    learned, told = LearnedEstimator.checked(kept(tmp_path, weights())), readings()
+    apart = np.zeros((2, 3, 3))
+    apart[:, 0, 0], apart[:, 2, 2] = 0.1, 0.08
+    found = learned.estimate(replace(told, forces=PLAIN + apart))
+    assert len(found.inclusions) == 2
+    assert "better than one" in found.reason
+    apart[:, 2, 2] = 0.0
+    assert len(learned.estimate(replace(told, forces=PLAIN + apart)).inclusions) == 1
 
 
 def test_inputs_do_not_know_the_size_of_the_change_but_for_one():

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import chi2, multivariate_normal
 
 from tactsim.errors import InvalidQuantity
-from tactsim.localization.region import CellRegion, GaussianRegion, shadows
+from tactsim.localization.region import CellRegion, GaussianRegion, OutlinedRegion, shadows
 
 AXES = tuple((np.arange(n) + 0.5) * 1e-3 for n in (20, 20, 10))
 MEAN = np.array([10e-3, 9e-3, 5e-3])
@@ -78,3 +78,21 @@ def test_what_is_no_region_is_refused():
         GaussianRegion(MEAN, np.diag([1.0, 1.0, 0.0]))
     with pytest.raises(InvalidQuantity, match="probability"):
         GaussianRegion(MEAN, COVARIANCE).sizes(1.0)
+
+
+def test_a_kept_region_is_the_one_that_was_written():
+    mean, spread = np.array([12e-3, 20e-3, 9e-3]), np.diag([1e-3, 2e-3, 1.5e-3]) ** 2
+    whole = GaussianRegion(mean, spread)
+    kept = OutlinedRegion({view: [np.array(line) for line in lines] for view, lines in shadows(whole).items()})
+    np.testing.assert_allclose(kept.sizes(), whole.sizes(), rtol=0.01)  # of a polygon of 48 corners instead of an ellipse
+    for away in range(3):
+        np.testing.assert_allclose(kept.shadow(away), whole.shadow(away))
+    assert kept.contains(mean)
+    reach = 2.5 * np.sqrt(np.diag(spread))  # root of the 90 % quantile of chi-squared with three degrees of freedom
+    for axis in range(3):
+        for share, inside in ((0.95, True), (1.05, False)):
+            point = mean.copy()
+            point[axis] += share * reach[axis]
+            assert kept.contains(point) is inside
+    with pytest.raises(InvalidQuantity, match=r"known: 0\.9"):
+        kept.contains(mean, 0.5)

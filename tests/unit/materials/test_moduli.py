@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from tactsim.errors import CaseError
 from tactsim.materials.hyperelastic import Hyperelastic
@@ -79,7 +80,7 @@ def test_linear_elastic_limits():
         ({"poisson_ratio": -1}, "poisson_ratio"),
         ({"youngs_modulus": 0}, "youngs_modulus"),
     ):
-        with pytest.raises(CaseError, match=quantity):
+        with pytest.raises(ValidationError, match=quantity):
             LinearElastic.model_validate({"youngs_modulus": 1.0, "poisson_ratio": 0.3} | wrong)
     with pytest.raises(CaseError, match="times the shear modulus"):
         LinearElastic(youngs_modulus=1.0, poisson_ratio=0.5 - 1e-9)

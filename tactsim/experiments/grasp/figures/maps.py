@@ -16,10 +16,10 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.plotting.plane_cut import QUARTERS, interfaces
 from tactsim.results import FieldFrame, Result
 
-COLOURS = "plasma"
 MOST_NAMED = 5
 """Matrices with more rows or columns than this have the first and the last one named."""
 MOST_WRITTEN = 100
@@ -49,7 +49,7 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> N
         axis.tick_params(length=2.5)
     axes[1].set_ylabel("")
     bar = axes[0].figure.colorbar(
-        ScalarMappable(norm, COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
+        ScalarMappable(norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
     small = "; small numbers: force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
     dashed = "undeformed block" + (" and outline of the inclusions" if shadows is not None and shadows[2].any() else "")
@@ -63,7 +63,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float,
 
     layout, place, (factor, norm) = grasp.scene.matrix, grasp.scene.place(side), scale
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
-    colours, size = matplotlib.colormaps[COLOURS], 1e3 * layout.size
+    colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
     large = float(np.clip(26 / max(layout.rows, layout.columns), 3.0, 9.0))
     border = 0.6 if grasp.pressures[side].size <= MOST_WRITTEN else 0.0
     squares: list[Rectangle] = []

@@ -14,6 +14,7 @@ from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, endin
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, extension, scale_of, weighted_percentiles
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
 
@@ -83,7 +84,7 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     values = factor * cut.values.ravel()
     corners = 1e3 * cut.triangles.reshape(-1, 2)
     mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))
-    style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": "viridis", "vmin": low, "vmax": high}
+    style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": PRESSURE_COLOURS, "vmin": low, "vmax": high}
     drawn = axis.tripcolor(mesh, values, **style)
     extend = extension(values, (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)

@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.maps import COLOURS
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.plotting.off_screen import Camera, Surface, pictures
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
 from tactsim.results import FieldFrame, Result, Status
@@ -68,7 +68,7 @@ def pressure_bar(figure: Figure, axes: Any, grasp: LoadedTaxels, meaning: str, b
     """The colours of the bars on the taxels; ``meaning`` is what their colour and the length of ``bars`` show."""
     factor, unit = scale_of(grasp.largest_pressure, "Pa")
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
+    bar = figure.colorbar(ScalarMappable(norm, PRESSURE_COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
     bar.set_label(f"mean {meaning} on the taxel in {unit}: colour and length of {bars}")
     bar.outline.set_linewidth(0.5)
 
@@ -104,7 +104,7 @@ def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
         length = height * max(LEAST_BAR, BAR * max(0.0, float(pressure)) / grasp.largest_pressure)
         corner = np.array([layout.borders("x")[column, 0], layout.borders("y")[row, 0], back])
         boxes.append(_placed(grasp, side, _BOX * np.array([layout.size, layout.size, length]) + corner))
-        colours.append(matplotlib.colormaps[COLOURS](float(norm(pressure)))[:3])
+        colours.append(matplotlib.colormaps[PRESSURE_COLOURS](float(norm(pressure)))[:3])
     triangles = np.arange(len(boxes))[:, None, None] * len(_BOX) + _BOX_TRIANGLES
     painted = np.repeat(np.array(colours), len(_BOX_TRIANGLES), axis=0)
     bars = Surface(np.concatenate(boxes), triangles.reshape(-1, 3), painted, creases=True)

@@ -23,7 +23,7 @@ SAMPLES = 40
 BARE_FORCES = (
     "Thesis 6.3 on the bare forces: plain tissue, too, is bright",
     "in the middle, and shows a row of maxima in the top view.",
-    "Pictures reach from centre to centre of the outer taxels.",
+    "Beyond the centres of the outer taxels pictures go on as there.",
 )
 
 

@@ -22,12 +22,11 @@ from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodi
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 
 VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
 Shown = Literal["force", "pressure"]
 """Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""
-COLOURS = "cividis"
-"""Made to look alike with and without colour blindness (Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239)."""
 JAW = 1.2
 """Thickness in mm with which a jaw is drawn."""
 ROOM = 1.0
@@ -68,7 +67,7 @@ class View:
 
 def colour_table(levels: int) -> list[int]:
     """Red, green and blue, each from 0 to 255, of evenly spaced levels of the colour map, one after another."""
-    return np.round(255 * colormaps[COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
+    return np.round(255 * colormaps[PRESSURE_COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
 
 
 def views_figure(grasp: ViewedGrasp, title: str, shown: Shown = "force") -> Figure:
@@ -97,8 +96,16 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     factor, unit = view.scale(grasp, shown)
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
-    axis.imshow(factor * view.image, cmap=COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1)
+    axis.imshow(
+        factor * view.image, cmap=PRESSURE_COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1
+    )
+    across, up = (_edges(view, grasp, extent, k) for k in (0, 1))
+    rim = [(int(len(edges) > count + 1),) * 2 for edges, count in zip((up, across), view.image.shape, strict=True)]
+    style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "norm": norm, "rasterized": True, "zorder": 0.9}
+    axis.pcolormesh(across, up, factor * np.pad(view.image, rim, mode="edge"), **style)
     size = 1e3 * grasp.scene.size
+    unknown: dict[str, Any] = {"facecolor": "#eceef0", "edgecolor": "#c3c8ce", "hatch": "////", "linewidth": 0.0, "zorder": 0.5}
+    axis.add_patch(Rectangle((0, 0), size[view.horizontal], size[view.vertical], **unknown))
     block = Rectangle((0, 0), size[view.horizontal], size[view.vertical], fill=False, edgecolor=GREY, linewidth=0.8, zorder=3)
     block.set_linestyle((0, (4, 3)))
     axis.add_patch(block)
@@ -120,7 +127,9 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.set_title(view.what.format("sums" if shown == "force" else "means"), loc="left")
     despined(axis)
     location = "bottom" if view.away != 2 else "right"
-    bar = axis.figure.colorbar(ScalarMappable(norm, COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85)
+    bar = axis.figure.colorbar(
+        ScalarMappable(norm, PRESSURE_COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85
+    )
     bar.set_label(f"{grasp.meaning.replace('force', shown)} in {unit}")
     bar.outline.set_linewidth(0.5)
 
@@ -144,6 +153,18 @@ def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]
     return sides[0], sides[1], sides[2], sides[3]
 
 
+def _edges(view: View, grasp: ViewedGrasp, extent: tuple[float, float, float, float], along: int) -> np.ndarray:
+    """Borders in mm of the columns (0) or rows (1) of the image, with the outer halves of the outer taxels as one more each."""
+    first, last = (extent[0], extent[1]) if along == 0 else (extent[3], extent[2])
+    edges = np.linspace(first, last, view.image.shape[1 - along] + 1)
+    axis = (view.horizontal, view.vertical)[along]
+    if axis == 2:
+        return edges
+    borders = grasp.scene.borders("xy"[axis])
+    outer = (borders[0, 0], borders[-1, 1]) if first < last else (borders[-1, 1], borders[0, 0])
+    return np.concatenate([[outer[0]], edges, [outer[1]]]) if len(borders) > 1 else edges
+
+
 def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
     """Thin borders of the taxels, hatched where one of a place is interpolated."""
     columns, rows = grasp.scene.borders("x"), grasp.scene.borders("y")
@@ -161,7 +182,7 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     along, summed = ("x", 1) if view.horizontal == 0 else ("y", 2)
     sums, missing = grasp.signal.sum(axis=summed), (~grasp.valid).sum(axis=summed)
     norm = Normalize(0.0, max(float(view.image.max()), 1e-12))
-    colours, borders = colormaps[COLOURS], grasp.scene.borders(along)
+    colours, borders = colormaps[PRESSURE_COLOURS], grasp.scene.borders(along)
     for jaw, side in enumerate(JAWS):
         bottom = 1e3 * grasp.scene.size[2] if side == "upper" else -JAW
         for number, (low, high) in enumerate(borders):
@@ -195,7 +216,7 @@ def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.axis("off")
     added = "sums" if shown == "force" else "means"
     handles: list[Any] = [
-        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block"),
+        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block; hatched: no taxel reads there"),
         Line2D([], [], color=INK, linewidth=0.6, label=f"taxels, their {added} in colour on the jaws"),
     ]
     if not grasp.valid.all():

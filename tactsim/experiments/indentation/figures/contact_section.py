@@ -12,6 +12,7 @@ from tactsim.experiments.indentation.figures.section import Section, draw_body, 
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
 from tactsim.plotting.canvas import despined, extension
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -47,7 +48,7 @@ def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[
     seen = (section.places[:, 0] <= limits[0]) & (section.places[:, 1] >= limits[1])
     (low, high), factor, unit = pressure_scale(section, pressure, seen)
     values = factor * pressure
-    drawn = draw_field(axis, section, values, cmap="viridis", vmin=low, vmax=high)
+    drawn = draw_field(axis, section, values, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
     extend = extension(values[seen], (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
     bar.set_label(

@@ -12,6 +12,7 @@ from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII,
 from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, pressure_scale
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.plotting.canvas import despined
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
@@ -82,7 +83,7 @@ def _draw_pressure(axis: Axes, section: Section, sides: tuple[float, ...], limit
     pressure = np.asarray(section.frame.point_data["pressure [Pa]"]).ravel()
     x, z = section.places.T
     (low, high), factor, unit = pressure_scale(section, pressure, (x >= left) & (x <= right) & (z >= bottom))
-    drawn = draw_field(axis, section, factor * pressure, sides, cmap="viridis", vmin=low, vmax=high)
+    drawn = draw_field(axis, section, factor * pressure, sides, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
     bar = axis.figure.colorbar(drawn, ax=axis, extend="both", location="bottom", shrink=0.6, aspect=32, pad=0.02)
     bar.set_label(f"pressure in {unit} (colours from the 1st to the 99th percentile of the area)")
     bar.outline.set_linewidth(0.5)

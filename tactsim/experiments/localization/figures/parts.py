@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from textwrap import wrap
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.localization.views import AWAY
 from tactsim.results import Result
 
+LINE = 70
+"""Characters of a line of what was found."""
 NO_LINE = [[np.nan] * 3] * 2
 
 
@@ -39,7 +42,8 @@ def _findings(centers: Array, result: Result) -> tuple[str, ...]:
     if not quantities["present"].value:
         return ("Nothing there.",)
     places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in centers]
-    lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities else []
+    lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities or len(places) > 1 else []
+    lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))

@@ -57,7 +57,7 @@ def space_figure(result: Result) -> Figure:
 
 def _title(result: Result) -> str:
     title = result.title or "Localization"
-    return f"{title}: {result.reason}" if result.reason else title
+    return f"{title}: {result.reason.partition(';')[0]}" if result.reason else title
 
 
 def _scale(figure: Figure, axes: Any, grasp: LoadedTaxels, shown: ViewedGrasp) -> None:

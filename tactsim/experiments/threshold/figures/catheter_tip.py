@@ -15,6 +15,7 @@ from tactsim.array import Array
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.plotting.failure import mark_failure
 from tactsim.results import Result
 
@@ -43,7 +44,7 @@ def catheter_tip_figure(result: Result) -> Figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
         pressures = KILOPASCALS * result.history_values("reported_pressure")
         largest = float(np.nanmax(pressures)) if np.isfinite(pressures).any() else 1.0
-        colours = ScalarMappable(Normalize(0.0, largest), "viridis")
+        colours = ScalarMappable(Normalize(0.0, largest), PRESSURE_COLOURS)
         _draw_surface(left, result)
         _draw_sensors(left, result, pressures, colours)
         bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.collections import QuadMesh
 from scenes import grasp_scene
 
 from tactsim.case.loading import load_case
@@ -109,6 +110,31 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     row, column = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
     assert column > 70
     assert row < 30
+
+
+def test_several_places_are_all_named_in_the_result(folders, tmp_path):
+    apart = PLAIN.copy()
+    apart[:, 0, 0] += 0.4
+    apart[:, 2, 2] += 0.3
+    result = run(folders, grasp=stored(tmp_path / "two", grasp(apart)))
+    assert result.reason.startswith("2 places explain the readings better than one")
+    (warning,) = (words for words in result.warnings if "no one place explains the readings" in words)
+    assert "unknown at (10 mm, 10 mm, 10 mm); unknown at (30 mm, 30 mm, 10 mm)" in warning
+    shown = localized(result)
+    assert len(shown.estimates) == 2
+    assert "2 places explain" in " ".join(shown.findings)
+    assert not [words for words in run(folders).warnings if "no one place" in words]
+
+
+def test_pictures_reach_over_the_outer_taxels(folders):
+    figure = views_figure(localized(run(folders)), "")
+    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))
+    mesh = next(part for part in front.collections if isinstance(part, QuadMesh))
+    corners = mesh.get_coordinates()
+    assert (corners[..., 0].min(), corners[..., 0].max()) == pytest.approx((5.5, 34.5))
+    assert (corners[..., 1].min(), corners[..., 1].max()) == pytest.approx((0.0, 20.0))
+    values = mesh.get_array().reshape(len(corners) - 1, -1)
+    np.testing.assert_array_equal(values[:, 0], values[:, 1])
 
 
 @pytest.mark.parametrize("layout", [TaxelLayout(rows=1, columns=1), TaxelLayout(rows=2, columns=9, pitch=4e-3, size=4e-3)])

@@ -1,0 +1,37 @@
+"""Bodies as the draws of a posterior have them: place, radius and contrast with covariance, and the region of the centre."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.interfaces.estimate import EstimatedInclusion
+from tactsim.localization.candidates import Candidates
+from tactsim.localization.evidence import Explanation
+from tactsim.localization.region import GaussianRegion
+
+
+def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array) -> tuple[EstimatedInclusion, ...]:
+    """The bodies of a class, the one with the strongest signal first.
+
+    The region of a centre is that of a normal distribution with the covariance of the draws, widened by the variance of an even
+    one over a ``cell`` (3,) in m of the grid of candidates, between whose centres nothing was tried.
+    """
+    bodies = []
+    for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
+        samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
+        mean, line = explanation.weights @ samples, None
+        if candidates.kind == "tube":
+            best = int(numbers[explanation.weights.argmax()])
+            mean[:3] = candidates.centers[best]
+            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
+            line = ((x0, y0, z0), (x1, y1, z1))
+        away = samples - mean
+        covariance = (explanation.weights[:, None] * away).T @ away
+        covariance[4, 4] += explanation.weights @ spreads
+        signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
+        x, y, z, radius, contrast = map(float, mean)
+        region = GaussianRegion(mean[:3], covariance[:3, :3] + np.diag(np.asarray(cell) ** 2 / 12))
+        body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, region, line)
+        bodies.append((signal, body))
+    return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))
