@@ -137,7 +137,12 @@ def __getattr__(name: str) -> Any:
     import importlib
 
     module, _, attribute = _PLACES[name].partition(":")
-    value = globals()[name] = getattr(importlib.import_module(module), attribute)
+    try:
+        value = globals()[name] = getattr(importlib.import_module(module), attribute)
+    except ImportError as error:
+        from tactsim.outside.extras import missing_extra
+
+        raise missing_extra(error) or error from None
     return value
 
 

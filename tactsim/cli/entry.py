@@ -26,6 +26,7 @@ from tactsim.cli import (
 )
 from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
 from tactsim.outside.environment import check_environment
+from tactsim.outside.extras import missing_extra
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.version import __version__
@@ -91,6 +92,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except TactsimError as error:
         console.error(traceback.format_exc() if debug else str(error))
         return error.exit_code
+    except ImportError as error:
+        needed = missing_extra(error)
+        if needed is None:
+            return _defect(error, debug)
+        console.error(traceback.format_exc() if debug else str(needed))
+        return needed.exit_code
     except MemoryError:
         console.error(traceback.format_exc() if debug else "not enough memory; take a smaller problem or a larger machine")
         return StorageError.exit_code
@@ -100,11 +107,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         console.error(traceback.format_exc() if debug else message)
         return StorageError.exit_code
     except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is reported as such
-        trace = traceback.format_exc() if debug else "run again with --debug for the details"
-        console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it; {trace}")
-        return TactsimError.exit_code
+        return _defect(error, debug)
     finally:
         console.flush()
+
+
+def _defect(error: Exception, debug: bool) -> int:
+    """Report an error that tactsim does not raise on purpose; the exit code."""
+    trace = traceback.format_exc() if debug else "run again with --debug for the details"
+    console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it; {trace}")
+    return TactsimError.exit_code
 
 
 @contextmanager
