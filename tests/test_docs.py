@@ -29,13 +29,17 @@ PAGES = [
 ]
 
 
+LONG = ("guide/time.md", "guide/grasp.md")
+"""Pages whose cases take more than ten seconds."""
+
+
 def test_every_block_is_executed_or_shown():
     languages = {language for path in pages() for language, _ in blocks_of(path.read_text(encoding="utf-8"))}
     assert languages <= EXECUTED | SHOWN, "a block is run, or it is marked `text`"
     assert len(PAGES) >= 5
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", [pytest.param(one, marks=pytest.mark.slow) if one in LONG else one for one in PAGES])
 def test_blocks_of_a_page(page, tmp_path):
     text = (DOCS / page).read_text(encoding="utf-8")
     blocks = blocks_of(text)
