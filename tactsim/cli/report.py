@@ -55,6 +55,8 @@ def format_values(quantity: Quantity) -> str:
     values = np.array(quantity.value, dtype=float)
     if values.ndim == 0:
         return format_quantity(float(values), quantity.unit)
+    if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
+        return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
     finite = values[np.isfinite(values)]
     shape = " x ".join(map(str, values.shape))
     if not finite.size:
@@ -63,6 +65,8 @@ def format_values(quantity: Quantity) -> str:
     return f"{shape} values, {low} to {high}"
 
 
+LISTED = 4
+"""Values of a list that are all shown, such as a place."""
 VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 

@@ -11,6 +11,7 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.progress import Headway, check_steps
+from tactsim.units import format_quantity
 
 
 class LoadedState(Protocol):
@@ -42,6 +43,8 @@ class StepControl:
     growth: float = 1.6
     shrink: float = 0.7
     cut: float = 0.5
+    unit: str = ""
+    """SI unit of the load parameter, for messages; none of a dimensionless one."""
     few_iterations: int = 7
     many_iterations: int = 12
 
@@ -88,7 +91,7 @@ class PathFollower(Generic[State]):
             If the largest step is so short that there would be too many.
         """
         check_steps((target - start.load) / self._control.largest, f"a largest step of {self._control.largest:.3g}")
-        before, now, step, headway = None, start, self._control.first, headway or Headway(start.load, target)
+        before, now, step, headway = None, start, self._control.first, headway or Headway(start.load, target, self._control.unit)
         while now.load < target * (1 - 1e-12):
             load = min(now.load + step, target)
             try:
@@ -100,7 +103,8 @@ class PathFollower(Generic[State]):
                 self.rejected += 1
                 step = (load - now.load) * self._control.cut
                 if step < self._control.smallest:
-                    raise ConvergenceError(f"gave up at {now.load:.6g} of {target:.6g}: {error}", error.history) from error
+                    place, end = (format_quantity(value, self._control.unit) for value in (now.load, target))
+                    raise ConvergenceError(f"gave up at {place} of {end}: {error}", error.history) from error
                 headway.spent(error.solutions, now.load, (target - now.load) / self._control.largest, error)
                 continue
             step = self._control.next_step(max(step, load - now.load), reached.iterations)

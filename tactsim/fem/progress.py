@@ -9,6 +9,7 @@ import math
 from collections import deque
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.units import format_quantity
 
 WINDOW = 100
 """Linear solutions over which progress is measured: more than half of the shipped cases need fewer in all, and a step that is cut
@@ -38,14 +39,14 @@ def check_steps(count: float, what: str) -> None:
 
 
 class Headway:
-    """Watches one path from ``start`` to ``target``.
+    """Watches one path from ``start`` to ``target``, in ``unit`` in messages.
 
     Progress is measured by the logarithm of the distance covered: steps that begin very short and grow by a factor each, as
     after a sudden change, count as progress from the first one on.
     """
 
-    def __init__(self, start: float, target: float):
-        self._start, self._target = start, target
+    def __init__(self, start: float, target: float, unit: str = ""):
+        self._start, self._target, self._unit = start, target, unit
         self._marks: deque[tuple[int, float]] = deque([(0, 0.0)])
 
     def spent(self, solutions: int, place: float, steps: float, failure: ConvergenceError | None = None) -> None:
@@ -71,8 +72,9 @@ class Headway:
         further = rest / gained * (total - before) if gained > 0 else math.inf
         if further > MOST_FURTHER + PER_STEP * steps:
             last = "" if failure is None else f"; the last step failed: {failure}"
+            reached, end = (format_quantity(value, self._unit) for value in (place, self._target))
             raise ConvergenceError(
-                f"gave up at {place:.6g} of {self._target:.6g}, for there is hardly any headway: the last {total - before} "
+                f"gave up at {reached} of {end}, for there is hardly any headway: the last {total - before} "
                 f"linear solutions brought {100 * (share - old):.2g} % of the way, so that the rest would take "
                 f"{_count(further)} more; allowed: {MOST_FURTHER + PER_STEP * steps:.0f}. Another mesh, above all at the edges "
                 f"of the contact, a wider tolerance or a smaller load may help{last}",

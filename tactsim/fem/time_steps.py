@@ -89,7 +89,7 @@ class TimeMarcher(Generic[State]):
             If there would be too many steps.
         """
         check_steps((stops[-1] - start.time) / largest + len(stops), f"a longest step of {largest:.3g} s")
-        before, now, wanted, headway = None, start, min(self._control.first, largest), Headway(start.time, stops[-1])
+        before, now, wanted, headway = None, start, min(self._control.first, largest), Headway(start.time, stops[-1], "s")
         for number, stop in enumerate(stops):
             while now.time < stop * (1 - 1e-12):
                 step = _landing(stop - now.time, min(wanted, largest))

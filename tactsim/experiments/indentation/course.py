@@ -114,7 +114,7 @@ class DisplacementPath:
             If the path cannot be followed.
         """
         control, target = self._drive.control, self._drive.displacement
-        first, more, headway = control.first, True, Headway(state.load, target)
+        first, more, headway = control.first, True, Headway(state.load, target, control.unit)
         while more:
             more, before = False, state.load
             follower = PathFollower(self.model.advance, replace(control, first=first))

@@ -88,4 +88,4 @@ class DisplacedSetup(IndentationSetup):
         """Lengths of the load steps in m."""
         first = self.steps.first or 1e-3 * self.contact_radius
         largest = self.steps.largest or 0.05 * self.contact_radius
-        return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first)
+        return StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first, unit="m")
