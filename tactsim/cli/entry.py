@@ -79,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parsed = parser.parse_args(arguments)
         if "run" not in parsed:
             console.out(parser.format_help())
-            console.error("name one of the commands")
+            console.error("name one of the commands; tactsim COMMAND --help says more")
             return InputError.exit_code
         debug = parsed.debug
         with _printed_warnings():

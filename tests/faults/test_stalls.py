@@ -64,7 +64,8 @@ def march(advance: Marsh, first: float = 0.1, largest: float = 0.4) -> list[Poin
 def test_a_path_that_creeps_is_given_up_with_what_it_reached_and_how_fast(path):
     marsh = Marsh(reach=1e-5)
     with pytest.raises(
-        ConvergenceError, match=r"gave up at (0\.7\d* of 1|700\.\d* ms of 1 s), for there is hardly any headway: the last 1\d\d linear"
+        ConvergenceError,
+        match=r"gave up at (0\.7\d* of 1|700\.\d* ms of 1 s), for there is hardly any headway: the last 1\d\d linear",
     ):
         path(marsh)
     assert marsh.solutions < MOST_FURTHER + 4 * WINDOW

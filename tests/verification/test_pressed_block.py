@@ -85,7 +85,7 @@ def test_frictionless_block_reads_the_exact_pressure(measure, stretch, verificat
 
     check(nominal)
     known = {"reference": "uniaxial compression in closed form", "kind": "exact", "mesh": f"{measure}, 2 cells per side"}
-    verification_record("contact pressure under a plane", press.found.pressure, nominal, tolerance=3e-6, **known)
+    verification_record("contact pressure under a plane", press.state.pressure, nominal, tolerance=3e-6, **known)
     swapped = 2 * (stretch**-2 - stretch) * (0.25 + 1 / stretch)
     assert_kills(check, cauchy=(nominal * stretch,), swapped=(swapped,))
     assert -press.state.gap.min() <= 1e-7
@@ -106,7 +106,7 @@ def test_friction_stays_in_its_cone_and_forces_balance(measure, law, verificatio
 
     check_cone(law)
     check_balance(press.base_force())
-    contact = -press.surface.total(press.found.traction)[-1]
+    contact = -press.surface.total(press.state.traction)[-1]
     known = {"reference": "balance of contact and base", "kind": "invariance", "mesh": f"{measure}, 3 cells per side"}
     verification_record("forces under friction", press.base_force(), contact, tolerance=1e-8, **known)
     assert_kills(check_cone, frictionless=(Coulomb(friction=0.0),))

@@ -23,7 +23,7 @@ def test_help_names_every_command_and_exit_code(capsys: pytest.CaptureFixture[st
 def test_every_command_has_examples(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 0
     text = capsys.readouterr().out
-    assert f"tactsim {command}" in text.split("example")[1]
+    assert f"tactsim {command}" in text.split("\nexample")[1]
 
 
 def test_the_version_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
