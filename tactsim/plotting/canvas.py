@@ -19,6 +19,8 @@ from tactsim.outside.text import one_line
 RESOLUTION = 160
 """In dots per inch."""
 
+COMPRESSION = 4
+"""Level of PNG: twice as fast as the usual 6, for files a tenth larger."""
 LONGEST_TITLE = 200
 """Characters; a case allows no longer title."""
 VECTOR = {"svg.fonttype": "none", "svg.hashsalt": "tactsim", "pdf.fonttype": 42}
@@ -37,11 +39,22 @@ def encoded(figure: Figure, form: str = "png") -> bytes:
     """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date."""
     content = io.BytesIO()
     if form == "png":
-        figure.savefig(content, format="png", dpi=RESOLUTION)
+        lay_out(figure, RESOLUTION)
+        figure.savefig(content, format="png", dpi=RESOLUTION, pil_kwargs={"compress_level": COMPRESSION})
     else:
         with rc_context(VECTOR):  # type: ignore[arg-type]
             figure.savefig(content, format=form, dpi=2 * RESOLUTION, metadata=UNDATED[form])
     return content.getvalue()
+
+
+def lay_out(figure: Figure, resolution: float) -> None:
+    """Places what the figure holds, once: with a layout engine at work ``savefig`` would draw the whole figure twice."""
+    engine = figure.get_layout_engine()
+    if engine is None:
+        return
+    figure.dpi = resolution
+    engine.execute(figure)
+    figure.set_layout_engine("none")
 
 
 def png(figure: Figure) -> bytes:
