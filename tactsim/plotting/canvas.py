@@ -39,22 +39,13 @@ def encoded(figure: Figure, form: str = "png") -> bytes:
     """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date."""
     content = io.BytesIO()
     if form == "png":
-        lay_out(figure, RESOLUTION)
-        figure.savefig(content, format="png", dpi=RESOLUTION, pil_kwargs={"compress_level": COMPRESSION})
+        figure.dpi = RESOLUTION
+        # savefig would draw all of it twice, first to lay it out
+        FigureCanvasAgg(figure).print_png(content, pil_kwargs={"compress_level": COMPRESSION})
     else:
         with rc_context(VECTOR):  # type: ignore[arg-type]
             figure.savefig(content, format=form, dpi=2 * RESOLUTION, metadata=UNDATED[form])
     return content.getvalue()
-
-
-def lay_out(figure: Figure, resolution: float) -> None:
-    """Places what the figure holds, once: with a layout engine at work ``savefig`` would draw the whole figure twice."""
-    engine = figure.get_layout_engine()
-    if engine is None:
-        return
-    figure.dpi = resolution
-    engine.execute(figure)
-    figure.set_layout_engine("none")
 
 
 def png(figure: Figure) -> bytes:

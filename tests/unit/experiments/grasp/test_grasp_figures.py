@@ -11,7 +11,7 @@ from scenes import grasp_scene
 
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures import view as grasp_view
-from tactsim.experiments.grasp.figures.grasp import grasp_figure, history_figure, maps_figure, section_figure
+from tactsim.experiments.grasp.figures.grasp import history_figure, maps_figure, section_figure
 from tactsim.experiments.grasp.figures.maps import inclusion_shadows
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.section import cutting_plane
@@ -198,9 +198,12 @@ def test_figures_show_what_is_seen(frame):
     section = text_of(section_figure(result))
     for words in ("A made-up grasp", "cut at y = 20 mm through the middle of sphere 1", "pressure in the tissue in kPa", "U2,2"):
         assert words in section
-    overview = text_of(grasp_figure(result))
-    for words in ("upper jaw", "lower jaw (L)", "x in mm", "row 3", "pressure in the lumen", "time in s", "9 of 18 taxels"):
-        assert words in overview
+    maps = text_of(maps_figure(result))
+    for words in ("upper jaw", "lower jaw (L)", "x in mm", "row 3"):
+        assert words in maps
+    course = text_of(history_figure(result))
+    for words in ("pressure in the lumen", "time in s", "9 of 18 taxels"):
+        assert words in course
 
 
 def test_history_without_time_is_over_the_closing():
@@ -211,24 +214,22 @@ def test_history_without_time_is_over_the_closing():
 
 def test_single_step_without_fields_leaves_the_maps():
     alone = made_up(steps=1)
-    assert list(figures_for(alone)) == ["grasp.png", "grasp_maps.png", "views.png", "views_pressure.png"]
-    assert "time in s" not in text_of(grasp_figure(alone))
+    assert list(figures_for(alone)) == ["grasp_maps.png", "views.png"]
+    assert "time in s" not in text_of(maps_figure(alone))
     assert figures_for(replace(alone, steps=())) == {}
 
 
 def test_failed_run_is_marked():
-    assert "FAILED" in text_of(grasp_figure(made_up(status=Status.FAILED)))
+    assert "FAILED" in text_of(maps_figure(made_up(status=Status.FAILED)))
 
 
-def test_overview_comes_first_and_the_view_last(frame):
+def test_maps_come_first_and_the_view_last(frame):
     drawings = figures_for(made_up(frame=frame))
     names = [
-        "grasp.png",
         "grasp_maps.png",
         "grasp_section.png",
         "grasp_history.png",
         "views.png",
-        "views_pressure.png",
         "grasp_view.png",
     ]
     assert list(drawings) == names
