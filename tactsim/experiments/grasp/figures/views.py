@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS
@@ -81,9 +82,9 @@ def views_figure(grasp: ViewedGrasp, title: str) -> Figure:
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
     pressures, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
-    front = View(pressures.front, 1, 0, 2, layout.rows, "Front view: sums over the rows")
-    left = View(pressures.left, 0, 1, 2, layout.columns, "Left view: sums over the columns")
-    top = View(pressures.top, 2, 0, 1, len(JAWS), "Top view: sums of both jaws")
+    front = View(pressures.front, 1, 0, 2, layout.rows, "front view: sums over the rows")
+    left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
+    top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
     x, y, z = 1e3 * grasp.scene.size
     with styled():
         figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
@@ -126,22 +127,17 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
 
 
 def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) -> None:
-    """The colours of a view on one side in the unit of force, on the other in that of pressure."""
+    """The colours of a view: each sum of forces with the mean pressure on the taxels that were summed."""
     below = view.away != 2
     location = "bottom" if below else "right"
     bar = axis.figure.colorbar(ScalarMappable(norm, COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85)
     (force, force_unit), (pressure, pressure_unit) = view.force_scale, view.pressure_scale(grasp)
-    bar.set_label(f"{grasp.meaning} in {force_unit}")
-    other = bar.ax.twiny() if below else bar.ax.twinx()
-    limits = (norm.vmin or 0.0) * pressure / force, (norm.vmax or 0.0) * pressure / force
-    if below:
-        other.set(xlim=limits, xlabel=f"mean pressure in {pressure_unit}")
-    else:
-        other.set(ylim=limits, ylabel=f"mean pressure in {pressure_unit}")
-        other.yaxis.set_ticks_position("left")
-        other.yaxis.set_label_position("left")
-    for frame in (bar.outline, *other.spines.values()):
-        frame.set_linewidth(0.5)
+    apart = "\n" if below else "  "
+    bar.locator = MaxNLocator(nbins=6)
+    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({value * pressure / force:.2g})")
+    bar.update_ticks()
+    bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit})")
+    bar.outline.set_linewidth(0.5)
 
 
 def _extent(view: View, grasp: ViewedGrasp) -> tuple[float, float, float, float]:
