@@ -88,7 +88,7 @@ def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 if row == len(ROWS) - 1:
                     axis.set_xlabel(words)
         _legend(figure, grid[0, 0])
-        entitle(figure, "Errors of the estimators", "numbers at the top: grasps in each bin; lines: 95 % intervals")
+        entitle(figure, "Errors of the estimators", "numbers above: lumps in each bin; bars: 95 % intervals")
     return figure
 
 
@@ -152,6 +152,10 @@ def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, 
         bins = estimator["bins"][label]
         middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
         _draw_line(axis, factor * middles, [measure.of(part) for part in bins], style, measure)
+    if measure is ROWS[0] and estimators:
+        for part in estimators[0]["bins"][label]:
+            middle = factor * (part["low"] * part["high"]) ** 0.5
+            axis.text(middle, 1.04, f"{part['lumps']}", ha="center", va="bottom", fontsize=7, color="0.4")
     _finish(axis, measure)
 
 
