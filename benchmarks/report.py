@@ -15,6 +15,7 @@ from pathlib import Path
 import assembly
 import commands
 import data_sets
+import figures as pictures
 import grasp
 import localization
 import peers
@@ -69,6 +70,7 @@ def table(figures: dict[str, dict[str, float]]) -> str:
             "under 1 ms",
             f"{1e3 * figures['localization']['views_32_seconds']:.2f} ms",
         ),
+        *pictures.rows(figures["figures"]),
         *_data_sets(figures["data_sets"]),
         *_against_peers(figures.get("peers")),
     ]
@@ -115,7 +117,7 @@ def main() -> None:
         "--peers", nargs="?", const="", help="also solve one block with other programs (minutes), or take what peers.py printed"
     )
     arguments = parser.parse_args()
-    parts = (assembly, viscoelasticity, commands, grasp, sensor_chain, localization, data_sets)
+    parts = (assembly, viscoelasticity, commands, pictures, grasp, sensor_chain, localization, data_sets)
     figures: dict[str, dict] = {part.__name__: part.measure() for part in parts}
     if arguments.peers is not None:
         figures["peers"] = peers.measure() if arguments.peers == "" else _printed(Path(arguments.peers))

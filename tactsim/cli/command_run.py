@@ -47,6 +47,7 @@ examples:
   tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
   tactsim run cases/grasp_lump_icf.yaml --time-limit "5 min"
   tactsim run grasp_plain grasp_lump_icf --out grasps
+  tactsim run cases/annulus_icf.yaml --figures pdf
 """
 
 
@@ -68,6 +69,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--force", action="store_true", help="replace an earlier result in --out")
     parser.add_argument("--time-limit", metavar="TIME", help='end a run that takes longer, such as "5 min" (default: no limit)')
+    words = "form of the pictures in figures/ (default: png); none draws nothing and saves their time"
+    parser.add_argument("--figures", choices=("none", "png", "svg", "pdf"), default="png", help=words)
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="write no progress and no report, only errors")
     loudness.add_argument("--progress", action="store_true", help="report every accepted step even where nobody watches")
@@ -167,7 +170,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
     from tactsim.cli.report import last_line, result_report
 
     result = replace(result, title=case.title)
-    figures, warnings = rendered_figures(result)
+    figures, warnings = ({}, []) if arguments.figures == "none" else rendered_figures(result, arguments.figures)
     frames = {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]
     result = replace(result, warnings=(*result.warnings, *warnings), frames=frames)
     report = result_report(result, case.title)

@@ -13,13 +13,14 @@ NAME = "show"
 SUMMARY = "print a stored result or data set, save its figure, or open the live page"
 DESCRIPTION = """\
 Prints the quantities of a stored result, or the counts and variables of a data set, with their units;
---save draws its main figure. --web serves the live page of a grasp or a data set of grasps on this
-machine, under an address with a random token, until Ctrl-C. --live shows frames as they come, too.
+--save draws its main figure, in the form that the ending of the file names. --web serves the live page
+of a grasp or a data set of grasps on this machine, under an address with a random token, until Ctrl-C.
+--live shows frames as they come, too.
 """
 EXAMPLES = """\
 examples:
   tactsim show results/annulus_icf
-  tactsim show results/annulus_icf --save annulus.png
+  tactsim show results/annulus_icf --save annulus.pdf
   tactsim show lumps.zarr --save taxels.png
   tactsim show results/grasp_lump_icf --web --reference results/grasp_plain
   my_sensor | tactsim show --web --live -
@@ -42,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
     words = "folder that tactsim run or sweep wrote; may be left out with --live"
     parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, nargs="?", help=words)
-    parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the main figure")
+    parser.add_argument("--save", metavar="FILE", type=Path, help="save the main figure as .png, .svg or .pdf")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
     words = "frames: a file that grows, - for standard input (a named pipe: --live - < PIPE), or tcp://127.0.0.1:PORT"
     parser.add_argument("--live", metavar="SOURCE", help=words)
@@ -83,9 +84,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show_result(arguments: argparse.Namespace) -> int:
+    from tactsim.cli.figures.result_figures import form_of, rendered_figures
     from tactsim.cli.report import result_report
     from tactsim.results import read_result
 
+    form = None if arguments.save is None else form_of(arguments.save)
     folder = arguments.result.parent if arguments.result.name == "result.json" else arguments.result
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
@@ -93,11 +96,10 @@ def _show_result(arguments: argparse.Namespace) -> int:
     console.out(f"  case {one_line(stored.case_id)}")
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
-    if arguments.save is not None:
-        from tactsim.cli.figures.result_figures import rendered_figures
+    if form is not None:
         from tactsim.storage.files import replace_file
 
-        figures, warnings = rendered_figures(stored.result)
+        figures, warnings = rendered_figures(stored.result, form, main_only=True)
         for warning in warnings:
             console.note(f"warning: {one_line(warning)}")
         if not figures:
@@ -108,16 +110,18 @@ def _show_result(arguments: argparse.Namespace) -> int:
 
 
 def _show_data_set(arguments: argparse.Namespace) -> int:
+    from tactsim.cli.figures.result_figures import form_of
     from tactsim.dataset.use.card import description
 
+    form = None if arguments.save is None else form_of(arguments.save)
     console.out(description(arguments.result))
-    if arguments.save is not None:
+    if form is not None:
         from tactsim.dataset.figures.card import card_figures
         from tactsim.storage.files import replace_file
 
         drawings = card_figures(arguments.result)
         if not drawings:
             raise InputError(f"{arguments.result} has no sample that is done, and so no figure")
-        replace_file(arguments.save, drawings[list(drawings)[-1]]())
+        replace_file(arguments.save, drawings[list(drawings)[-1]](form))
         console.out(f"figure {arguments.save}")
     return 0

@@ -19,6 +19,10 @@ from tactsim.outside.text import one_line
 RESOLUTION = 160
 """In dots per inch."""
 
+COMPRESSION = 4
+"""Level of PNG: twice as fast as the usual 6, for files a tenth larger."""
+PRINTED_RESOLUTION = 240
+"""In dots per inch, of what is dense and therefore a picture inside a vector file."""
 LONGEST_TITLE = 200
 """Characters; a case allows no longer title."""
 VECTOR = {"svg.fonttype": "none", "svg.hashsalt": "tactsim", "pdf.fonttype": 42}
@@ -37,10 +41,12 @@ def encoded(figure: Figure, form: str = "png") -> bytes:
     """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date."""
     content = io.BytesIO()
     if form == "png":
-        figure.savefig(content, format="png", dpi=RESOLUTION)
+        figure.dpi = RESOLUTION
+        # savefig would draw all of it twice, first to lay it out
+        FigureCanvasAgg(figure).print_png(content, pil_kwargs={"compress_level": COMPRESSION})
     else:
         with rc_context(VECTOR):  # type: ignore[arg-type]
-            figure.savefig(content, format=form, dpi=2 * RESOLUTION, metadata=UNDATED[form])
+            figure.savefig(content, format=form, dpi=PRINTED_RESOLUTION, metadata=UNDATED[form])
     return content.getvalue()
 
 
@@ -64,9 +70,10 @@ def styled() -> AbstractContextManager[Any]:
     return rc_context(STYLE)  # type: ignore[arg-type]
 
 
-def entitle(figure: Figure, title: str, *, size: float = 11) -> None:
-    """Writes a title above a figure letter by letter: what a user wrote is no TeX."""
-    figure.suptitle(one_line(title, LONGEST_TITLE), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
+def entitle(figure: Figure, title: str, below: str = "", *, size: float = 11) -> None:
+    """Writes a title above a figure letter by letter, what a user wrote is no TeX, and a second line below it."""
+    lines = [one_line(line, LONGEST_TITLE) for line in (title, below) if line]
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
 
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:

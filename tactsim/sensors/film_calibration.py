@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -29,5 +28,15 @@ def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1
 
 def least_squares_line(force: Array, conductance: Array) -> LinearCalibration:
     """The line through conductances (n,) in S over forces (n,) in N; they must rise on the whole."""
-    fit = scipy.stats.linregress(force, conductance)
-    return LinearCalibration(slope=float(fit.slope), intercept=float(fit.intercept))
+    slope, intercept = slope_and_intercept(force, conductance)
+    return LinearCalibration(slope=slope, intercept=intercept)
+
+
+def slope_and_intercept(x: Array, y: Array) -> tuple[float, float]:
+    """Of the least-squares line through values ``y`` (n,) over ``x`` (n,).
+
+    In closed form, as ``scipy.stats`` takes longer to load than a film to read.
+    """
+    away = x - x.mean()
+    slope = float(away @ (y - y.mean()) / (away @ away))
+    return slope, float(y.mean() - slope * x.mean())

@@ -65,7 +65,7 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
         upper.plot(stretch, uniaxial_nominal_stress(fit.material, stretch) * factor, style, label=label)
         lower.plot(curve.stretch, 100 * relative_errors(fit.material, curve), style)
     upper.set_ylabel(f"nominal stress in {unit}")
-    upper.set_title(f"{name}: uniaxial curve and fits")
+    upper.set_title(f"{name}: uniaxial curve and fits", loc="left")
     upper.legend(frameon=False)
     lower.axhline(0, color="0.6", linewidth=0.8)
     lower.set_ylabel("relative error in %")

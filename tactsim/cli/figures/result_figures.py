@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from tactsim.errors import TactsimError
+from tactsim.errors import InputError, TactsimError
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.results import Result
@@ -14,13 +14,28 @@ FORMS = ("png", "svg", "pdf")
 """Forms of a figure's file."""
 
 
-def rendered_figures(result: Result, form: str = "png") -> tuple[dict[str, bytes], list[str]]:
-    """File name -> content of a result's figures, the main one first, and warnings."""
+def form_of(path: Path) -> str:
+    """The form that the ending of a file names.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    form = path.suffix.lower().removeprefix(".")
+    if form not in FORMS:
+        raise InputError(f"--save {one_line(path)}: a figure is saved as {', '.join(f'.{known}' for known in FORMS)}")
+    return form
+
+
+def rendered_figures(result: Result, form: str = "png", *, main_only: bool = False) -> tuple[dict[str, bytes], list[str]]:
+    """File name -> content of a result's figures, the main one first or alone, and warnings."""
 
     def drawings() -> Mapping[str, Callable[..., bytes]]:
         from tactsim.plotting import figures_for  # type: ignore[attr-defined,unused-ignore]
 
-        return figures_for(result)
+        figures: Mapping[str, Callable[..., bytes]] = figures_for(result)
+        return dict(list(figures.items())[:1]) if main_only else figures
 
     return drawn_figures(drawings, form)
 

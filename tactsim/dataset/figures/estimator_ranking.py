@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import Plot, despined, new_figure, styled
+from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
@@ -19,10 +19,10 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 MARKERS = "osD^vP"
 MILLIMETRES = 1e3
 AXES = {
-    "depth": "depth of the centre [mm]",
-    "radius": "radius [mm]",
+    "depth": "depth of the centre in mm",
+    "radius": "radius in mm",
     "contrast": "shear modulus over the tissue's",
-    "closing": "closing of each jaw [mm]",
+    "closing": "closing of each jaw in mm",
 }
 NOMINAL = (0.85, 0.95)
 """Band in which the coverage of 90 % regions should lie: the plan of the display."""
@@ -58,8 +58,8 @@ class Style:
 
 ROWS = (
     Measure("detection_rate", None, "part detected"),
-    Measure("lateral_error", "median", "lateral error [mm]"),
-    Measure("depth_error", "median", "depth error [mm]"),
+    Measure("lateral_error", "median", "lateral error in mm"),
+    Measure("depth_error", "median", "depth error in mm"),
     Measure("coverage", None, "coverage of 90 % regions"),
 )
 
@@ -88,6 +88,7 @@ def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 if row == len(ROWS) - 1:
                     axis.set_xlabel(words)
         _legend(figure, grid[0, 0])
+        entitle(figure, "Errors of the estimators", "numbers above: lumps in each bin; bars: 95 % intervals")
     return figure
 
 
@@ -100,9 +101,10 @@ def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 multiples = np.array([measures["multiple"] for measures in estimator["noise"]])
                 _draw_line(axis, multiples, [measure.of(measures) for measures in estimator["noise"]], style, measure)
             axis.set_xlabel("noise over the stated noise")
-            axis.set_title(measure.heading)
+            axis.set_title(measure.heading, loc="left")
             _finish(axis, measure)
         _legend(figure, figure.axes[0])
+        entitle(figure, "Estimators under noise")
     return figure
 
 
@@ -120,16 +122,22 @@ def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[
                 axis, side = grid[row, column], MILLIMETRES * float(block_size[row])
                 axis.plot([0, side], [0, side], color="0.6", linewidth=0.8)
                 axis.plot(true[:, row], estimated[:, row], ".", color=COLOURS[column % len(COLOURS)], markersize=4)
-                axis.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel=f"true {name} [mm]")
+                axis.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel=f"true {name} in mm")
                 if column == 0:
-                    axis.set_ylabel(f"estimated {name} [mm]")
-            grid[0, column].set_title(f"{one['name']}\n{len(hits)} detected", fontsize=8)
+                    axis.set_ylabel(f"estimated {name} in mm")
+            grid[0, column].set_title(f"{_shown(one['name'])}\n{len(hits)} detected", loc="left", fontsize=8)
+        entitle(figure, "Estimated over true places")
     return figure
+
+
+def _shown(name: str) -> str:
+    """The name of an estimator in words."""
+    return name.replace("_", " ")
 
 
 def _styles(estimators: Sequence[Mapping[str, Any]]) -> list[Style]:
     return [
-        Style(estimator["name"], COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)])
+        Style(_shown(estimator["name"]), COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)])
         for number, estimator in enumerate(estimators)
     ]
 
@@ -144,6 +152,10 @@ def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, 
         bins = estimator["bins"][label]
         middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
         _draw_line(axis, factor * middles, [measure.of(part) for part in bins], style, measure)
+    if measure is ROWS[0] and estimators:
+        for part in estimators[0]["bins"][label]:
+            middle = factor * (part["low"] * part["high"]) ** 0.5
+            axis.text(middle, 1.04, f"{part['lumps']}", ha="center", va="bottom", fontsize=7, color="0.4")
     _finish(axis, measure)
 
 

@@ -6,7 +6,6 @@ import itertools
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-import scipy
 from pydantic import Field, model_validator
 
 from tactsim.array import Array
@@ -18,6 +17,7 @@ from tactsim.results.result import Quantity, StepRecord
 from tactsim.sensors.any_film import AnyFilm
 from tactsim.sensors.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.film import HOLM, Film
+from tactsim.sensors.film_calibration import slope_and_intercept
 from tactsim.units import Force, Time, check_increasing
 
 LEAST_FORCE, LONGEST = 1e-9, 1e12
@@ -120,8 +120,7 @@ class FilmTest(Experiment):
 
     def _at_reading(self, forces: Array, read: Array, report: FilmReport) -> dict[str, Quantity]:
         """What is read at the reading time, and the line through it."""
-        fit, symbol = scipy.stats.linregress(forces, read), self.film.signal
-        slope, intercept = float(fit.slope), float(fit.intercept)
+        (slope, intercept), symbol = slope_and_intercept(forces, read), self.film.signal
         errors = (read - intercept) / slope - forces
         quantities = {
             f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time, for each force")

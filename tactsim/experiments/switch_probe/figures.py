@@ -58,7 +58,7 @@ def force_over_depth_figure(result: Result) -> Figure:
 def tissues_by_rate_figure(result: Result) -> Figure:
     """One panel per rate, one curve per tissue (Fig. 5.8)."""
     scene = result.scene_as(SwitchProbeScene)
-    panels = [Panel(_rate(rate), [(tissue, (tissue, rate)) for tissue in scene.tissues]) for rate in scene.rates]
+    panels = [Panel(_rate(rate), [(tissue, (tissue, rate)) for tissue in scene.tissues]) for rate in sorted(scene.rates)]
     return _curves_figure(result, panels, "Tissues at the same rate")
 
 
@@ -99,13 +99,13 @@ def _draw_probe(axis: Axes, sides: tuple[str, ...], touch: RecordedTouch) -> Non
     axis.add_patch(Polygon(corners, closed=True, facecolor="#eceff1", edgecolor="#30363d"))
     axis.add_patch(Rectangle((-0.7 * FACE, -0.3), 1.4 * FACE, 0.25, facecolor="#1f4e79"))
     axis.text(0, -0.55, "force sensor", ha="center", va="top", color="#1f4e79", fontsize=8)
-    closed = {closing.switch: closing for closing in touch.closings}
+    closed, start = {closing.switch: closing for closing in touch.closings}, touch.start or 0.0
     for number, side in enumerate(sides, 1):
         sign, closing = (1 if side == "right" else -1), closed.get(number)
         place = sign * (FACE + number * LEAN)
         axis.plot(place, number, "o", markersize=13, color=OPEN if closing is None else CLOSED, markeredgecolor="#30363d")
         axis.text(place, number, str(number), ha="center", va="center", color="k" if closing is None else "w", fontsize=8)
-        words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - (touch.start or 0.0):.3f} s"
+        words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - start:.3f} s"
         axis.text(place + sign * 0.6, number, words, ha="left" if sign > 0 else "right", va="center", fontsize=8)
     axis.set(xlim=(-7, 7), ylim=(-1.3, HEIGHT + 0.3), aspect="equal")
     axis.set_axis_off()
@@ -116,12 +116,15 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     """The force of the first touch over time, with the moments at which switches closed."""
     steps = [step.values for step in result.steps if _is(step.values, result, (touch.tissue, touch.rate))]
     time, force = (np.array([values[name] for values in steps]) for name in ("time", "read_force"))
-    axis.plot(time, force, color=COLOURS[0], label="force sensor")
+    start = touch.start or 0.0
+    axis.plot(time - start, force, color=COLOURS[0], label="force sensor")
     for closing in touch.closings:
-        axis.axvline(closing.time, color=CLOSED, linewidth=0.8, linestyle=":")
-        axis.plot(closing.time, closing.force, "o", color=CLOSED, markersize=5)
-        axis.annotate(str(closing.switch), (closing.time, closing.force), (-9, 4), textcoords="offset points", fontsize=8)
-    axis.set(xlabel="time in s", ylabel="force in N", ylim=(min(0.0, 1.05 * force.min()), 1.1 * max(force.max(), 1e-9)))
+        axis.axvline(closing.time - start, color=CLOSED, linewidth=0.8, linestyle=":")
+        axis.plot(closing.time - start, closing.force, "o", color=CLOSED, markersize=5)
+        axis.annotate(str(closing.switch), (closing.time - start, closing.force), (-9, 4), textcoords="offset points", fontsize=8)
+    axis.set(
+        xlabel="time since the touch in s", ylabel="force in N", ylim=(min(0.0, 1.05 * force.min()), 1.1 * max(force.max(), 1e-9))
+    )
     axis.set_title(
         f"threshold of the touch {format_quantity(result.scene_as(SwitchProbeScene).touch_threshold, 'N')}", loc="left"
     )
@@ -146,7 +149,8 @@ def _is(values: dict[str, float], result: Result, which: tuple[str, float]) -> b
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:
-    axis.set(xlabel="depth in mm", xlim=(0, 1e3 * result.scene_as(SwitchProbeScene).depth * 1.02), title=title)
+    axis.set(xlabel="depth in mm", xlim=(0, 1e3 * result.scene_as(SwitchProbeScene).depth * 1.02))
+    axis.set_title(title, loc="left")
     axis.set_ylim(0, 1.08 * max(step.values["force"] for step in result.steps))
     axis.legend(fontsize=8, loc="upper left")
     if axis.get_subplotspec().is_first_col():  # type: ignore[union-attr]
@@ -155,5 +159,4 @@ def _finish(axis: Axes, result: Result, title: str) -> None:
 
 
 def _title(figure: Figure, result: Result, words: str) -> None:
-    title = result.title
-    entitle(figure, f"{title}\n{words}" if title else words, size=10.5)
+    entitle(figure, result.title, words, size=10.5)

@@ -128,3 +128,18 @@ def test_a_bad_case_leaves_no_trace(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--set", "experiment.friction=9"]) == 2
     assert capsys.readouterr().err == "error: --set experiment.friction: 9 is out of range; must be at most 2.0\n"
     assert not Path("results").exists()
+
+
+@pytest.mark.parametrize(("form", "names"), [("none", None), ("svg", ["pretence.svg"]), ("pdf", ["pretence.pdf"])])
+def test_the_form_of_the_figures_is_chosen(monkeypatch: pytest.MonkeyPatch, form: str, names: list[str] | None) -> None:
+    drawn: list[str] = []
+
+    def draw(form: str = "png") -> bytes:
+        drawn.append(form)
+        return form.encode()
+
+    monkeypatch.setattr(plotting, "figures_for", lambda result: {"pretence.png": draw})
+    assert main(["run", "case.yaml", "--figures", form]) == 0
+    figures = Path("results/case/figures")
+    assert (os.listdir(figures) if figures.exists() else None) == names
+    assert drawn == ([] if names is None else [form])

@@ -33,6 +33,18 @@ def test_the_main_figure_is_saved(folder: Path, tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == PNG
 
 
+def test_the_ending_says_the_form_and_only_the_main_figure_is_drawn(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    figures = {"main.png": lambda form: form.encode(), "other.png": lambda form: pytest.fail("drawn in vain")}
+    monkeypatch.setattr(plotting, "figures_for", lambda result: figures)
+    for form in ("svg", "pdf"):
+        assert main(["show", str(folder), "--save", str(tmp_path / f"a.{form}")]) == 0
+        assert (tmp_path / f"a.{form}").read_bytes() == form.encode()
+    assert main(["show", str(folder), "--save", str(tmp_path / "a.jpg")]) == 2
+    assert "a figure is saved as .png, .svg, .pdf" in capsys.readouterr().err
+
+
 def test_a_result_without_figure_is_reported(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

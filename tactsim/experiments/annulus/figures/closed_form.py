@@ -39,7 +39,9 @@ def closed_form_figure(result: Result) -> Figure:
             axis.axhline(0.0, color="0.6", linewidth=0.6)
             if pulls.any():
                 reach = axis.get_ylim()
-                axis.fill_between(time, *reach, where=pulls, color="#b00020", alpha=0.12, label="a real contact is open")
+                axis.fill_between(
+                    time, *reach, where=pulls, color="#b00020", alpha=0.12, label="pulls: a real probe would have lifted off"
+                )
                 axis.set_ylim(reach)
             axis.set_ylabel(f"{words} in {prefixed}")
             despined(axis)

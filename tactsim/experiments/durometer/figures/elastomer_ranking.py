@@ -67,7 +67,7 @@ def _draw_readings(axis: Axes, result: Result, colours: Array) -> None:
         at, side = (0, 15 if crowded else 6), "left" if across < NEAR / 2 else "center"
         axis.annotate(name, (across, up), at, textcoords="offset points", fontsize=7.5, ha=side)
     axis.set(xlabel="printed Shore OO", ylabel="Shore OO predicted from the sensor's threshold", xlim=(0, top), ylim=(0, top))
-    axis.set_title("0: the durometer bottoms out", loc="left")
+    axis.set_title("predicted over printed; a reading of 0: bottomed out", loc="left")
     axis.legend(loc="upper left", fontsize=8)
     despined(axis)
 

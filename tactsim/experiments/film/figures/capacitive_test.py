@@ -23,14 +23,17 @@ def capacitive_test_figure(result: Result) -> Figure:
         label = f"C = {slope:.4g} pF/N · F {intercept:+.4g} pF"
         ends = np.array([0.0, forces[-1]])
         axes[0].plot(ends, slope * ends + intercept, "--", color=LINE, label=label)
-        axes[0].set(xlabel="force in N", ylabel="capacitance in pF", title="Capacitance and its line", ylim=(0, None))
+        axes[0].set(xlabel="force in N", ylabel="capacitance in pF", ylim=(0, None))
+        axes[0].set_title("capacitance and its line", loc="left")
         axes[0].legend(loc="lower right")
         strain = np.array([step.values["strain"] for step in result.steps if step.values["time"] == 0.0])
         axes[1].plot(forces, 100 * strain, "o-", color=DATA, markersize=3)
-        axes[1].set(xlabel="force in N", ylabel="compressive strain in %", title="Strain of the dielectric", ylim=(0, None))
+        axes[1].set(xlabel="force in N", ylabel="compressive strain in %", ylim=(0, None))
+        axes[1].set_title("strain of the dielectric", loc="left")
         if amplified:
             axes[2].plot(forces, result.quantities["reading_voltage"].numbers, "o-", color=DATA, markersize=3)
-            axes[2].set(xlabel="force in N", ylabel="amplitude in V", title="Charge amplifier", ylim=(0, None))
+            axes[2].set(xlabel="force in N", ylabel="amplitude in V", ylim=(0, None))
+            axes[2].set_title("charge amplifier", loc="left")
         for axis in axes:
             despined(axis)
         entitle(figure, result.title or "Capacitive film under constant forces")

@@ -52,7 +52,8 @@ def _draw_creep(axis: Axes, result: Result) -> None:
         delayed = -np.expm1(-values["delayed"] / values["viscosity"] * time) * stress / values["delayed"]
         axis.plot(time, PER_CENT * np.array(test.strain), ".", color=colour, markersize=2.0, alpha=0.5)
         axis.plot(time, PER_CENT * (stress / values["instantaneous"] + delayed), color=colour, label=f"{values['force']:.3g} N")
-    axis.set(xlabel="time in s", ylabel="strain in %", title="Creep, dots, and fits, lines", ylim=(0, None))
+    axis.set(xlabel="time in s", ylabel="strain in %", ylim=(0, None))
+    axis.set_title("creep, dots, and fits, lines", loc="left")
     axis.legend(loc="lower right", ncols=2)
 
 
@@ -66,5 +67,6 @@ def _draw_coefficients(axis: Axes, result: Result) -> None:
             slope, intercept = (float(result.quantities[f"{name}_{part}"].value) / 1e6 for part in ("slope", "intercept"))
             ends = np.array([0.0, forces.max()])
             axis.plot(ends, slope * ends + intercept, "-", color=colour, linewidth=1)
-    axis.set(xlabel="force in N", ylabel="coefficient", title="Coefficients and their lines", ylim=(0, None), xlim=(0, None))
+    axis.set(xlabel="force in N", ylabel="coefficient", ylim=(0, None), xlim=(0, None))
+    axis.set_title("coefficients and their lines", loc="left")
     axis.legend(loc="upper left")

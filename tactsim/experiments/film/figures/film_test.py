@@ -8,6 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -21,6 +23,8 @@ from tactsim.results import Result
 DATA, LINE = "#1f4e79", "#b8540a"
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
+SURFACE_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Resistances in kilohms that are written beside the surface."""
 COEFFICIENTS = (
     ("instantaneous", "$E_0$ in MPa", "#1f4e79", "-"),
     ("delayed", "$E_1$ in MPa", "#b8540a", "--"),
@@ -65,14 +69,20 @@ def film_surface_figure(result: Result) -> Figure:
         figure = new_figure(7.0, 5.5)
         axis: Any = figure.add_subplot(projection="3d")
         forces, times = np.meshgrid(result.quantities["forces"].numbers, result.quantities["times"].numbers)
-        resistance = np.log10(result.quantities["resistance"].numbers)
-        axis.plot_surface(forces, times, resistance, cmap=colormaps["viridis"], linewidth=0.2, edgecolor="#444444")
-        axis.set_xlabel("force in N")
-        axis.set_ylabel("time since the force began in s")
-        axis.set_zlabel("$\\log_{10}$ of the resistance in ohm")
+        kilohms = result.quantities["resistance"].numbers / 1e3
+        norm, decades = LogNorm(float(kilohms.min()), float(kilohms.max())), np.log10(kilohms)
+        colours = colormaps["viridis"](norm(kilohms))
+        axis.plot_surface(forces, times, decades, facecolors=colours, linewidth=0.2, edgecolor="#444444", shade=False)
+        ticks = np.array([value for value in SURFACE_TICKS if kilohms.min() <= value <= kilohms.max()])
+        axis.set_zticks(np.log10(ticks), [f"{value:g}" for value in ticks])
+        axis.set(xlabel="force in N", ylabel="time since the force began in s", zlabel="resistance in kΩ")
         axis.view_init(elev=25, azim=40)
         axis.set_box_aspect((1, 1, 0.75), zoom=0.95)
-        entitle(figure, "Resistance over force and time")
+        bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=axis, shrink=0.6, aspect=24, pad=0.08)
+        bar.set_label("resistance in kΩ")
+        bar.ax.yaxis.set_ticks(ticks, [f"{value:g}" for value in ticks])
+        bar.ax.yaxis.set_minor_formatter(NullFormatter())
+        entitle(figure, result.title, "Resistance over force and time")
     return figure
 
 
@@ -82,14 +92,23 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     resistance.semilogy(forces, read / 1e3, "o-", color=DATA, markersize=3, label="film and contacts")
     resistance.semilogy(forces, result.quantities["reading_film_resistance"].numbers / 1e3, "--", color=LINE, label="film alone")
     resistance.legend(loc="upper right")
-    resistance.set(xlabel="force in N", ylabel="resistance in kΩ", title=f"Resistance, {when}")
+    resistance.set(xlabel="force in N", ylabel="resistance in kΩ")
+    resistance.set_title(f"resistance, {when}", loc="left")
     conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3, label="film")
     slope, intercept = (float(result.quantities[f"line_{part}"].value) for part in ("slope", "intercept"))
-    label = f"C = {slope * 1e3:.4g} mS/N · F {intercept * 1e3:+.3g} mS"
+    sign = "−" if intercept < 0 else "+"
+    label = f"C = {slope * 1e3:.4g} mS/N · F {sign} {abs(intercept) * 1e3:.3g} mS\n{_inverse(slope, intercept)}"
     ends = np.array([0.0, forces[-1]])
     conductance.plot(ends, 1e3 * (slope * ends + intercept), "--", color=LINE, label=label)
-    conductance.set(xlabel="force in N", ylabel="conductance in mS", title="Conductance and its line", ylim=(0, None))
-    conductance.legend(loc="upper left")
+    conductance.set(xlabel="force in N", ylabel="conductance in mS", ylim=(0, None))
+    conductance.set_title("conductance and its line", loc="left")
+    conductance.legend(loc="lower right")
+
+
+def _inverse(slope: float, intercept: float) -> str:
+    """The line solved for the force: of these forces and this reading time, not the one printed of a whole sensor."""
+    per_force, offset = 1e-3 / slope, intercept / slope
+    return f"or F = {per_force:.4g} N/mS · C {'−' if offset > 0 else '+'} {abs(offset):.3g} N, of these readings"
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:
@@ -98,7 +117,8 @@ def _draw_creep(axis: Axes, result: Result) -> None:
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):
         axis.semilogy(times, resistance[:, k] / 1e3, "-", color=colour, label=f"{forces[k]:.3g} N")
-    axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ", title="Creep of the resistance")
+    axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ")
+    axis.set_title("creep of the resistance", loc="left")
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -108,5 +128,6 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:
     for name, label, colour, style in COEFFICIENTS:
         axis.plot(forces, np.array(coefficients[name]) / 1e6, style, color=colour, label=label)
-    axis.set(xlabel="force in N", ylabel="coefficient", title="Standard linear solid over force", ylim=(0, None))
+    axis.set(xlabel="force in N", ylabel="coefficient", ylim=(0, None))
+    axis.set_title("standard linear solid over force", loc="left")
     axis.legend(loc="upper left")

@@ -43,7 +43,8 @@ def sensor_response_figure(result: Result) -> Figure:
         if flagged.any():
             above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")
         rms = float(result.quantities["rms_error"].value)
-        below.set(xlabel="time in s", ylabel="reading - applied in N", title=f"Error; root mean square {rms:.3g} N with low pass")
+        below.set(xlabel="time in s", ylabel="reading - applied in N")
+        below.set_title(f"error; root mean square {rms:.3g} N with low pass", loc="left")
         above.set(ylabel="force in N")
         above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         for axis in (above, below):

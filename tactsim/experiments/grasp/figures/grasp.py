@@ -1,8 +1,8 @@
-"""Grasp: the section through the block, the pressure maps of both jaws, a view in space, and the course over time."""
+"""Grasp: the pressure maps of both jaws, the section through the block, the course over time, and a view in space."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from matplotlib.figure import Figure
 
@@ -14,7 +14,7 @@ from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure
 from tactsim.experiments.grasp.figures.viewed import has_views, viewed
-from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
 from tactsim.plotting.failure import mark_failure
@@ -25,7 +25,7 @@ PANEL_HEIGHT = 2.1
 
 
 class GraspFigures(ResultFigures):
-    """The overview first; the view in space last, as it alone needs a renderer."""
+    """The maps first; the view in space last, as it alone needs a renderer."""
 
     kind: Literal["grasp"] = "grasp"
 
@@ -34,15 +34,13 @@ class GraspFigures(ResultFigures):
         if not result.steps:
             return {}
         moment = shown_moment(result) if result.status is Status.CONVERGED else result
-        drawings: dict[str, Drawing] = {"grasp.png": Plot(lambda: grasp_figure(moment))}
-        drawings["grasp_maps.png"] = Plot(lambda: maps_figure(moment))
+        drawings: dict[str, Drawing] = {"grasp_maps.png": Plot(lambda: maps_figure(moment))}
         if result.frames:
             drawings["grasp_section.png"] = Plot(lambda: section_figure(moment))
         if has_history(result):
             drawings["grasp_history.png"] = Plot(lambda: history_figure(result))
         if has_views(result):
             drawings[VIEWS] = Plot(lambda: views_figure(viewed(moment), result.title))
-            drawings[VIEWS_PRESSURE] = Plot(lambda: views_figure(viewed(moment), result.title, "pressure"))
         if has_voltages(result):
             drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
@@ -50,25 +48,8 @@ class GraspFigures(ResultFigures):
         return drawings
 
 
-def grasp_figure(result: Result) -> Figure:
-    """Overview: the section above the maps, and the histories beside them."""
-    grasp, timed = loaded_taxels(result), has_history(result)
-    with styled():
-        figure = new_figure(14.0 if timed else 8.6, 9.4 if result.frames else 5.2)
-        parts: Any = figure.subfigures(1, 2, width_ratios=(1.62, 1)) if timed else (figure,)
-        left: Any = parts[0].subfigures(2, 1) if result.frames else [parts[0]]
-        if result.frames:
-            draw_section(left[0].add_subplot(), result, grasp)
-        axes = left[-1].subplots(1, 2)
-        draw_maps((axes[0], axes[1]), result, grasp)
-        if timed:
-            draw_histories(parts[1].subplots(len(panels(result)), 1, squeeze=False)[:, 0].tolist(), result)
-        _entitle(figure, result)
-    return figure
-
-
 def section_figure(result: Result) -> Figure:
-    """The section alone."""
+    """The section through the deformed block, between the jaws."""
     with styled():
         figure = new_figure(9.0, 5.2)
         draw_section(figure.add_subplot(), result, loaded_taxels(result))
@@ -77,7 +58,7 @@ def section_figure(result: Result) -> Figure:
 
 
 def maps_figure(result: Result) -> Figure:
-    """The maps alone."""
+    """The pressure on every taxel of both jaws."""
     with styled():
         figure = new_figure(9.0, 5.0)
         axes = figure.subplots(1, 2)
@@ -87,7 +68,7 @@ def maps_figure(result: Result) -> Figure:
 
 
 def history_figure(result: Result) -> Figure:
-    """The histories alone."""
+    """The forces of the jaws, the pressure in an artery and the taxels that carry most, over time."""
     with styled():
         rows = panels(result)
         figure = new_figure(8.0, PANEL_HEIGHT * len(rows) + 0.8)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,12 +17,16 @@ from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
 
 MOST_TAXELS = 9
+ALIKE = 0.01
+"""Taxels whose forces differ by less than this part of the largest one share a curve."""
 FROM_ZERO = 0.5
 """Curves that vary by more than from this part of their largest value to all of it are drawn from zero on."""
 FORCE_STYLES = {"upper": ("#0072b2", "-", "o"), "lower": ("#d55e00", "--", "s")}
 LUMEN_COLOURS = ("#7a0177", "#009e73", "#000000", "#e69f00")
 TAXEL_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d00", "#7f7f7f")
 TAXEL_MARKERS = "os^vDP*Xd"
+Taxel = tuple[str, int, int]
+"""Side, row and column."""
 
 
 def has_history(result: Result) -> bool:
@@ -75,10 +80,18 @@ def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
     factor, unit = _scale(list(forces.values()), "N")
     for side, force in forces.items():
         colour, line, marker = FORCE_STYLES[side]
-        axis.plot(along, factor * force, line, marker=marker, markersize=3.5, color=colour, label=f"{side} jaw")
+        course = _from_rest(along, factor * force)
+        axis.plot(*course, line, marker=marker, markersize=3.5, color=colour, label=f"{side} jaw")
     axis.set_ylabel(f"force in {unit}")
     axis.set_title("force of the tissue on each jaw, along z and away from the tissue", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
+
+
+def _from_rest(along: Array, force: Array) -> tuple[Array, Array]:
+    """The curve with its beginning, at which the jaws touch without a force, unless the first step is there already."""
+    if along[0] <= 0.0:
+        return along, force
+    return np.append(0.0, along), np.append(0.0, force)
 
 
 def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
@@ -101,18 +114,33 @@ def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
 
 def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     """The taxels of both jaws that ever carry the most."""
-    forces = {
-        (side, *place): result.quantities[f"taxel_force_{side}_history"].numbers[:, place[0], place[1]]
+    forces: dict[Taxel, Array] = {
+        (side, place[0], place[1]): result.quantities[f"taxel_force_{side}_history"].numbers[:, place[0], place[1]]
         for side in JAWS
         for place in np.ndindex(np.shape(result.quantities[f"taxel_force_{side}_history"].value)[1:])
     }
     shown = sorted(forces, key=lambda taxel: -float(np.abs(forces[taxel]).max()))[:MOST_TAXELS]
     factor, unit = _scale([forces[shown[0]]], "N")
-    for taxel, colour, marker in zip(shown, TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
-        side, row, column = taxel
-        line = FORCE_STYLES[side][1]
-        name = f"{LETTERS[side]}{row + 1},{column + 1}"
-        axis.plot(along, factor * forces[taxel], line, color=colour, marker=marker, markersize=3.5, linewidth=1.1, label=name)
+    for group, colour, marker in zip(_alike(forces, shown), TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
+        line = FORCE_STYLES[group[0][0]][1]
+        names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in group]
+        rows = [" ".join(names[k : k + 3]) for k in range(0, len(names), 3)]
+        style: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.1}
+        axis.plot(*_from_rest(along, factor * forces[group[0]]), line, label="\n".join(rows), **style)
     axis.set_ylabel(f"force in {unit}")
     axis.set_title(f"the {len(shown)} of {len(forces)} taxels that carry most (row, column)", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
+
+
+def _alike(forces: Mapping[Taxel, Array], shown: Sequence[Taxel]) -> list[list[Taxel]]:
+    """The taxels in groups whose curves lie on each other, each led by the one that carries most."""
+    groups: list[list[Taxel]] = []
+    width = ALIKE * float(np.abs(forces[shown[0]]).max())
+    for taxel in shown:
+        near = (group for group in groups if np.abs(forces[group[0]] - forces[taxel]).max() <= width)
+        group = next(near, None)
+        if group is None:
+            groups.append([taxel])
+        else:
+            group.append(taxel)
+    return groups

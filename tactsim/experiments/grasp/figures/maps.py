@@ -40,7 +40,7 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> N
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
     shadows = inclusion_shadows(result.frames[-1], grasp.scene.size) if result.frames else None
     for axis, side in zip(axes, JAWS, strict=True):
-        _draw_matrix(axis, grasp, side, (factor, norm))
+        _draw_matrix(axis, grasp, side, (factor, unit, norm))
         _draw_surroundings(axis, grasp, side, shadows)
         total = float(grasp.forces[side].sum())
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
@@ -51,20 +51,20 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> N
     bar = axes[0].figure.colorbar(
         ScalarMappable(norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
-    small = "; small numbers: force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
+    small = "; beneath it the force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
     dashed = "undeformed block" + (" and outline of the inclusions" if shadows is not None and shadows[2].any() else "")
     bar.set_label(f"mean pressure on the taxel in {unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}")
     bar.outline.set_linewidth(0.5)
 
 
-def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float, Normalize]) -> None:
+def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float, str, Normalize]) -> None:
     """The taxels as squares with their pressure and force; the names of rows and columns beside them."""
     import matplotlib
 
-    layout, place, (factor, norm) = grasp.scene.matrix, grasp.scene.place(side), scale
+    layout, place, (factor, unit, norm) = grasp.scene.matrix, grasp.scene.place(side), scale
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
-    large = float(np.clip(26 / max(layout.rows, layout.columns), 3.0, 9.0))
+    large = float(np.clip(22 / max(layout.rows, layout.columns), 3.0, 9.0))
     border = 0.6 if grasp.pressures[side].size <= MOST_WRITTEN else 0.0
     squares: list[Rectangle] = []
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
@@ -81,7 +81,9 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float,
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
-        axis.text(x, y, f"{factor * pressure:#.3g}".rstrip("."), va="bottom", fontsize=large, fontweight="bold", **style)
+        axis.text(
+            x, y, f"{factor * pressure:#.3g}".rstrip(".") + f" {unit}", va="bottom", fontsize=large, fontweight="bold", **style
+        )
         force = f"{grasp.forces[side][row, column]:#.2g}".rstrip(".")
         axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute

@@ -44,7 +44,8 @@ def voltages_figure(result: Result) -> Figure:
         for row, side in zip(axes, JAWS, strict=True):
             _draw_voltages(row[0], result, side, factor)
             _draw_forces(row[1], result, side)
-            row[0].set(ylabel=f"voltage in {unit}", title=f"{side.capitalize()} jaw")
+            row[0].set_ylabel(f"voltage in {unit}")
+            row[0].set_title(f"{side} jaw; straight between the {len(result.steps)} solved steps (dotted)", loc="left")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
         axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
@@ -62,6 +63,8 @@ def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None
     for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
         style = ("-", "--", "-.", ":")[column % 4]
         axis.plot(time, voltage[:, row, column], style, color=colour, linewidth=1.0, label=f"{row + 1},{column + 1}")
+    for moment in result.history_values("time"):
+        axis.axvline(moment, color="0.6", linewidth=0.7, linestyle=":", zorder=0)
     if rows * columns <= MOST_NAMED:
         axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)
 
@@ -71,7 +74,8 @@ def _draw_forces(axis: Axes, result: Result, side: str) -> None:
     places = np.arange(applied.size)
     axis.bar(places, applied.ravel(), width=0.8, color="#fdd0a2", edgecolor=APPLIED, linewidth=0.6, label="applied")
     axis.plot(places, read.ravel(), "o", color=READ, markersize=4, label="read")
-    axis.set(ylabel="force at the end in N", title="Applied and read")
+    axis.set_ylabel("force at the end in N")
+    axis.set_title("applied and read", loc="left")
     if applied.size <= MOST_NAMED:
         axis.set_xticks(places, [f"{row + 1},{column + 1}" for row, column in np.ndindex(*applied.shape)], fontsize=7)
     else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any
 
 import matplotlib
@@ -11,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.image import imread
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
@@ -26,9 +24,11 @@ from tactsim.units import format_quantity
 
 FROM_ABOVE, FROM_BELOW = (0.55, -1.0, 0.5), (0.55, -1.0, -0.5)
 """From the block to the eye."""
-PIXELS = (1500, 1160)
+PIXELS = (1200, 928)
 PLATE, BAR = 0.06, 0.55
 """Thickness of the plates that stand for the jaws and length of the longest bar, over the height of the block."""
+APART = 0.002
+"""Gap between a plate and the bars on it, over the height of the block: faces in one plane are drawn in streaks."""
 LEAST_BAR = 0.01
 """Length of a bar without pressure, over the height of the block, so that its place is seen."""
 TISSUE_COLOUR, INCLUSION_COLOUR, JAW_COLOUR = "#f0b8a0", "#009e73", "#aab1ba"
@@ -52,7 +52,7 @@ def view_figure(result: Result) -> Figure:
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
         for axis, camera, image, words in zip(axes, cameras, images, ("from above", "from below"), strict=True):
-            axis.imshow(imread(io.BytesIO(image)), interpolation="lanczos")
+            axis.imshow(image, interpolation="hanning")
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)
@@ -102,7 +102,7 @@ def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
     norm = Normalize(grasp.smallest_pressure, grasp.largest_pressure)
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
         length = height * max(LEAST_BAR, BAR * max(0.0, float(pressure)) / grasp.largest_pressure)
-        corner = np.array([layout.borders("x")[column, 0], layout.borders("y")[row, 0], back])
+        corner = np.array([layout.borders("x")[column, 0], layout.borders("y")[row, 0], back + APART * height])
         boxes.append(_placed(grasp, side, _BOX * np.array([layout.size, layout.size, length]) + corner))
         colours.append(matplotlib.colormaps[PRESSURE_COLOURS](float(norm(pressure)))[:3])
     triangles = np.arange(len(boxes))[:, None, None] * len(_BOX) + _BOX_TRIANGLES

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS
@@ -24,9 +25,7 @@ from tactsim.localization.views import SHAPE, views
 from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
 from tactsim.plotting.colours import PRESSURE_COLOURS
 
-VIEWS, VIEWS_PRESSURE = "views.png", "views_pressure.png"
-Shown = Literal["force", "pressure"]
-"""Sums of forces as in thesis 6.3, or the mean pressure on the taxels that were summed."""
+VIEWS = "views.png"
 JAW = 1.2
 """Thickness in mm with which a jaw is drawn."""
 ROOM = 1.0
@@ -58,10 +57,15 @@ class View:
     summed: int
     what: str
 
-    def scale(self, grasp: ViewedGrasp, shown: Shown) -> tuple[float, str]:
-        """Factor from a sum in N to what is shown, and its unit."""
-        over = 1.0 if shown == "force" else 1 / (self.summed * grasp.scene.matrix.area)
-        factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "N" if shown == "force" else "Pa")
+    @property
+    def force_scale(self) -> tuple[float, str]:
+        """Factor and unit in which the sums of forces are shown."""
+        return scale_of(max(float(self.image.max()), 1e-12), "N")
+
+    def pressure_scale(self, grasp: ViewedGrasp) -> tuple[float, str]:
+        """Factor from a sum in N to the mean pressure on the taxels that were summed, and the unit in which it is shown."""
+        over = 1 / (self.summed * grasp.scene.matrix.area)
+        factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "Pa")
         return over * factor, unit
 
 
@@ -70,30 +74,30 @@ def colour_table(levels: int) -> list[int]:
     return np.round(255 * colormaps[PRESSURE_COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
 
 
-def views_figure(grasp: ViewedGrasp, title: str, shown: Shown = "force") -> Figure:
-    """The top view above the front view, the left view beside it; every picture has its colour scale.
+def views_figure(grasp: ViewedGrasp, title: str) -> Figure:
+    """The top view above the front view, the left view beside it; every picture has its colours, in force and in pressure.
 
     The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
     pressures, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
-    front = View(pressures.front, 1, 0, 2, layout.rows, "Front view: {} over the rows")
-    left = View(pressures.left, 0, 1, 2, layout.columns, "Left view: {} over the columns")
-    top = View(pressures.top, 2, 0, 1, len(JAWS), "Top view: {} of both jaws")
+    front = View(pressures.front, 1, 0, 2, layout.rows, "front view: sums over the rows")
+    left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
+    top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
     x, y, z = 1e3 * grasp.scene.size
     with styled():
         figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
         axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
         for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
-            _draw(axis, view, grasp, shown)
+            _draw(axis, view, grasp)
         axes[1, 0].invert_xaxis()
-        _legend(axes[0, 0], grasp, shown)
+        _legend(axes[0, 0], grasp)
         entitle(figure, title or "Three views of the grasp")
     return figure
 
 
-def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
-    factor, unit = view.scale(grasp, shown)
+def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
+    factor, _ = view.force_scale
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
     axis.imshow(
@@ -124,13 +128,24 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, shown: Shown) -> None:
     axis.set(
         xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
     )
-    axis.set_title(view.what.format("sums" if shown == "force" else "means"), loc="left")
+    axis.set_title(view.what, loc="left")
     despined(axis)
-    location = "bottom" if view.away != 2 else "right"
+    _draw_scales(axis, view, grasp, norm)
+
+
+def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) -> None:
+    """The colours of a view: each sum of forces with the mean pressure on the taxels that were summed."""
+    below = view.away != 2
+    location = "bottom" if below else "right"
     bar = axis.figure.colorbar(
         ScalarMappable(norm, PRESSURE_COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85
     )
-    bar.set_label(f"{grasp.meaning.replace('force', shown)} in {unit}")
+    (force, force_unit), (pressure, pressure_unit) = view.force_scale, view.pressure_scale(grasp)
+    apart = "\n" if below else "  "
+    bar.locator = MaxNLocator(nbins=6)
+    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({value * pressure / force:.2g})")
+    bar.update_ticks()
+    bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit})")
     bar.outline.set_linewidth(0.5)
 
 
@@ -211,13 +226,12 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
 
 
-def _legend(axis: Axes, grasp: ViewedGrasp, shown: Shown) -> None:
+def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
     """What the lines mean, and the estimates."""
     axis.axis("off")
-    added = "sums" if shown == "force" else "means"
     handles: list[Any] = [
         Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block; hatched: no taxel reads there"),
-        Line2D([], [], color=INK, linewidth=0.6, label=f"taxels, their {added} in colour on the jaws"),
+        Line2D([], [], color=INK, linewidth=0.6, label="taxels, their sums in colour on the jaws"),
     ]
     if not grasp.valid.all():
         handles.append(Rectangle((0, 0), 1, 1, fill=False, edgecolor=INK, linewidth=0.5, hatch="xxx", label="dead or saturated"))

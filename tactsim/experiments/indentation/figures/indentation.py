@@ -83,6 +83,8 @@ def _draw_rise(axis: Axes, displacement: Array, rise: Array, result: Result) -> 
     if recess is not None:
         axis.set_ylim(0, max(1.12e3 * recess, rise.max() * 1.05))
         axis.axhline(1e3 * recess, color=SENSOR_COLOUR, linewidth=0.9, linestyle=":")
+        words, place = f"inner sensor: a rise of {format_quantity(recess, 'm')}", (0.01, 1e3 * recess)
+        axis.text(*place, words, transform=axis.get_yaxis_transform(), ha="left", va="bottom", color=SENSOR_COLOUR, fontsize=7.5)
 
 
 def _mark_threshold(axis: Axes, result: Result, along: float, up: float) -> None:
@@ -111,7 +113,7 @@ def _mark_last(axis: Axes, result: Result, along: float, up: float) -> None:
     at = (last["displacement"] * along, last["reaction_force"] * up)
     axis.plot(*at, "X", color=FAILED_COLOUR, markersize=9)
     words = "interrupted here" if result.status is Status.INTERRUPTED else "stopped here"
-    _label(axis, at, f"{words}\n{format_quantity(last['displacement'], 'm')}", FAILED_COLOUR)
+    _label(axis, at, f"{words} at\n{format_quantity(last['displacement'], 'm')}", FAILED_COLOUR)
 
 
 def _label(axis: Axes, at: tuple[float, float], text: str, colour: str) -> None:

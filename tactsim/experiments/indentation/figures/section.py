@@ -83,7 +83,8 @@ def draw_mesh(axis: Axes, section: Section) -> None:
     """Boundary and interfaces on both sides, the elements faintly on the left."""
     edges, outline = section.edges()
     mirror = np.array([-1.0, 1.0])
-    axis.add_collection(LineCollection(list(section.curves(edges) * mirror), colors="k", linewidths=0.25, alpha=0.35))
+    style: dict[str, Any] = {"colors": "k", "linewidths": 0.25, "alpha": 0.35, "rasterized": True}
+    axis.add_collection(LineCollection(list(section.curves(edges) * mirror), **style))
     for side in (mirror, 1.0):
         axis.add_collection(LineCollection(list(section.curves(edges[outline]) * side), colors="k", linewidths=0.9))
 

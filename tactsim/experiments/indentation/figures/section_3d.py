@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -49,7 +51,8 @@ def draw_cut(axis: Axes, result: Result) -> None:
     edges, outline = section.edges()
     for side in sides:
         mirror = np.array([side, 1.0])
-        axis.add_collection(LineCollection(list(section.curves(edges) * mirror), colors="k", linewidths=0.25, alpha=0.35))
+        style: dict[str, Any] = {"colors": "k", "linewidths": 0.25, "alpha": 0.35, "rasterized": True}
+        axis.add_collection(LineCollection(list(section.curves(edges) * mirror), **style))
         axis.add_collection(LineCollection(list(section.curves(edges[outline]) * mirror), colors="k", linewidths=0.9))
     x, z = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(*limits[1], GRID))
     points = np.stack([x.ravel(), np.zeros(x.size), z.ravel() - height]) * 1e-3

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from tactsim.experiments.grasp.figures.viewed import has_views
-from tactsim.experiments.grasp.figures.views import VIEWS, VIEWS_PRESSURE, views_figure
+from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.figures.space import SPACE, space_figure
 from tactsim.interfaces import Drawing, ResultFigures
@@ -14,15 +14,14 @@ from tactsim.results import Result
 
 
 class LocalizationFigures(ResultFigures):
-    """Views in force and in pressure, and in space."""
+    """The three views, and a view in space."""
 
     kind: Literal["localization"] = "localization"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``views.png``, ``views_pressure.png`` and ``space.png``; the last needs a renderer."""
+        """``views.png`` and ``space.png``; the last needs a renderer."""
         if not has_views(result):
             return {}
         drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(localized(result), result.title))}
-        drawings[VIEWS_PRESSURE] = Plot(lambda: views_figure(localized(result), result.title, "pressure"))
         drawings[SPACE] = Plot(lambda: space_figure(result))
         return drawings

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.image import imread
 from matplotlib.patches import Patch
 
 from tactsim.array import Array
@@ -40,13 +39,14 @@ def space_figure(result: Result) -> Figure:
     outside = [_tissue(shown.scene.size), *(surface for side in JAWS for surface in jaw_surfaces(grasp, side))]
     scenes = {"true inclusions": list(_true(shown)), "estimated inclusions": list(_estimated(shown))}
     camera = framing_camera(outside, FROM_ABOVE)
+    inclusions = [replace(body, seen_by=(k,)) for k, bodies in enumerate(scenes.values()) for body in bodies]
+    images = pictures([*outside, *inclusions], [camera] * len(scenes))
     with styled():
         figure = new_figure(12.0, 5.9)
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
-        for axis, (words, inside) in zip(axes, scenes.items(), strict=True):
-            image = pictures([*outside, *inside], [camera])[0]
-            axis.imshow(imread(io.BytesIO(image)), interpolation="lanczos")
+        for axis, image, (words, inside) in zip(axes, images, scenes.items(), strict=True):
+            axis.imshow(image, interpolation="hanning")
             axis.set_axis_off()
             axis.set_title(words if inside else f"{words}: none", loc="left")
             annotate(axis, grasp, camera)

@@ -51,7 +51,7 @@ def catheter_tip_figure(result: Result) -> Figure:
         bar.set_label("reported threshold pressure in kPa")
         _draw_thresholds(right, result, pressures)
         title = result.title or "Threshold sensors around the tip of a catheter"
-        entitle(figure, f"{title}\n{_answer(result)}")
+        entitle(figure, title, _answer(result))
         mark_failure(figure, result)
     return figure
 
@@ -139,6 +139,7 @@ def _draw_thresholds(axis: Axes, result: Result, pressures: Array) -> None:
         ring: dict[str, Any] = {"markersize": 13, "fillstyle": "none", "markeredgewidth": 2}
         axis.plot(angle[best], pressures[best], "o", color=HARDEST_COLOUR, label="hardest", **ring)
     axis.set(xlabel="angle of the sensor around the tip in degrees", ylabel="threshold pressure in kPa", ylim=(0, None))
+    axis.set_title("reported as the trigger fires, which is after the touch", loc="left")
     axis.set_xticks(angle)
     axis.set_xticklabels([f"{value:.0f}" for value in angle], rotation=45 if len(angle) > 12 else 0)
     axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, pressures + bars))))

@@ -85,8 +85,7 @@ def threshold_error_figure(result: Result) -> Figure:
 
 
 def _headed(figure: Figure, result: Result, words: str) -> None:
-    title = result.title
-    entitle(figure, f"{title}\n{words}" if title else words)
+    entitle(figure, result.title, words)
 
 
 def _grid(result: Result, name: str) -> Array:
@@ -128,9 +127,12 @@ def _draw_map(axis: Axes, result: Result, noise: int, norm: LogNorm) -> Any:
 def _label(result: Result, place: tuple[int, int, int]) -> str:
     """Mean and standard deviation in percent, and what went wrong."""
     mean, deviation = (100 * _grid(result, name)[place] for name in ("relative_error", "relative_deviation"))
-    lines = [f"{mean:+.3g}" if np.isfinite(mean) else "none"]
-    if np.isfinite(deviation) and deviation > 0:
-        lines.append(f"± {deviation:.2g}")
+    spread = np.isfinite(deviation) and deviation > 0
+    digits = max(0, 1 - int(np.floor(np.log10(deviation)))) if spread else 0
+    plain = f"{mean:+.{digits}f}" if spread else f"{mean:+.3g}"
+    lines = [plain if np.isfinite(mean) else "none"]
+    if spread:
+        lines.append(f"± {deviation:.{digits}f}")
     for name, words in (("false_rate", "false"), ("missed_rate", "missed"), ("saturated_rate", "saturated")):
         rate = _grid(result, name)[place]
         if rate > 0:

@@ -104,7 +104,7 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     figure = views_figure(localized(result), result.title)
     titles = [axis.get_title(loc="left") for axis in figure.axes]
     assert sum("view" in title for title in titles) == 3
-    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))
+    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("front"))
     image = front.images[0]
     assert image.get_extent() == pytest.approx([10 - 10 / 99, 30 + 10 / 99, 0, 20])
     row, column = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
@@ -128,7 +128,7 @@ def test_several_places_are_all_named_in_the_result(folders, tmp_path):
 
 def test_pictures_reach_over_the_outer_taxels(folders):
     figure = views_figure(localized(run(folders)), "")
-    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))
+    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("front"))
     mesh = next(part for part in front.collections if isinstance(part, QuadMesh))
     corners = mesh.get_coordinates()
     assert (corners[..., 0].min(), corners[..., 0].max()) == pytest.approx((5.5, 34.5))
