@@ -182,7 +182,7 @@ def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
     assert places["3.00"][0] == pytest.approx(28.0)
     assert places["4.00"][1] == pytest.approx(24.0)
     assert {"row 1", "row 2", "col. 3"} <= set(places)
-    assert "0.500" in {text.get_text() for text in axes[1].texts}
+    assert "0.500 kPa" in {text.get_text() for text in axes[1].texts}
     squares = [next(c for c in axis.collections if len(c.get_facecolor()) == 6) for axis in axes[:2]]
     assert tuple(squares[0].get_facecolor()[0]) != tuple(squares[1].get_facecolor()[0])
 

@@ -103,7 +103,7 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     figure = views_figure(localized(result), result.title)
     titles = [axis.get_title(loc="left") for axis in figure.axes]
     assert sum("view" in title for title in titles) == 3
-    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("Front"))
+    front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("front"))
     image = front.images[0]
     assert image.get_extent() == pytest.approx([10 - 10 / 99, 30 + 10 / 99, 0, 20])
     row, column = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
