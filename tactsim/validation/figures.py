@@ -14,7 +14,7 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of
 from tactsim.units import format_quantity
 
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
-LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.", "C6:", "C7-", "C8--", "C9-.")
+LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
 POINTS_SHOWN = 40
 
 

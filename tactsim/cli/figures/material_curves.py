@@ -16,6 +16,7 @@ from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
 from tactsim.materials.stability_range import PathStability, stability_range
+from tactsim.plotting.canvas import entitle
 from tactsim.units import format_quantity
 
 SHOWN = (0.5, 2.0)
@@ -41,13 +42,13 @@ def material_figure(material: Material, name: str) -> Figure:
     axes = figure.subplots(1, len(PATHS), squeeze=False)[0]
     for axis, (path, stress) in zip(axes, stresses.items(), strict=True):
         _draw_path(axis, stretch, stress * factor, report.paths[path])
-        axis.set_title(path)
+        axis.set_title(path, loc="left")
         axis.set_xlabel("stretch")
     axes[0].set_ylabel(f"nominal stress in {unit}")
     labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
     volume = "" if material.small_strain else ", incompressible"
-    figure.suptitle(f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}", parse_math=False)
+    entitle(figure, f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}")
     return figure
 
 

@@ -36,7 +36,7 @@ def assert_nothing_is_cut(figure: Figure) -> None:
 @pytest.mark.parametrize("name", [*SHIPPED, *EXAMPLES])
 def test_material_figure(name):
     figure = material_figure((SHIPPED | EXAMPLES)[name], name)
-    assert [axis.get_title() for axis in figure.axes] == list(PATHS)
+    assert [axis.get_title(loc="left") for axis in figure.axes] == list(PATHS)
     assert all(axis.get_xlabel() == "stretch" for axis in figure.axes)
     assert figure.axes[0].get_ylabel() in {f"nominal stress in {unit}" for unit in ("Pa", "kPa", "MPa")}
     assert_nothing_is_cut(figure)

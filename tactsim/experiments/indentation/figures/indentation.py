@@ -121,4 +121,5 @@ def _label(axis: Axes, at: tuple[float, float], text: str, colour: str) -> None:
     x, y = axis.transLimits.transform(at)
     shift = (-26 if x > 0.5 else 12, -4 if y > 0.5 else 12)
     sides: dict[str, Any] = {"ha": "right" if x > 0.5 else "left", "va": "top" if y > 0.5 else "bottom"}
-    axis.annotate(text, at, shift, textcoords="offset points", color=colour, zorder=6, **sides)
+    box = {"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.85}
+    axis.annotate(text, at, shift, textcoords="offset points", color=colour, zorder=6, bbox=box, **sides)
