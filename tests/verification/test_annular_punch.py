@@ -77,7 +77,7 @@ def exact_rows():
 
 
 @pytest.mark.parametrize(("beta", "kappa", "axis"), exact_rows())
-def test_half_space_table(beta, kappa, axis):
+def test_half_space_table(beta, kappa, axis, verification_record):
     """Mutants: the printed formula of the thesis, and the first term of the rise in the ratio."""
     punch = solve_annular_punch(beta)
 
@@ -87,6 +87,12 @@ def test_half_space_table(beta, kappa, axis):
 
     check(punch.force_factor, punch.rise_factor)
     check(force_factor(beta), rise_factor(beta))
+    known = {"reference": "Chebyshev collocation, converged to 1e-12", "kind": "published", "mesh": "integral equation"}
+    verification_record(
+        "annulus on the half-space, force factor", punch.force_factor, kappa, tolerance=rounding(10) / kappa, **known
+    )
+    rise = punch.rise_factor
+    verification_record("annulus on the half-space, rise", rise, 1 - axis, tolerance=rounding(8) / (1 - axis), **known)
     assert_kills(
         check,
         thesis=(force_factor(beta, "thesis_4_2_21"), punch.rise_factor),
@@ -95,7 +101,7 @@ def test_half_space_table(beta, kappa, axis):
 
 
 @pytest.mark.parametrize(("base", "poisson_ratio"), SOLID)
-def test_solid_punch_on_layers(base, poisson_ratio):
+def test_solid_punch_on_layers(base, poisson_ratio, verification_record):
     """Mutants: the other base, the diameter in place of the radius, Poisson's ratio wrong by a hundredth.
 
     Friction at the base has no part in the pressure on a slipping layer, and there Poisson's ratio only scales the force.
@@ -109,6 +115,11 @@ def test_solid_punch_on_layers(base, poisson_ratio):
 
     expected = SOLID[base, poisson_ratio]
     check(base, poisson_ratio)
+    settings = [{"radius_over_thickness": s, "base": base, "poisson_ratio": poisson_ratio} for s in SLENDERNESS]
+    found = np.array([solve_annular_punch(0.0, **each).force_factor for each in settings])
+    known = {"reference": "Lebedev & Ufliand, Fredholm equation", "kind": "published", "mesh": "integral equation"}
+    known |= {"scale": 1.0, "tolerance": rounding(4)}
+    verification_record(f"solid punch on a {base} layer, force factor (four printed digits)", found, expected, **known)
     other = "slipping" if base == "bonded" else "bonded"
     assert_kills(check, base=(other, poisson_ratio), diameter=(base, poisson_ratio, 2.0))
     if base == "bonded":
@@ -256,7 +267,7 @@ def layer_part(punch, radii):
         (0.8, 2.0, "slipping", 0.5),
     ],
 )
-def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, base, poisson_ratio):
+def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, base, poisson_ratio, verification_record):
     """Mutants: a surface that stays flat beside the ring, the half-space alone, and a hole narrower by a hundredth."""
     punch = solve_annular_punch(beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
     radii = np.array([0.0, 0.5 * beta, 0.99 * beta, 0.7 * beta + 0.3, 0.2 * beta + 0.8, 1.01, 2.0])
@@ -269,6 +280,8 @@ def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, bas
 
     expected = punch.surface_displacement(radii)
     check(computed, expected)
+    known = {"reference": "its own integral equation by adaptive quadrature", "kind": "invariance", "mesh": "integral equation"}
+    verification_record("pressure under the annulus put back", computed, expected, tolerance=1e-8, scale=1.0, **known)
     hole = solve_annular_punch(0.99 * beta, radius_over_thickness=slenderness, base=base, poisson_ratio=poisson_ratio)
     assert_kills(check, flat=(computed, np.ones(len(radii))), hole=(computed, hole.surface_displacement(radii)))
     if slenderness:

@@ -41,7 +41,7 @@ def trials(times, count, *, stretched=1.0, factor=1.0):
 
 @pytest.mark.parametrize("known", [True, False])
 @pytest.mark.parametrize("times", TIMES)
-def test_exact_data_give_the_curves_back(times, known):
+def test_exact_data_give_the_curves_back(times, known, verification_record):
     data = synthetic_dma(table_4_1(times))
     fit = fit_least_squares(data if known else DmaData(data.frequencies, data.compliance))
     parts = fit.parts(FREQUENCIES)
@@ -51,6 +51,8 @@ def test_exact_data_give_the_curves_back(times, known):
 
     true = true_parts(times, FREQUENCIES)
     check(true)
+    words = {"reference": "the model that made the data", "kind": "exact", "mesh": "eight frequencies", "tolerance": 1e-6}
+    verification_record("compliance identified from exact data", parts / true, np.ones_like(true), **words)
     (other,) = (reading for reading in TIMES if reading != times)
     hertz = parts_of(table_4_1(times).complex_compliance(FREQUENCIES))
     assert_kills(check, times=(true_parts(other, FREQUENCIES),), swapped=(true[::-1],), hertz_for_radians=(hertz,))

@@ -42,7 +42,7 @@ def pressed():
     return {name: quantity.value for name, quantity in result.quantities.items()}
 
 
-def test_force_follows_hertz(pressed):
+def test_force_follows_hertz(pressed, verification_record):
     """Mutants: the diameter for the radius, Young's modulus for E / (1 - nu^2), a Poisson's ratio of 0.49."""
 
     def check(radius, modulus):
@@ -50,6 +50,9 @@ def test_force_follows_hertz(pressed):
         assert pressed["spring_force"] == pytest.approx(force, rel=FORCE_TOLERANCE)
 
     check(RADIUS, MODULUS)
+    expected = float(hertz_force(pressed["depth"], RADIUS, MODULUS))
+    known = {"reference": "Hertz 1881", "kind": "exact", "mesh": "axisymmetric, finest element 1/250 of the radius"}
+    verification_record("durometer, force of the spring", pressed["spring_force"], expected, tolerance=FORCE_TOLERANCE, **known)
     compressible = MODULUS * (1 - 0.5**2) / (1 - 0.49**2)
     assert_kills(
         check, diameter=(2 * RADIUS, MODULUS), youngs_modulus=(RADIUS, 0.75 * MODULUS), poisson_ratio=(RADIUS, compressible)

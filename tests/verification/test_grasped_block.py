@@ -46,7 +46,7 @@ def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=
     return model, state
 
 
-def test_frictionless_taxels_read_the_cauchy_pressure():
+def test_frictionless_taxels_read_the_cauchy_pressure(verification_record):
     model, state = grasped(friction=0.0)
     u = model.space.split(state.unknowns)[0]
     top, bottom = (model.mesh.nodes[:, 2] == height for height in (SIZE[2], 0.0))
@@ -63,12 +63,17 @@ def test_frictionless_taxels_read_the_cauchy_pressure():
 
         check_pressure(cauchy)
         check_total(forces.total)
+        mesh = "solid, 6 x 4 x 3 cells"
+        known = {"reference": "uniaxial compression in closed form", "kind": "exact", "mesh": mesh, "tolerance": 1e-8}
+        verification_record("pressure on taxels", forces.taxels[2] / LAYOUT.area, cauchy, **known)
+        known = {"reference": "the reaction of the jaw", "kind": "invariance", "mesh": mesh, "tolerance": 1e-10}
+        verification_record("sum of taxels, gaps and outside", forces.total[2], abs(model.jaw_force(state, side)[2]), **known)
         swapped = 2 * (stretch**-1 - stretch**2) * (250.0 + 1000.0 / stretch)
         assert_kills(check_pressure, nominal=(cauchy / stretch,), swapped=(swapped,))
         assert_kills(check_total, without_gaps=(forces.total - forces.gaps,))
 
 
-def test_friction_forces_add_up_and_balance():
+def test_friction_forces_add_up_and_balance(verification_record):
     model, state = grasped(friction=0.6)
     upper, lower = (model.taxels(state, side, LAYOUT) for side in ("upper", "lower"))
     force = model.jaw_force(state, "upper")
@@ -79,6 +84,9 @@ def test_friction_forces_add_up_and_balance():
 
     opposite = model.jaw_force(state, "lower")
     check(upper.total, opposite)
+    known = {"reference": "the reaction of the jaw", "kind": "invariance", "mesh": "solid, 6 x 4 x 3 cells", "tolerance": 1e-8}
+    verification_record("sum of taxels, gaps and outside, friction 0.6", upper.total, force, **known)
+    verification_record("forces of both jaws, friction 0.6", opposite, -force, **(known | {"tolerance": 1e-6}))
     assert_kills(
         check,
         without_gaps=(upper.total - upper.gaps, opposite),

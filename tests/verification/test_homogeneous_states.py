@@ -79,7 +79,7 @@ def test_the_closed_forms_give_the_printed_equibiaxial_numbers(stretch, printed)
 
 @pytest.mark.parametrize("stretch", UNIAXIAL)
 @pytest.mark.parametrize("measure", ["axisymmetric", "solid"])
-def test_uniaxial_force_and_stress(measure, stretch):
+def test_uniaxial_force_and_stress(measure, stretch, verification_record):
     axis, area = (1, np.pi) if measure == "axisymmetric" else (2, 1.0)
     body, solved, reactions = pulled(measure, {axis: stretch}, stretch**-0.5)
     cauchy = cauchy_stress(body, solved)
@@ -95,6 +95,10 @@ def test_uniaxial_force_and_stress(measure, stretch):
     nominal, swapped = uniaxial_nominal(stretch), uniaxial_nominal(stretch, C01, C10)
     check_force(nominal, area)
     check_stress(nominal * stretch)
+    known = {"reference": "Rivlin 1948: 2 (l - l^-2)(C10 + C01 / l)", "kind": "exact", "tolerance": TOLERANCE}
+    verification_record(
+        "uniaxial force", reactions[axis], nominal * area, mesh=f"{measure}, 3 cells per side, distorted", **known
+    )
     assert_kills(check_force, swapped=(swapped, area), cauchy=(nominal * stretch, area))
     assert_kills(check_stress, swapped=(swapped * stretch,), nominal=(nominal,))
     if measure == "axisymmetric":
@@ -103,7 +107,7 @@ def test_uniaxial_force_and_stress(measure, stretch):
 
 @pytest.mark.parametrize("stretch", EQUIBIAXIAL)
 @pytest.mark.parametrize("measure", ["axisymmetric", "solid"])
-def test_equibiaxial_force_and_stress(measure, stretch):
+def test_equibiaxial_force_and_stress(measure, stretch, verification_record):
     loaded = {0: stretch} if measure == "axisymmetric" else {0: stretch, 1: stretch}
     body, solved, reactions = pulled(measure, loaded, stretch**-2)
     area = 2 * np.pi if measure == "axisymmetric" else 1.0
@@ -121,6 +125,9 @@ def test_equibiaxial_force_and_stress(measure, stretch):
     expected, swapped = equibiaxial_cauchy(stretch), equibiaxial_cauchy(stretch, C01, C10)
     check_force(expected / stretch, area)
     check_stress(expected, free)
+    known = {"reference": "Rivlin 1948: 2 (l^2 - l^-4)(C10 + C01 l^2)", "kind": "exact", "tolerance": TOLERANCE}
+    mesh, forces = f"{measure}, 3 cells per side, distorted", list(reactions.values())
+    verification_record("equibiaxial force", forces, expected / stretch * area, mesh=mesh, **known)
     assert_kills(check_force, swapped=(swapped / stretch, area), cauchy=(expected, area))
     assert_kills(check_stress, swapped=(swapped, free), axes=(expected, 0))
     if measure == "axisymmetric":
@@ -129,14 +136,17 @@ def test_equibiaxial_force_and_stress(measure, stretch):
 
 @pytest.mark.parametrize("stretch", [0.6, 0.8, 1.3])
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
-def test_plane_strain_compression(measure, stretch):
+def test_plane_strain_compression(measure, stretch, verification_record):
     loaded = {1: stretch} if measure == "plane_strain" else {1: stretch, 0: 1.0}
     _, _, reactions = pulled(measure, loaded, 1 / stretch)
 
     def check(nominal):
         assert_close(reactions[1], nominal, TOLERANCE)
 
-    check(pure_shear_cauchy(stretch) / stretch)
+    nominal = pure_shear_cauchy(stretch) / stretch
+    check(nominal)
+    known = {"reference": "Rivlin 1948: 2 (l^2 - l^-2)(C10 + C01)", "kind": "exact", "tolerance": TOLERANCE}
+    verification_record("plane strain force", reactions[1], nominal, mesh=f"{measure}, 3 cells per side, distorted", **known)
     assert_kills(check, cauchy=(pure_shear_cauchy(stretch),), uniaxial=(uniaxial_nominal(stretch),))
 
 
@@ -159,9 +169,12 @@ def sheared(material=None):
     return cauchy_stress(body, solve_near(body, np.concatenate(fixed), displacement))
 
 
-def test_simple_shear_with_its_normal_stresses():
+def test_simple_shear_with_its_normal_stresses(verification_record):
     """tau = 1.25, sigma11 = 0.5, sigma22 = -0.125 at shear 0.5; sigma33 = 0."""
     expected = np.array([[0.5, 1.25, 0.0], [1.25, -0.125, 0.0], [0.0, 0.0, 0.0]])[:, :, None, None]
-    assert_close(sheared(), expected, 10 * TOLERANCE)
+    found = sheared()
+    assert_close(found, expected, 10 * TOLERANCE)
+    known = {"reference": "Rivlin 1948, shear of 0.5", "kind": "exact", "tolerance": 10 * TOLERANCE}
+    verification_record("simple shear, all stresses", found, expected, mesh="solid, 3 cells per side, distorted", **known)
     with pytest.raises(AssertionError):
         assert_close(sheared(MooneyRivlin2(c10=C10 + C01 / 1e3, c01=C01 - C01 / 1e3)), expected, 10 * TOLERANCE)

@@ -78,10 +78,13 @@ def assert_same(actual: Squeezed, expected: Squeezed, *, length: float = 1.0, pr
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_moduli_scale_pressures_and_forces(measure):
+def test_moduli_scale_pressures_and_forces(measure, verification_record):
     """Mutant: one modulus, c01, is left as it was."""
     plain = squeeze(measure)
-    assert_same(squeeze(measure, modulus=7.0), plain, pressure=7.0, force=7.0)
+    stiffer = squeeze(measure, modulus=7.0)
+    assert_same(stiffer, plain, pressure=7.0, force=7.0)
+    known = {"reference": "dimensional analysis", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": TOLERANCE}
+    verification_record("moduli times 7, reaction", stiffer.reaction, 7 * plain.reaction, **known)
     with pytest.raises(AssertionError):
         assert_same(squeeze(measure, modulus=7.0, spoil=1 / 7 - 1), plain, pressure=7.0, force=7.0)
 
@@ -106,8 +109,11 @@ def test_millimetres_and_megapascals_give_what_metres_and_pascals_give(measure):
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_superlu_gives_what_pardiso_gives(measure):
-    assert_same(squeeze(measure, solver="superlu"), squeeze(measure, solver="pardiso"))
+def test_superlu_gives_what_pardiso_gives(measure, verification_record):
+    one, other = squeeze(measure, solver="superlu"), squeeze(measure, solver="pardiso")
+    assert_same(one, other)
+    known = {"reference": "PARDISO", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": TOLERANCE}
+    verification_record("displacement by SuperLU", one.displacement, other.displacement, **known)
     with pytest.raises(AssertionError):
         assert_same(squeeze(measure, solver="superlu", spoil=1e-7), squeeze(measure, solver="pardiso"))
 

@@ -65,7 +65,7 @@ def bend(measure: str, poisson_ratio: float, modulus: float):
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
 @pytest.mark.parametrize("poisson_ratio", RATIOS)
-def test_a_cantilever_under_a_moment_is_exact(measure, poisson_ratio):
+def test_a_cantilever_under_a_moment_is_exact(measure, poisson_ratio, verification_record):
     body, solved, stress = bend(measure, poisson_ratio, bending_modulus(measure, poisson_ratio))
     assert solved.iterations == 1
 
@@ -75,6 +75,9 @@ def test_a_cantilever_under_a_moment_is_exact(measure, poisson_ratio):
 
     check(poisson_ratio)
     assert_close(first_piola_kirchhoff(body, solved)[0, 0], stress, EXACT * 100)
+    expected = bending(body.space.nodes, measure, poisson_ratio)
+    known = {"reference": "pure bending", "kind": "exact", "mesh": f"{measure}, distorted", "tolerance": EXACT}
+    verification_record("beam under a moment, displacement", body.space.split(solved.unknowns)[0], expected, **known)
     assert_kills(check, poisson_ratio=(poisson_ratio + 1e-3,))
 
 
@@ -109,12 +112,17 @@ def inflate(measure: str, poisson_ratio: float, pressure: float):
 
 @pytest.mark.parametrize("measure", COUNTS)
 @pytest.mark.parametrize("poisson_ratio", RATIOS)
-def test_lame_tube_without_locking(measure, poisson_ratio):
+def test_lame_tube_without_locking(measure, poisson_ratio, verification_record):
     body, solved = inflate(measure, poisson_ratio, 100.0)
     axes = 1 if measure == "axisymmetric" else 2
     for radius in (1.0, 2.0):
         actual = radial_displacement(body, solved, radius, axes=axes)
         assert_close(actual, lame(radius, poisson_ratio, 100.0), LAME_TOLERANCE[measure])
+        known = {"reference": "Lame", "kind": "exact", "mesh": f"{measure}, {COUNTS[measure][0]} elements across the wall"}
+        expected = lame(radius, poisson_ratio, 100.0)
+        verification_record(
+            "linear tube up to a Poisson's ratio of 0.5", actual, expected, tolerance=LAME_TOLERANCE[measure], **known
+        )
 
 
 @pytest.mark.parametrize("measure", COUNTS)

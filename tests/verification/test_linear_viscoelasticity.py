@@ -58,7 +58,7 @@ def test_the_step_and_the_ramp_of_the_standard_solid():
     assert_kills(check_ramp, retarded=(ramp(DEPTH / 2, 2.0), RETARDED), step=(step(DEPTH), SOLID))
 
 
-def test_the_ramp_of_the_standard_solid_in_closed_form():
+def test_the_ramp_of_the_standard_solid_in_closed_form(verification_record):
     """G_inf d + G_1 v tau (1 - exp(-t/tau)) while it rises, then the relaxation of that.
 
     Mutants: the retardation time for the relaxation time, and a branch that does not relax once the ramp has ended.
@@ -72,16 +72,23 @@ def test_the_ramp_of_the_standard_solid_in_closed_form():
 
     fading = np.exp(-(t - risen) / 5)
     check(SOLID, spring + branch * fading)
+    known = {"reference": "standard solid in closed form", "kind": "exact", "mesh": "none: recursion in time", "tolerance": 1e-13}
+    found, exact = response(SOLID, ramp(DEPTH / 2, 2.0), t), spring + branch * fading
+    verification_record("ramp of the standard solid", found / exact, np.ones_like(t), **known)
     assert_kills(check, retarded=(RETARDED, spring + branch * fading), held=(SOLID, spring + branch))
 
 
-def test_the_creep_of_the_standard_solid():
+def test_the_creep_of_the_standard_solid(verification_record):
     """J = 1/G_inf - (1/G_inf - 1/G_0) exp(-t/tau_c) with tau_c = tau G_0/G_inf = 8.3333 s."""
     kelvin = kelvin_of(SOLID)
     agree(kelvin.times, 8.3333, digit=1e-4)
     t = np.logspace(-4, 3, 30)
     expected = 1 / 3000 - (1 / 3000 - 1 / 5000) * np.exp(-t * 3000 / (5 * 5000))
     np.testing.assert_allclose(kelvin.creep(t), expected, rtol=1e-14)
+    known = {"reference": "standard solid in closed form", "kind": "exact", "mesh": "none", "tolerance": 1e-14}
+    verification_record(
+        "creep of the standard solid, converted from relaxation", kelvin.creep(t) / expected, np.ones_like(t), **known
+    )
     with pytest.raises(AssertionError):
         np.testing.assert_allclose(GeneralizedKelvin(1 / 5000, kelvin.compliances, [5.0]).creep(t), expected, rtol=1e-14)
 

@@ -68,7 +68,7 @@ def predicted(plain, monkeypatch):
     return changes[..., points].sum(axis=-1), even
 
 
-def test_adjoint_is_the_difference(plain, difference, monkeypatch):
+def test_adjoint_is_the_difference(plain, difference, monkeypatch, verification_record):
     """Mutants: the wrong sign, and a density that is the same everywhere."""
     expected, even = predicted(plain, monkeypatch)
 
@@ -76,4 +76,6 @@ def test_adjoint_is_the_difference(plain, difference, monkeypatch):
         assert np.abs(expected - difference).max() < AGREEMENT * np.abs(difference).max()
 
     check(expected)
+    known = {"reference": "central difference of two grasps", "kind": "invariance", "mesh": "structured, 6 x 6 x 4 cells"}
+    verification_record("adjoint sensitivity of a taxel", expected, difference, tolerance=AGREEMENT, **known)
     assert_kills(check, sign=(-expected,), even=(even,))

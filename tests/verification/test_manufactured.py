@@ -99,8 +99,12 @@ def assert_orders(orders: list[float]) -> None:
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in CASES])
-def test_orders_of_convergence(name):
-    assert_orders(ladder(CASES[name]))
+def test_orders_of_convergence(name, verification_record):
+    orders = ladder(CASES[name])
+    assert_orders(orders)
+    known = {"reference": "manufactured solution; theory of P2/P1 elements", "kind": "convergence", "tolerance": TOLERANCE}
+    for norm, order, theory in zip(("u in L2", "u in H1", "p in L2"), orders, ORDERS, strict=True):
+        verification_record(f"{name}, {norm}", order=order, theory=theory, mesh="three meshes", **known)
 
 
 @pytest.mark.parametrize(

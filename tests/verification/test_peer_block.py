@@ -34,7 +34,7 @@ def measured() -> np.ndarray:
         return block.readings(problem, ours.solve(problem)["forces"])
 
 
-def test_force_and_nine_pressures_are_those_of_felupe(measured):
+def test_force_and_nine_pressures_are_those_of_felupe(measured, verification_record):
     """Mutants: the squares mirrored, a block without the hard ball, whose pressure is even, and the force of a quarter."""
 
     def check(force, pressures):
@@ -42,6 +42,9 @@ def test_force_and_nine_pressures_are_those_of_felupe(measured):
 
     squares = np.reshape(PRESSURES, (3, 3))
     check(FORCE, squares)
+    ratios = measured / [FORCE, *PRESSURES]
+    known = {"reference": "FElupe 11.3.0, mixed form, same mesh", "kind": "published", "mesh": "solid, 6 x 6 x 3 cells"}
+    verification_record("squeezed block, force and nine pressures", ratios, np.ones(10), tolerance=TOLERANCE, **known)
     even = np.full((3, 3), FORCE / 0.04**2)
     assert_kills(check, mirrored=(FORCE, squares[:, ::-1]), even=(FORCE, even), quarter=(FORCE / 4, squares))
 

@@ -74,7 +74,7 @@ class Press:
 
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("stretch", [0.7, 0.8, 0.9])
-def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
+def test_frictionless_block_reads_the_exact_pressure(measure, stretch, verification_record):
     press = Press(measure, Coulomb(friction=0.0), cells=2).to(stretch)
     nominal = 2 * (stretch**-2 - stretch) * (1 + 0.25 / stretch)
 
@@ -84,6 +84,8 @@ def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
         )
 
     check(nominal)
+    known = {"reference": "uniaxial compression in closed form", "kind": "exact", "mesh": f"{measure}, 2 cells per side"}
+    verification_record("contact pressure under a plane", press.found.pressure, nominal, tolerance=3e-6, **known)
     swapped = 2 * (stretch**-2 - stretch) * (0.25 + 1 / stretch)
     assert_kills(check, cauchy=(nominal * stretch,), swapped=(swapped,))
     assert -press.state.gap.min() <= 1e-7
@@ -91,7 +93,7 @@ def test_frictionless_block_reads_the_exact_pressure(measure, stretch):
 
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("law", [Coulomb(friction=0.3), Stick()], ids=["coulomb", "stick"])
-def test_friction_stays_in_its_cone_and_forces_balance(measure, law):
+def test_friction_stays_in_its_cone_and_forces_balance(measure, law, verification_record):
     press = Press(measure, law, glued=True, tolerance=1e-4).to(0.85)
     smooth = Press(measure, Coulomb(friction=0.0), glued=True, tolerance=1e-4).to(0.85)
 
@@ -104,6 +106,9 @@ def test_friction_stays_in_its_cone_and_forces_balance(measure, law):
 
     check_cone(law)
     check_balance(press.base_force())
+    contact = -press.surface.total(press.found.traction)[-1]
+    known = {"reference": "balance of contact and base", "kind": "invariance", "mesh": f"{measure}, 3 cells per side"}
+    verification_record("forces under friction", press.base_force(), contact, tolerance=1e-8, **known)
     assert_kills(check_cone, frictionless=(Coulomb(friction=0.0),))
     assert_kills(check_balance, sign=(-press.base_force(),), frictionless=(smooth.base_force(),))
     assert press.surface.total(press.state.pressure[None])[0] > smooth.surface.total(smooth.state.pressure[None])[0]

@@ -46,7 +46,7 @@ def outcome(number):
 
 
 @pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(COUNT)])
-def test_a_random_grasp_converges_or_is_refused(number):
+def test_a_random_grasp_converges_or_is_refused(number, verification_record):
     status, reason, result = outcome(number)
     if status == "refused":
         assert "allowed" in reason
@@ -59,11 +59,19 @@ def test_a_random_grasp_converges_or_is_refused(number):
     assert quantities["min_volume_ratio"] > 0
     for side in ("upper", "lower"):
         check_balance(quantities, side)
+        known = {"reference": "the reaction", "kind": "invariance", "mesh": "solid, coarse tetrahedra", "tolerance": 1e-5}
+        verification_record(
+            "random grasps, sum of taxels, gaps and outside", total(quantities, side), quantities["reaction_force"], **known
+        )
         with pytest.raises(AssertionError):
             check_balance(quantities | {f"gap_force_{side}": 0.0}, side)
 
 
+def total(quantities, side):
+    """Force in N on taxels, gaps between them and what lies outside."""
+    return np.sum(quantities[f"taxel_force_{side}"]) + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
+
+
 def check_balance(quantities, side):
     """Taxels, gaps between them and what lies outside bear the reaction; fails without the gaps."""
-    total = np.sum(quantities[f"taxel_force_{side}"]) + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
-    assert total == pytest.approx(quantities["reaction_force"], rel=1e-5)
+    assert total(quantities, side) == pytest.approx(quantities["reaction_force"], rel=1e-5)

@@ -114,15 +114,17 @@ class Block:
 
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("stretch", sorted(NOMINAL))
-def test_a_held_stretch_relaxes_as_printed(measure, stretch):
+def test_a_held_stretch_relaxes_as_printed(measure, stretch, verification_record):
     def check(material):
         block = Block(measure, material)
         for part in (0.5, 1.0):
             at_once = block.moved(1 + part * (stretch - 1), 0.0)
         computed = (at_once, block.moved(stretch, 5.0), block.moved(stretch, 1e3))
         assert computed == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
+        return computed
 
-    check(RUBBER)
+    known = {"reference": "uniaxial closed form times its relaxation", "kind": "exact", "mesh": f"{measure}, one cell"}
+    verification_record("held stretch, nominal stress", check(RUBBER), NOMINAL[stretch], tolerance=6e-7, **known)
     assert_kills(
         check,
         time=(RUBBER.model_copy(update={"relaxation": Relaxation(fractions=(0.4,), times=(5.01,))}),),
@@ -185,7 +187,7 @@ def march(tolerance):
     return states[4.0][2], len(times)
 
 
-def test_the_error_in_time_follows_its_tolerance():
+def test_the_error_in_time_follows_its_tolerance(verification_record):
     tolerances = 1e-3 / 2.0 ** np.arange(5)
     stresses, steps = np.array([march(tolerance) for tolerance in tolerances]).T
 
@@ -195,13 +197,17 @@ def test_the_error_in_time_follows_its_tolerance():
         slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
         assert slope == pytest.approx(1.0, abs=0.1), "halving the tolerance halves the error"
 
-    check(exact_nominal(shortened, 4.0))
+    exact = exact_nominal(shortened, 4.0)
+    check(exact)
+    known = {"reference": "quadrature of the hereditary integral", "kind": "convergence", "mesh": "axisymmetric, five tolerances"}
+    order = float(np.polyfit(np.log(tolerances), np.log(np.abs(stresses / exact - 1)), 1)[0])
+    verification_record("error in time over its tolerance", order=order, theory=1.0, tolerance=0.1, **known)
     assert_kills(check, time=(exact_nominal(shortened, 4.0, tau=5.01),))
     assert steps.max() < 60
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_small_strain_follows_linear_viscoelasticity(measure):
+def test_small_strain_follows_linear_viscoelasticity(measure, verification_record):
     material = LinearElastic(youngs_modulus=3000.0, poisson_ratio=0.5, relaxation=THREE_TIMES)
     times, rate = np.cumsum([0.01, 0.1, 0.5, 0.39, 1.0, 20.0, 500.0]), 1e-3
     shear = response(shear_relaxation(material), ramp(rate, 1.0), times)
@@ -216,12 +222,14 @@ def test_small_strain_follows_linear_viscoelasticity(measure):
         np.testing.assert_allclose(computed, expected, rtol=1e-9, err_msg="uniaxial, incompressible: E = 3 G")
 
     check(3 * shear)
+    known = {"reference": "linear viscoelasticity, E = 3 G", "kind": "exact", "mesh": f"{measure}, one cell", "tolerance": 1e-9}
+    verification_record("ramp with three relaxation times", np.array(computed) / (3 * shear), np.ones_like(shear), **known)
     at_once = 3 * response(shear_relaxation(material), step(rate), times)
     assert_kills(check, poisson_ratio=(2 * (1 + 0.49) * shear,), step=(at_once,))
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_a_force_makes_linear_tissue_creep(measure):
+def test_a_force_makes_linear_tissue_creep(measure, verification_record):
     material = LinearElastic(youngs_modulus=3000.0, poisson_ratio=0.5, relaxation=THREE_TIMES)
     block = Block(measure, material, law=Coulomb(friction=0.0), tolerance=1e-7)
     force, times = 1.0 * block.surface.points.weights.sum(), np.geomspace(1e-4, 100.0, 200)
@@ -233,7 +241,10 @@ def test_a_force_makes_linear_tissue_creep(measure):
         np.testing.assert_allclose(strain, compliance / 3, rtol=2e-3, err_msg="steps of 7 %, whose chords miss the curve by 1e-3")
         assert strain[0] == pytest.approx(compliance[0] / 3, rel=1e-2), "penetration of 1e-7 in a displacement of 3e-4"
 
-    check(response(kelvin_of(shear), step(1.0), times))
+    compliance = response(kelvin_of(shear), step(1.0), times)
+    check(compliance)
+    known = {"reference": "creep compliance over 3", "kind": "exact", "mesh": f"{measure}, one cell", "tolerance": 2e-3}
+    verification_record("creep under a contact force", strain * 3 / compliance, np.ones_like(compliance), **known)
     assert_kills(check, inverse_modulus=(1 / shear.relaxation(times),))
 
 

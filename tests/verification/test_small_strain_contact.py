@@ -33,6 +33,7 @@ HALF_SPACE = 3000 * RADIUS
 FORCE_TOLERANCE = 0.003
 """Asked of the force; the sharp edge is singular, so the error is of the order of finest / RADIUS."""
 RISE_TOLERANCE = 0.005
+GRADED = "axisymmetric, finest element 1/1000 of the radius"
 
 EXACT = Path(__file__).parent / "annular_punch.csv"
 """Ring-load integral equation by Chebyshev collocation; 40 and 60 terms agree to 1e-12."""
@@ -112,10 +113,13 @@ REPRESENTATIVE = (0.1, 0.5, 0.9)
         if 0.1 <= row[0] <= 0.9
     ],
 )
-def test_annulus_on_half_space(beta, kappa, axis):
+def test_annulus_on_half_space(beta, kappa, axis, verification_record):
     force, rise = press(annulus(beta), HALF_SPACE)
     check_force(force, kappa)
     check_rise(rise, 1 - axis)
+    known = {"reference": "exact annulus, integral equation", "kind": "exact", "mesh": GRADED}
+    verification_record("annulus on half-space, force", normalised(force), kappa, tolerance=FORCE_TOLERANCE, **known)
+    verification_record("annulus on half-space, rise", rise / DISPLACEMENT, 1 - axis, tolerance=RISE_TOLERANCE, **known)
     assert_kills(check_force, poisson_ratio=(force, kappa / (2 * (1 - 0.49))))
     assert_kills(check_rise, undeformed_surface=(rise, axis))
 
@@ -124,9 +128,11 @@ def test_annulus_on_half_space(beta, kappa, axis):
     ("ratio", "base", "beta", "factor", "axis"),
     [pytest.param(*row, marks=() if row[:3] in QUICK_LAYERS else pytest.mark.slow) for row in LAYERS],
 )
-def test_annulus_on_layer(ratio, base, beta, factor, axis):
+def test_annulus_on_layer(ratio, base, beta, factor, axis, verification_record):
     force, rise = press(annulus(beta), RADIUS / ratio, base=base)
     check_force(force, factor)
+    known = {"reference": "incompressible layer, integral equation", "kind": "exact", "mesh": GRADED}
+    verification_record(f"annulus on {base} layer, force", normalised(force), factor, tolerance=FORCE_TOLERANCE, **known)
     assert_kills(check_force, half_space=(force, float(force_factor(beta))))
     if axis is not None:
         printed = 0.5e-3 / (1 - axis)
@@ -138,9 +144,11 @@ def test_annulus_on_layer(ratio, base, beta, factor, axis):
     ("ratio", "base", "factor"),
     [pytest.param(*row, marks=() if row in QUICK_PUNCH_LAYERS else pytest.mark.slow) for row in PUNCH_LAYERS],
 )
-def test_punch_on_layer(ratio, base, factor):
+def test_punch_on_layer(ratio, base, factor, verification_record):
     force, _ = press(Punch(radius=RADIUS), RADIUS / ratio, base=base)
     check_force(force, factor)
+    known = {"reference": "Lebedev & Ufliand 1958; Hayes et al. 1972", "kind": "exact", "mesh": GRADED}
+    verification_record(f"punch on {base} layer, force", normalised(force), factor, tolerance=FORCE_TOLERANCE, **known)
     assert_kills(check_force, half_space=(force, 1.0))
 
 
@@ -151,13 +159,15 @@ def test_punch_on_compressible_layer(poisson_ratio, factor):
     assert_kills(check_force, incompressible=(force, 3.6187), without_the_ratio=(force, factor))
 
 
-def test_punch_on_half_space():
+def test_punch_on_half_space(verification_record):
     force, _ = press(Punch(radius=RADIUS), HALF_SPACE)
     check_force(force, 1.0)
+    known = {"reference": "P = 8 G a d (Boussinesq)", "kind": "exact", "mesh": GRADED}
+    verification_record("punch on half-space, force", normalised(force), 1.0, tolerance=FORCE_TOLERANCE, **known)
     assert_kills(check_force, poisson_ratio=(force, 1 / (2 * (1 - 0.49))))
 
 
-def test_sphere_follows_hertz():
+def test_sphere_follows_hertz(verification_record):
     displacement = 1e-3 * RADIUS
     force, _ = press(Sphere(radius=RADIUS), HALF_SPACE, displacement=displacement, finest=4e-3 * RADIUS)
 
@@ -165,6 +175,9 @@ def test_sphere_follows_hertz():
         assert force == pytest.approx(4 / 3 * modulus * radius**0.5 * displacement**1.5, rel=FORCE_TOLERANCE)
 
     check(4 * SHEAR_MODULUS, RADIUS)
+    expected = 16 / 3 * SHEAR_MODULUS * RADIUS**0.5 * displacement**1.5
+    known = {"reference": "Hertz 1881", "kind": "exact", "mesh": GRADED.replace("1/1000", "1/250")}
+    verification_record("sphere on half-space, force", force, expected, tolerance=FORCE_TOLERANCE, **known)
     assert_kills(check, youngs_modulus=(3 * SHEAR_MODULUS, RADIUS), diameter=(4 * SHEAR_MODULUS, 2 * RADIUS))
 
 

@@ -86,7 +86,7 @@ def test_the_closed_form_gives_the_printed_numbers():
 
 
 @pytest.mark.parametrize("measure", COUNTS)
-def test_vm56(measure):
+def test_vm56(measure, verification_record):
     body, solved = solve_tube(measure)
     assert_bore(measure, body, solved)
     assert_close(radial_displacement(body, solved, OUTER, axes=axes(measure)), 3.713668, DISPLACEMENT_TOLERANCE)
@@ -96,6 +96,17 @@ def test_vm56(measure):
         assert_close(stress, expected, STRESS_TOLERANCE, scale=PRESSURE)
 
     check(exact_radial_stress(R))
+    known = {
+        "reference": "ANSYS VM56, Oden 1972, pp. 325-331",
+        "kind": "exact",
+        "mesh": f"{measure}, 10 elements across the wall",
+    }
+    bore = radial_displacement(body, solved, INNER, axes=axes(measure))
+    verification_record("thick tube, displacement of the bore", bore, 7.181871, tolerance=DISPLACEMENT_TOLERANCE, **known)
+    exact = exact_radial_stress(R)
+    verification_record(
+        "thick tube, radial stress everywhere", stress, exact, tolerance=STRESS_TOLERANCE, scale=PRESSURE, **known
+    )
     assert_kills(check, linear=(linear_radial_stress(R),))
 
 

@@ -49,15 +49,17 @@ def icf(request):
     return record, states
 
 
-def test_threshold_is_located(icf):
+def test_threshold_is_located(icf, verification_record):
     record, states = icf
     assert record.event is record.steps[-1]
     before, rise = (record.model.rise(state, record.setup.body.inner_radius)[0] for state in states[-2:])
     assert abs(rise - RECESS) < 1e-4 * RECESS
+    known = {"reference": "the recess", "kind": "exact", "mesh": "main job", "tolerance": 1e-4}
+    verification_record("rise of the tissue at the threshold", rise, RECESS, **known)
     assert abs(before - RECESS) > 3e-4 * RECESS, "the step before is no threshold"
 
 
-def test_penetration_and_balance_hold_at_every_step(icf):
+def test_penetration_and_balance_hold_at_every_step(icf, verification_record):
     """Mutants: the force per radian, and the reaction of the step before."""
     record, _ = icf
     penetration, base, reaction = (
@@ -69,6 +71,10 @@ def test_penetration_and_balance_hold_at_every_step(icf):
         np.testing.assert_allclose(base, reaction, rtol=1e-8)
 
     check(base, reaction)
+    known = {"reference": "balance of contact and base", "kind": "invariance", "mesh": "main job", "tolerance": 1e-8}
+    verification_record("forces at every accepted step", base / reaction, np.ones_like(base), **known)
+    known = {"reference": "none: the tolerance of the case", "kind": "invariance", "mesh": "main job", "tolerance": 1e-4}
+    verification_record("largest penetration over the radius", penetration.max(), 0.0, scale=RADIUS, **known)
     assert_kills(check, per_radian=(base / (2 * np.pi), reaction), step_before=(base[1:], reaction[:-1]))
 
 

@@ -58,7 +58,7 @@ def hereditary(annulus, steps, creep, factor):
     return (creep(middles) * np.diff(forces)).sum() / (8 * RADIUS * factor)
 
 
-def test_the_hereditary_integral_over_the_force_is_the_displacement():
+def test_the_hereditary_integral_over_the_force_is_the_displacement(verification_record):
     """The midpoint rule converges with order 2 to the displacement that was given.
 
     Mutants: the inverse of the relaxation modulus in place of the creep compliance, and the force factor of a solid punch.
@@ -72,5 +72,9 @@ def test_the_hereditary_integral_over_the_force_is_the_displacement():
         assert errors[-1] < 1e-5 * 1e-3
 
     check(SOLID.creep, force_factor(RATIO))
+    errors = [abs(hereditary(annulus, n, SOLID.creep, force_factor(RATIO)) - 1e-3 * END) for n in steps]
+    order = float(-np.polyfit(np.log(steps), np.log(errors), 1)[0])
+    known = {"reference": "midpoint rule for the hereditary integral", "kind": "convergence", "mesh": "40 to 320 steps"}
+    verification_record("viscoelastic annulus, displacement from force", order=order, theory=2.0, tolerance=0.1, **known)
     inverse = lambda t: 1 / maxwell_of(SOLID).relaxation(t)  # noqa: E731
     assert_kills(check, inverse=(inverse, force_factor(RATIO)), solid=(SOLID.creep, 1.0))

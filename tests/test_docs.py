@@ -1,0 +1,63 @@
+"""Every code block of the documentation is executed: a page's blocks in order, those of Python as one program."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+from text_blocks import blocks_of, execute, file_names, provide_command
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+MADE = ("_build", "generated", "auto_gallery")
+EXECUTED = {"sh", "yaml", "python"}
+SHOWN = {"text", "json"}
+"""Languages of blocks that show something and cannot be run."""
+
+
+def pages() -> list[Path]:
+    """The written pages; those that are made from the code hold no blocks to be run."""
+    return [path for path in sorted(DOCS.rglob("*.md")) if path.relative_to(DOCS).parts[0] not in MADE]
+
+
+PAGES = [
+    path.relative_to(DOCS).as_posix() for path in pages() if EXECUTED & {language for language, _ in blocks_of(path.read_text())}
+]
+
+
+def test_every_block_is_executed_or_shown():
+    languages = {language for path in pages() for language, _ in blocks_of(path.read_text(encoding="utf-8"))}
+    assert languages <= EXECUTED | SHOWN, "a block is run, or it is marked `text`"
+    assert len(PAGES) >= 5
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_blocks_of_a_page(page, tmp_path):
+    text = (DOCS / page).read_text(encoding="utf-8")
+    blocks = blocks_of(text)
+    names = file_names(text, blocks)
+    if any(language == "sh" for language, _ in blocks):
+        shutil.copytree(ROOT / "cases", tmp_path / "cases")
+        provide_command(tmp_path)
+    shown = [(language, (name, code)) for (language, code), name in zip(blocks, names, strict=True) if language in EXECUTED]
+    for language, together in groupby(shown, key=lambda one: one[0]):
+        found = [content for _, content in together]
+        if language == "yaml":
+            for name, code in found:
+                (tmp_path / name).write_text(code, encoding="utf-8")
+        else:
+            execute(language, "\n".join(code for _, code in found), tmp_path)
+
+
+def test_a_record_names_tests_that_exist():
+    records = json.loads((DOCS / "verification" / "records.json").read_text(encoding="utf-8"))["records"]
+    assert len(records) > 30
+    for row in records:
+        place, _, name = row["test"].partition("::")
+        assert re.search(rf"^def {name}\(", (ROOT / place).read_text(encoding="utf-8"), re.M), f"{row['test']} is gone"
+        assert row["error"] is not None or abs(row["order"] - row["theory"]) <= row["tolerance"]
+        assert row["error"] is None or row["tolerance"] is None or row["error"] <= row["tolerance"] * (1 + 1e-9)
