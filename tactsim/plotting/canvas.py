@@ -65,8 +65,9 @@ def styled() -> AbstractContextManager[Any]:
 
 
 def entitle(figure: Figure, title: str, *, size: float = 11) -> None:
-    """Writes a title above a figure letter by letter: what a user wrote is no TeX."""
-    figure.suptitle(one_line(title, LONGEST_TITLE), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
+    """Writes a title of one line or some above a figure letter by letter: what a user wrote is no TeX."""
+    lines = "\n".join(one_line(line, LONGEST_TITLE) for line in title.split("\n"))
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
 
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:

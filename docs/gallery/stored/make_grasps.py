@@ -71,7 +71,6 @@ def main() -> None:
         samples_per_specimen=2,
         within_specimen=["experiment.loading.pieces.0.to", "experiment.contact.friction", "experiment.readout.seed"],
     )
-    print(data)
 
 
 def written(model: ts.Material) -> dict:
