@@ -76,8 +76,15 @@ if any((HERE / "gallery").glob("plot_*.py")):
     sphinx_gallery_conf = {
         "examples_dirs": "gallery",
         "gallery_dirs": "auto_gallery",
+        "filename_pattern": r"/plot_",
+        "ignore_pattern": r"/stored/",
+        "within_subsection_order": "gallery_pages.InOrder",
+        "image_scrapers": ("matplotlib", "gallery_pages.last_figure"),
+        "ignore_repr_types": r"matplotlib\.",
+        "copyfile_regex": r"make_grasps\.py",
         "remove_config_comments": True,
         "show_memory": False,
+        "download_all_examples": True,
     }
 
 html_theme = "pydata_sphinx_theme"

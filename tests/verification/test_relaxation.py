@@ -119,9 +119,9 @@ def test_a_held_stretch_relaxes_as_printed(measure, stretch, verification_record
         block = Block(measure, material)
         for part in (0.5, 1.0):
             at_once = block.moved(1 + part * (stretch - 1), 0.0)
-        found = (at_once, block.moved(stretch, 5.0), block.moved(stretch, 1e3))
-        assert found == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
-        return found
+        computed = (at_once, block.moved(stretch, 5.0), block.moved(stretch, 1e3))
+        assert computed == pytest.approx(NOMINAL[stretch], abs=6e-7), "six decimals are printed"
+        return computed
 
     known = {"reference": "uniaxial closed form times its relaxation", "kind": "exact", "mesh": f"{measure}, one cell"}
     verification_record("held stretch, nominal stress", check(RUBBER), NOMINAL[stretch], tolerance=6e-7, **known)

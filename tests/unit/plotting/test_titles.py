@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 
 from tactsim.cli import main
+from tactsim.experiments.localization.scene import ConfusionScene
+from tactsim.plotting.canvas import entitle, new_figure
+from tactsim.results.result import Quantity, Result, Status
 
 
 def test_a_title_is_drawn_as_it_is_written_not_as_tex(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -14,3 +17,21 @@ def test_a_title_is_drawn_as_it_is_written_not_as_tex(tmp_path: Path, capsys: py
     assert main(["run", str(case), "--out", str(tmp_path / "r"), "--set", r"title=$x_$ \frac{"]) == 0
     assert list((tmp_path / "r" / "figures").glob("*.png"))
     assert "warning" not in capsys.readouterr().err
+
+
+def test_a_title_of_two_lines_has_two_lines() -> None:
+    figure = new_figure(4, 3)
+    entitle(figure, "Switch probe\nForce over depth\t")
+    assert figure.get_suptitle() == "Switch probe\nForce over depth\\t"
+
+
+def test_the_table_of_a_confusion_is_a_figure() -> None:
+    classes = ("nothing", "lump")
+    result = Result(
+        kind="confusion",
+        status=Status.CONVERGED,
+        reason="3 of 4",
+        quantities={"confusion": Quantity([[2, 0], [1, 1]], "1", "counts")},
+        scene=ConfusionScene(classes=classes, grasps=(), estimator="hypotheses"),
+    )
+    assert result.plot()["confusion"].get_suptitle() == "Confusion table: 3 of 4"

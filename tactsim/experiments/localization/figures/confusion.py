@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.localization.scene import ConfusionScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import entitle, new_figure, png, styled
+from tactsim.plotting.canvas import Plot, entitle, new_figure, png, styled
 from tactsim.results import Result
 
 DARK = 0.6
@@ -28,7 +28,7 @@ class ConfusionFigures(ResultFigures):
             return {}
         title = f"{result.title or 'Confusion table'}: {result.reason}"
         counts, classes = result.quantities["confusion"].value, result.scene_as(ConfusionScene).classes
-        return {"confusion.png": lambda: confusion_png(counts, classes, title)}
+        return {"confusion.png": Plot(lambda: confusion_figure(counts, classes, title))}
 
 
 def confusion_png(table: Sequence[Sequence[int]], classes: Sequence[str], title: str) -> bytes:
