@@ -58,7 +58,7 @@ def main() -> None:
         }
     )
     store = Path("results/gallery_grasps.zarr")
-    data = ts.sweep(
+    ts.sweep(
         varied,
         samples=200,
         out=store,
