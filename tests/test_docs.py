@@ -29,7 +29,7 @@ PAGES = [
 ]
 
 
-LONG = ("guide/time.md", "guide/grasp.md")
+LONG = ("guide/run.md", "guide/time.md", "guide/grasp.md", "guide/sensors.md")
 """Pages whose cases take more than ten seconds."""
 
 
