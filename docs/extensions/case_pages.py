@@ -14,8 +14,8 @@ from tactsim.case.json_schema import case_json_schema, described
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
 from tactsim.interfaces import ContactLaw, Estimator, Experiment, Inclusion, Material, RigidBody, SensorFilm
 from tactsim.materials.library import LIBRARY
+from tactsim.model import FrozenModel
 from tactsim.registry import kinds
-from tactsim.units import FrozenModel
 
 Fragment = dict[str, Any]
 HEADER = ("key", "type or unit", "default", "meaning")

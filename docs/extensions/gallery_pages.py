@@ -9,10 +9,29 @@ from matplotlib.figure import Figure
 from sphinx_gallery.scrapers import figure_rst
 
 ORDER = (
-    "story_threshold_sensor story_lump_detector indentation indentation_3d timed_indentation closed_form annulus_design durometer "
-    "elastomer_ranking dma_identification film_test film_creep calibration sensor_response threshold_trial catheter_tip "
-    "switch_probe grasp matrix_readout localization detectability confusion"
-).split()
+    "story_threshold_sensor",
+    "story_lump_detector",
+    "indentation",
+    "indentation_3d",
+    "timed_indentation",
+    "closed_form",
+    "annulus_design",
+    "durometer",
+    "elastomer_ranking",
+    "dma_identification",
+    "film_test",
+    "film_creep",
+    "calibration",
+    "sensor_response",
+    "threshold_trial",
+    "catheter_tip",
+    "switch_probe",
+    "grasp",
+    "matrix_readout",
+    "localization",
+    "detectability",
+    "confusion",
+)
 RESOLUTION = 130
 """In dots per inch."""
 

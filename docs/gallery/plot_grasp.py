@@ -71,9 +71,16 @@ figure, axes = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained", sharey
 for axis, jaw in zip(axes, ("upper", "lower"), strict=True):
     name = f"taxel_force_{jaw}"
     added = np.array(result[name].to("mN")) - np.array(reference[name].to("mN"))
-    image = axis.imshow(added, origin="lower", cmap="RdBu_r", vmin=-60, vmax=60, extent=(5, 35, 5, 35))
+    image = axis.imshow(added, origin="lower", cmap="RdBu_r", vmin=-140, vmax=140, extent=(5, 35, 5, 35))
     for row, column in np.ndindex(added.shape):
-        axis.text(10 + 10 * column, 10 + 10 * row, f"{added[row, column]:+.0f}", ha="center", va="center")
+        axis.text(
+            10 + 10 * column,
+            10 + 10 * row,
+            f"{added[row, column]:+.0f}",
+            ha="center",
+            va="center",
+            color="w" if added[row, column] > 80 else "k",
+        )
     axis.add_patch(plt.Circle((26, 24), 4, fill=False, linestyle="--"))
     axis.set(title=f"{jaw} jaw", xlabel="x in mm")
 axes[0].set_ylabel("y in mm")
