@@ -83,6 +83,7 @@ if any((HERE / "gallery").glob("plot_*.py")):
         "ignore_repr_types": r"matplotlib\.",
         "remove_config_comments": True,
         "show_memory": False,
+        "write_computation_times": False,
         "download_all_examples": True,
     }
 

@@ -6,6 +6,7 @@ A surgeon's gripper with 3 x 3 force sensors on each jaw closes on tissue. Is th
 simulated grasps, and judged on blocks that it has never seen.
 """
 
+# sphinx_gallery_thumbnail_number = 2
 import matplotlib.pyplot as plt
 import numpy as np
 from sklearn.linear_model import LogisticRegression

@@ -7,6 +7,7 @@ with a force between 0.3 and 1 N, enough to read well and little enough for a ha
 into it, read the threshold over the recess, and look at the voltage.
 """
 
+# sphinx_gallery_thumbnail_number = 3
 from pathlib import Path
 
 import matplotlib.pyplot as plt
