@@ -81,9 +81,9 @@ if any((HERE / "gallery").glob("plot_*.py")):
         "within_subsection_order": "gallery_pages.InOrder",
         "image_scrapers": ("matplotlib", "gallery_pages.last_figure"),
         "ignore_repr_types": r"matplotlib\.",
-        "copyfile_regex": r"make_grasps\.py",
         "remove_config_comments": True,
         "show_memory": False,
+        "write_computation_times": False,
         "download_all_examples": True,
     }
 

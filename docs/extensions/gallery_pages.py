@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from sphinx_gallery.scrapers import figure_rst
 
-ORDER = [
+ORDER = (
     "story_threshold_sensor",
     "story_lump_detector",
     "indentation",
@@ -31,7 +31,7 @@ ORDER = [
     "localization",
     "detectability",
     "confusion",
-]
+)
 RESOLUTION = 130
 """In dots per inch."""
 

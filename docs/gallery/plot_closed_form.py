@@ -17,8 +17,8 @@ result = case.run()
 print(result["largest_displacement"].to("mm"), "at most")
 
 # %%
-# Force, displacement and the rise of the tissue on the axis of the hole. Where the force pulls, a real contact would open, and the
-# closed form, which stays bonded, no longer holds; these times are shaded.
+# Force, displacement and the rise of the tissue on the axis of the hole. Where the force pulls, a real contact would open, and
+# the closed form, which stays bonded, no longer holds; these times are shaded.
 result.plot()["closed_form"]
 
 # %%

@@ -2,8 +2,8 @@
 Confusion: nothing or a lump?
 =============================
 
-An estimator that weighs hypotheses says of a grasp whether it holds nothing, a lump, two lumps, an artery or two. How often does it
-take one for the other when the sensors are noisy?
+An estimator that weighs hypotheses says of a grasp whether it holds nothing, a lump, two lumps, an artery or two. How often
+does it take one for the other when the sensors are noisy?
 """
 
 from pathlib import Path

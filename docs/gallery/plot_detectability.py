@@ -10,8 +10,8 @@ from pathlib import Path
 import tactsim as ts
 
 # %%
-# Matrices of 3 x 3 and 8 x 8 sensors on the same 30 mm, a lump 1.8 times as stiff as the tissue and a hard one; "found" means with
-# 90 % probability at 5 % of false alarms, under the noise that rounding to 0.1 N makes.
+# Matrices of 3 x 3 and 8 x 8 sensors on the same 30 mm, a lump 1.8 times as stiff as the tissue and a hard one; "found" means
+# with 90 % probability at 5 % of false alarms, under the noise that rounding to 0.1 N makes.
 case = ts.load_case(
     "detectability",
     {
@@ -29,5 +29,6 @@ result = ts.load_result(folder)
 print(result.reason)
 
 # %%
-# Both jaws feel the lump, so the middle of the block is the worst place.
+# What one jaw loses with depth the other gains, so that the smallest radius hardly depends on the depth. A lump that is little
+# stiffer than the tissue has to be far larger than a hard one. In the grey corner a ball of that radius would reach the face.
 result.plot()["detectability"]

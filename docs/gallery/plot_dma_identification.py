@@ -2,8 +2,8 @@
 DMA identification: what eight frequencies tell about a tissue
 ==============================================================
 
-Dynamic mechanical analysis gives a complex modulus at a few frequencies. A generalized Kelvin model with eight units has seventeen
-constants; eight frequencies give sixteen numbers with noise. Which constants do the data determine?
+Dynamic mechanical analysis gives a complex modulus at a few frequencies. A generalized Kelvin model with eight units has
+seventeen constants; eight frequencies give sixteen numbers with noise. Which constants do the data determine?
 """
 
 import tactsim as ts
@@ -16,6 +16,6 @@ result = case.run()
 print(result.reason)
 
 # %%
-# The curves between 1 and 36 Hz are known well, with narrow bands. The constants are not: units whose retardation times lie outside
-# of what was measured may take any value.
+# The curves between 1 and 36 Hz are known well, with narrow bands. The constants are not: units whose retardation times lie
+# outside of what was measured may take any value.
 result.plot()["dma_identification"]

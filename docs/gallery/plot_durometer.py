@@ -11,7 +11,8 @@ from pathlib import Path
 import tactsim as ts
 
 # %%
-# The shipped case ``durometer_oo`` has the rod, the scale and the elastomer B1-A. A wider mesh and steps are enough for a picture.
+# The shipped case ``durometer_oo`` has the rod, the scale and the elastomer B1-A. A wider mesh and steps are enough for a
+# picture.
 case = ts.load_case("durometer_oo", {"experiment.mesh": {"finest": "0.15 mm", "growth": 0.6}})
 print(case.title)
 
@@ -24,5 +25,6 @@ result = ts.load_result(folder)
 result
 
 # %%
-# The reading is where the force of the rod meets the force of the spring. The curve of a softer rubber would meet it further down.
+# The reading is where the force of the rod meets the force of the spring. The curve of a softer rubber would meet it further
+# down.
 result.plot()["durometer"]

@@ -11,8 +11,8 @@ from pathlib import Path
 import tactsim as ts
 
 # %%
-# The answer depends on the shape of the stress-strain curve, which was measured for two of the seven. The case takes three shapes:
-# those of the two measured ones, and a neo-Hookean energy.
+# The answer depends on the shape of the stress-strain curve, which was measured for two of the seven. The case takes three
+# shapes: those of the two measured ones, and a neo-Hookean energy.
 case = ts.load_case("elastomers")
 for shape in case.experiment.shapes:
     print(shape.name, shape.material.kind)
@@ -27,5 +27,6 @@ result = ts.load_result(folder)
 print(result.reason)
 
 # %%
-# The order agrees; the numbers of the durometer do not, whatever the shape.
+# Durometer, hand and sensor give one order. The predicted readings keep it for the harder ones; the softest are predicted off the
+# scale, and share a rank.
 result.plot()["elastomer_ranking"]

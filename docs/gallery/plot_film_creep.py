@@ -9,7 +9,8 @@ they follow over the force.
 import tactsim as ts
 
 # %%
-# The shipped case makes strains at 2, 4, 6 and 8 N with 0.2 % of noise; your own come from a file: ``data: {kind: file, path: ...}``.
+# The shipped case makes strains at 2, 4, 6 and 8 N with 0.2 % of noise; your own come from a file: ``data: {kind: file, path:
+# ...}``.
 result = ts.load_case("film_creep").run()
 for name in ("instantaneous", "delayed", "viscosity"):
     slope, half = result[f"{name}_slope"], result[f"{name}_slope_half_width"]

@@ -30,7 +30,7 @@ figures["film_surface"]
 # second and one minute.
 forces, times = result["forces"].numbers, result["times"].numbers
 resistance = result["resistance"].to("kohm").numbers
-lost = 1 - resistance[:, -1] / resistance[:, times.searchsorted(1.0)]
+lost = 1 - resistance[-1] / resistance[times.searchsorted(1.0)]
 figure, axis = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
 axis.plot(forces, 100 * lost, marker="o")
 axis.set(xlabel="force in N", ylabel="resistance lost in %", ylim=(0, None))

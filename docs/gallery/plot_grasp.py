@@ -28,7 +28,13 @@ grasp = ts.Grasp(
     matrix=ts.TaxelLayout(rows=3, columns=3, pitch="10 mm", size="9 mm"),
     contact=ts.Coulomb(friction=0.6),
     loading=ts.close(to="1 mm", duration="1 s"),
-    mesh={"kind": "graded", "size": "6 mm", "inclusion_size": "3 mm", "edge_size": "2 mm", "growth": 1},
+    mesh={
+        "kind": "graded",
+        "size": "6 mm",
+        "inclusion_size": "3 mm",
+        "edge_size": "2 mm",
+        "growth": 1,
+    },
     time={"steps": 1},
 )
 
@@ -71,9 +77,16 @@ figure, axes = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained", sharey
 for axis, jaw in zip(axes, ("upper", "lower"), strict=True):
     name = f"taxel_force_{jaw}"
     added = np.array(result[name].to("mN")) - np.array(reference[name].to("mN"))
-    image = axis.imshow(added, origin="lower", cmap="RdBu_r", vmin=-60, vmax=60, extent=(5, 35, 5, 35))
+    image = axis.imshow(added, origin="lower", cmap="RdBu_r", vmin=-80, vmax=80, extent=(5, 35, 5, 35))
     for row, column in np.ndindex(added.shape):
-        axis.text(10 + 10 * column, 10 + 10 * row, f"{added[row, column]:+.0f}", ha="center", va="center")
+        axis.text(
+            10 + 10 * column,
+            10 + 10 * row,
+            f"{added[row, column]:+.0f}",
+            ha="center",
+            va="center",
+            color="w" if added[row, column] > 60 else "k",
+        )
     axis.add_patch(plt.Circle((26, 24), 4, fill=False, linestyle="--"))
     axis.set(title=f"{jaw} jaw", xlabel="x in mm")
 axes[0].set_ylabel("y in mm")

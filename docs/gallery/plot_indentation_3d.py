@@ -8,8 +8,6 @@ ring may lean and stand off the axis; half of the specimen is meshed with tetrah
 
 from pathlib import Path
 
-import numpy as np
-
 import tactsim as ts
 
 # %%
@@ -33,4 +31,3 @@ result.plot()["indentation_3d"]
 # The deformed tetrahedra with their fields are a pyvista mesh, for a section or a measurement of your own.
 grid = result.fields()
 print(grid.n_cells, "cells; fields:", ", ".join(grid.point_data))
-print("largest displacement:", f"{1e3 * np.ptp(grid.points[:, 2]):.2f} mm of height")

@@ -2,8 +2,8 @@
 Localization: where is the lump, and how sure is that?
 ======================================================
 
-From the readings of one grasp, and of the same grasp on plain tissue, an estimator says whether a lump is there, where it lies, and
-how uncertain its place and size are.
+From the readings of one grasp, and of the same grasp on plain tissue, an estimator says whether a lump is there, where it lies,
+and how uncertain its place and size are.
 """
 
 from pathlib import Path

@@ -3,10 +3,11 @@ Story: from the stress-strain curve of a silicone to a threshold sensor
 =======================================================================
 
 A phantom is cast from Ecoflex 00-30. Which recess should an annular sensor have, so that the silicone reaches the inner sensor
-with a force between 0.3 and 1 N, enough to read well and little enough for a hand? Four steps: fit the material, press the ring into it, read the threshold
-over the recess, and look at the voltage.
+with a force between 0.3 and 1 N, enough to read well and little enough for a hand? Four steps: fit the material, press the ring
+into it, read the threshold over the recess, and look at the voltage.
 """
 
+# sphinx_gallery_thumbnail_number = 3
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -20,10 +21,10 @@ from tactsim.materials.homogeneous import nominal_stress
 # %%
 # A published curve
 # -----------------
-# Nine points of a tensile test of Ecoflex 00-30 (ASTM D412, 450 mm/min) by Marechal, Balland, Lindenroth, Petrou, Kontovounisios and
-# Bello, *Toward a common framework and database of materials for soft robotics*, Soft Robotics 2020,
-# `doi:10.1089/soro.2019.0115 <https://doi.org/10.1089/soro.2019.0115>`_. The points are from the authors' Soft Robotics Materials
-# Database, which is under the Open Database License 1.0.
+# Nine points of a tensile test of Ecoflex 00-30 (ASTM D412, 450 mm/min) by Marechal, Balland, Lindenroth, Petrou,
+# Kontovounisios and Bello, *Toward a common framework and database of materials for soft robotics*, Soft Robotics 2020,
+# `doi:10.1089/soro.2019.0115 <https://doi.org/10.1089/soro.2019.0115>`_. The points are from the authors' Soft Robotics
+# Materials Database, which is under the Open Database License 1.0.
 strain = np.array([0.18181, 0.40909, 0.63637, 0.86363, 1.09091, 1.31818, 1.54545, 1.77273, 2.0])
 stress = 1e3 * np.array([6.82, 13.82, 20.27, 25.96, 30.96, 36.35, 41.49, 47.06, 52.39])
 curve = UniaxialCurve(stretch=1 + strain, nominal_stress=stress, source="Marechal et al. 2020, Ecoflex 00-30")
@@ -59,8 +60,8 @@ print(f"shear modulus {silicone.shear_modulus / 1e3:.1f} kPa")
 # %%
 # Press the ring into it
 # ----------------------
-# One run to a recess of 0.62 mm is enough: until the inner sensor is touched its place does not matter, so that the force at a rise
-# of 0.4 mm is the threshold of a recess of 0.4 mm. The run takes half a minute; this page reads the result that it left.
+# One run to a recess of 0.62 mm is enough: until the inner sensor is touched its place does not matter, so that the force at a
+# rise of 0.4 mm is the threshold of a recess of 0.4 mm. The run takes half a minute; this page reads the result that it left.
 indentation = ts.Indentation(
     specimen=ts.Specimen(material=silicone, thickness="10 mm", radius="15 mm"),
     body=ts.Annulus(inner_radius="1.5 mm", outer_radius="3 mm", fillet="0.4 mm"),

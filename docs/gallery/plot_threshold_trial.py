@@ -24,8 +24,8 @@ result = case.run()
 print("true threshold:", f"{result['threshold_force'].numbers[0]:.3f} N")
 
 # %%
-# The error is mostly the level of the trigger: the touch must push the reading above six times the noise. A lower cut-off has less
-# noise and a lower level, at the price of lag, which counts at higher speed.
+# The error is mostly the level of the trigger: the touch must push the reading above six times the noise. A lower cut-off has
+# less noise and a lower level, at the price of lag, which counts at higher speed.
 figures = result.plot()
 figures["threshold_errors"]
 

@@ -53,7 +53,7 @@ history = result.history
 figure, axis = plt.subplots(figsize=(5.5, 3.8), layout="constrained")
 axis.plot(1e3 * history["displacement"], 1e3 * history["reaction_force"], color="0.75", label="all")
 loop = history.where(history["time"] >= 2.5, drop=True)
-axis.plot(1e3 * loop["displacement"], 1e3 * loop["force"], marker=".", label="oscillation")
+axis.plot(1e3 * loop["displacement"], 1e3 * loop["reaction_force"], marker=".", label="oscillation")
 axis.set(xlabel="displacement in mm", ylabel="force in mN")
 axis.legend(frameon=False)
 plt.show()

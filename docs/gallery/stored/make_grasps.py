@@ -69,9 +69,21 @@ def main() -> None:
         samples_per_specimen=2,
         within_specimen=["experiment.loading.pieces.0.to", "experiment.contact.friction", "experiment.readout.seed"],
     )
+    np.savez_compressed(
+        Path(__file__).with_name("grasps.npz"),
+        read_force=data["read_force"].values[:, 0].astype(np.float32),
+        specimen=data["specimen"].values.astype(np.int16),
+        lump=data["varied_inclusions_0_material"].values == 0,
+        contrast=data["inclusion_contrast"].values[:, 0].astype(np.float32),
+        radius=data["inclusion_radius"].values[:, 0].astype(np.float32),
+        center=data["inclusion_center"].values[:, 0].astype(np.float32),
+        closing=data["closing"].values.astype(np.float32),
+        friction=data["friction"].values.astype(np.float32),
+    )
 
 
 def written(model: ts.Material) -> dict:
+    """A material as a case file holds it."""
     return model.model_dump(mode="json", context={"units": "written"})
 
 
