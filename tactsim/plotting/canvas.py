@@ -71,8 +71,8 @@ def styled() -> AbstractContextManager[Any]:
 
 
 def entitle(figure: Figure, title: str, below: str = "", *, size: float = 11) -> None:
-    """Writes a title above a figure letter by letter, what a user wrote is no TeX, and further lines below it."""
-    lines = [one_line(line, LONGEST_TITLE) for line in (*title.split("\n"), below) if line]
+    """Writes a title above a figure letter by letter, what a user wrote is no TeX, and a second line below it."""
+    lines = [one_line(line, LONGEST_TITLE) for line in (title, below) if line]
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
 
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import numpy as np
+
 import tactsim as ts
 
 TISSUE = ts.material("icf_stable")
@@ -58,7 +60,7 @@ def main() -> None:
         }
     )
     store = Path("results/gallery_grasps.zarr")
-    ts.sweep(
+    data = ts.sweep(
         varied,
         samples=200,
         out=store,

@@ -21,7 +21,7 @@ def test_a_title_is_drawn_as_it_is_written_not_as_tex(tmp_path: Path, capsys: py
 
 def test_a_title_of_two_lines_has_two_lines() -> None:
     figure = new_figure(4, 3)
-    entitle(figure, "Switch probe\nForce over depth\t")
+    entitle(figure, "Switch probe", "Force over depth\t")
     assert figure.get_suptitle() == "Switch probe\nForce over depth\\t"
 
 
