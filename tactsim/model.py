@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from tactsim.errors import Refused
 from tactsim.refusals import refusals_of
+from tactsim.units import written
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -27,17 +28,10 @@ class _MadeInPython(ModelMetaclass):
         try:
             return super().__call__(**named, **fields)
         except ValidationError as error:
-            refusals = refusals_of(error, _plain(named | fields), cls)  # type: ignore[arg-type]
+            refusals = refusals_of(error, written(named | fields), cls)  # type: ignore[arg-type]
             places = {".".join(map(str, path)): message for path, message in refusals.items()}
             lines = [": ".join(part for part in (cls.__name__, place, message) if part) for place, message in places.items()]
             raise Refused("\n".join(lines), error) from None
-
-
-def _plain(value: Any) -> Any:
-    """The value as a file would hold it: lists for tuples."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 class FrozenModel(BaseModel, metaclass=_MadeInPython):

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 
 from tactsim.case.model import Case
 from tactsim.errors import InputError
-from tactsim.outside.files import opened_folder
 from tactsim.outside.text import one_line
 from tactsim.plotting.canvas import encoded
 from tactsim.plotting.result_figures import figures_for
 from tactsim.results import Result, read_result, write_result
-from tactsim.results.provenance import provenance
 from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
@@ -35,9 +33,7 @@ def load_result(directory: str | Path) -> Result:
     StorageError
         If a file is missing, damaged, or of a newer version of tactsim.
     """
-    folder, _ = opened_folder(directory, "result of tactsim")
-    stored = read_result(folder)
-    return stored.complete
+    return read_result(directory).complete
 
 
 def figures(result: Result) -> dict[str, Figure]:
@@ -80,7 +76,7 @@ def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
         if result.experiment is None:
             raise InputError("the result does not know the case that it comes from; run a case or an experiment")
         case = Case(schema="tactsim/case/1", title=result.title, experiment=result.experiment)
-        origin = provenance(case.resolved(), case.case_id, seeds=case.experiment.seeds())
+        origin = case.provenance()
     drawn = {f"{name}.png": encoded(figure) for name, figure in figures(result).items()}
     return write_result(result, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
 
-from tactsim.results.result import StepRecord
+if TYPE_CHECKING:
+    from tactsim.results.result import StepRecord
 
 FORM = "{desc} {percentage:3.0f}%|{bar}| {postfix} [{elapsed}<{remaining}]"
 OPEN_FORM = "{desc} {n_fmt} steps {postfix} [{elapsed}]"
@@ -57,4 +59,11 @@ def count_bar(name: str, total: int) -> Iterator[Callable[[int], None]]:
 
 def is_watched() -> bool:
     """Whether messages go to a terminal or a notebook."""
-    return sys.stderr.isatty() or "ipykernel" in sys.modules
+    return notes_are_watched() or "ipykernel" in sys.modules
+
+
+def notes_are_watched() -> bool:
+    """Whether standard error is a terminal."""
+    with suppress(ValueError, AttributeError):  # closed, or none
+        return sys.stderr.isatty()
+    return False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Annotated, Any, Literal
@@ -64,8 +65,12 @@ class Case(FrozenModel):
         """
         with collected_warnings() as caught:
             result = self.experiment.run(progress, time_limit=time_limit)
-        origin = provenance(self.resolved(), self.case_id, seeds=self.experiment.seeds())
-        return replace(result, title=self.title, provenance=origin, warnings=(*result.warnings, *caught.lines()))
+        return replace(result, title=self.title, provenance=self.provenance(), warnings=(*result.warnings, *caught.lines()))
+
+    def provenance(self, *, case_file: str = "", overrides: Sequence[str] = ()) -> dict[str, Any]:
+        """What a result of this case rests on; see ``results.provenance``."""
+        seeds = self.experiment.seeds()
+        return provenance(self.resolved(), self.case_id, case_file=case_file, overrides=overrides, seeds=seeds)
 
     def resolved(self) -> dict[str, Any]:
         """The case as plain JSON values in SI with every default filled in."""

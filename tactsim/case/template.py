@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import textwrap
 from typing import Any
 
 from pydantic import BaseModel
-from ruamel.yaml import YAML
 
 from tactsim.case.field_docstrings import field_descriptions
 from tactsim.case.model import SCHEMA, experiment_class
-from tactsim.case.writing import case_document
-
-WIDTH = 100
+from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
 
 
 def template(kind: str) -> str:
@@ -64,18 +60,12 @@ def _texts(value: Any) -> list[str]:
 
 
 def _comment(text: str, indent: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# ")
+    return textwrap.wrap(text, LONGEST_LINE, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# ")
 
 
 def _entry(name: str, value: Any) -> list[str]:
     """A key and its value as indented lines of YAML."""
-    text, yaml = io.StringIO(), YAML()
-    yaml.width, yaml.default_flow_style = WIDTH, None
-    yaml.representer.add_representer(
-        type(None), lambda representer, _: representer.represent_scalar("tag:yaml.org,2002:null", "null")
-    )
-    yaml.dump({name: value}, text)
-    entry = text.getvalue().rstrip()
+    entry = yaml_text({name: value}).rstrip()
     if entry.startswith("{"):  # a single value: the mapping itself went into one line
         entry = entry[1:-1]
     return [f"  {line}" for line in entry.split("\n")]

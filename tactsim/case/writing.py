@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
-from ruamel.yaml import YAML
+from ruamel.yaml import YAML, RoundTripRepresenter
 
 from tactsim.case.model import Case
 from tactsim.errors import StorageError
@@ -44,11 +44,21 @@ def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False)
 
 def case_text(case: Case | Experiment) -> str:
     """A case as the YAML text of a case file."""
-    text = io.StringIO()
-    yaml = YAML()
-    yaml.width = LONGEST_LINE
-    yaml.default_flow_style = None
-    yaml.dump(case_document(case), text)
+    return yaml_text(case_document(case))
+
+
+class _Writer(RoundTripRepresenter):
+    """Writes null as such, not as nothing."""
+
+
+_Writer.add_representer(type(None), lambda writer, _: writer.represent_scalar("tag:yaml.org,2002:null", "null"))
+
+
+def yaml_text(value: Any) -> str:
+    """Plain data as YAML: what holds no other list or mapping on one line."""
+    text, yaml = io.StringIO(), YAML()
+    yaml.Representer, yaml.width, yaml.default_flow_style = _Writer, LONGEST_LINE, None
+    yaml.dump(value, text)
     return text.getvalue()
 
 

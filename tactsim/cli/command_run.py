@@ -114,7 +114,6 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     from tactsim.case.loading import read_document, validated_case
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import claimed
-    from tactsim.results.provenance import provenance
 
     seconds = _time_limit(arguments.time_limit)
     with interruptible() as interruption:
@@ -127,10 +126,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             with collected_warnings() as raised:
                 result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
-            origin = provenance(
-                case.resolved(), case.case_id, case_file=path.name, overrides=arguments.set, seeds=case.experiment.seeds()
-            )
-            result = replace(result, provenance=origin)
+            result = replace(result, provenance=case.provenance(case_file=path.name, overrides=arguments.set))
             with interruption.deferred():
                 return _finish(result, case, folder, interruption, arguments)
 

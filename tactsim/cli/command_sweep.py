@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
     from tactsim.dataset.running.resuming import opened_run
-    from tactsim.dataset.running.whole import compute
+    from tactsim.dataset.running.whole import card, compute, finish
     from tactsim.dataset.sampling.sweep import load_sweep
 
     for name in ("samples", "workers"):
@@ -87,11 +87,16 @@ def run(arguments: argparse.Namespace) -> int:
         executor = _executor(sweep, arguments)  # before anything is written: a scheduler may not answer
         changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}
         with closing(executor), opened_run(sweep, arguments.out, **changes) as going:
-            computed = compute(going, executor, _progress(arguments))
-            for line in computed.warnings:
-                console.note(f"warning: {line}")
+            _warn(card(going))
+            stopped = compute(going, executor, _progress(arguments))
             with interruption.deferred():
-                return _finish(going, arguments, computed.interrupted or interruption.requested)
+                _warn(finish(going))
+                return _finish(going, arguments, stopped or interruption.requested)
+
+
+def _warn(troubles: Iterable[str]) -> None:
+    for trouble in troubles:
+        console.note(f"warning: {trouble}")
 
 
 def _check_inputs(sweep: Sweep) -> None:

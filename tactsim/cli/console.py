@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import TextIO
 
 from tactsim.outside.text import printable
+from tactsim.progress import notes_are_watched as notes_are_watched
 
 
 def out(text: str = "") -> None:
@@ -24,13 +25,6 @@ def note(text: str) -> None:
 def error(message: str) -> None:
     """The reason why a command ends."""
     note(f"error: {message}")
-
-
-def notes_are_watched() -> bool:
-    """Whether standard error is a terminal."""
-    with suppress(ValueError, AttributeError):
-        return sys.stderr.isatty()
-    return False
 
 
 def flush() -> None:

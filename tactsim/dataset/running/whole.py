@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Callable
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,15 +27,6 @@ from tactsim.storage.own_files import ForeignFile, OwnFiles
 
 if TYPE_CHECKING:
     import xarray
-
-
-@dataclass(frozen=True)
-class Computed:
-    """What became of a run: whether it was interrupted, and what went wrong beside the samples."""
-
-    run: SweepRun
-    interrupted: bool
-    warnings: tuple[str, ...]
 
 
 def sweep(
@@ -77,8 +68,12 @@ def sweep(
         opened_run(asked, out, resume=resume) as run,
         count_bar("samples", run.store.samples) as shown,
     ):
-        finished = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
-    if finished.interrupted:
+        troubles = card(run)
+        interrupted = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
+        troubles += finish(run)
+    for trouble in dict.fromkeys(troubles):
+        warnings.warn(trouble, stacklevel=2)
+    if interrupted:
         raise KeyboardInterrupt
     return load(out)
 
@@ -97,33 +92,31 @@ def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Swe
     return sweep_of_document(document)
 
 
-def compute(run: SweepRun, executor: Executor, progress: Callable[[Tally], None]) -> Computed:
-    """Compute what is pending until the end or an interruption; the card is written before and after, its figures after."""
-    warnings = list(_card(run))
-    interrupted = False
+def compute(run: SweepRun, executor: Executor, progress: Callable[[Tally], None]) -> bool:
+    """Compute what is pending until the end or the first interruption; whether there was one."""
     try:
         run.compute(executor, progress)
     except KeyboardInterrupt:
-        interrupted = True
+        return True
     finally:
         executor.close()
-    return Computed(run, interrupted, (*warnings, *finish(run)))
+    return False
 
 
-def finish(run: SweepRun) -> Sequence[str]:
+def finish(run: SweepRun) -> list[str]:
     """Draw the figures of the card and write it; a warning for what could not be done, which never costs the data."""
-    warnings = []
+    troubles = []
     try:
         from tactsim.dataset.figures.card import card_figures
 
         for name, draw in card_figures(run.store.path).items():
             OwnFiles(run.store.path).replace(f"{FIGURES}/{name}", draw())
     except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the data must stand
-        warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
-    return [*warnings, *_card(run)]
+        troubles.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
+    return [*troubles, *card(run)]
 
 
-def _card(run: SweepRun) -> Sequence[str]:
+def card(run: SweepRun) -> list[str]:
     """Write the card, unless another file stands in its place; a warning then."""
     from tactsim.dataset.figures.card import FIGURE_FILES
 
