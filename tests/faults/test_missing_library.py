@@ -18,5 +18,5 @@ def test_the_linear_solver_without_its_library_names_the_remedy(monkeypatch: pyt
 
     monkeypatch.setitem(sys.modules, "pypardiso", SimpleNamespace(PyPardisoSolver=refused))
     monkeypatch.setattr(pardiso, "_pardiso_binding", pardiso._pardiso_binding.__wrapped__)
-    with pytest.raises(InputError, match="mkl_rt.*pip install mkl, or set the environment variable PYPARDISO_MKL_RT"):
+    with pytest.raises(InputError, match=r"mkl_rt.*pip install mkl, or set the environment variable PYPARDISO_MKL_RT"):
         pardiso.Pardiso()
