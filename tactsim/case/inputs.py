@@ -21,11 +21,12 @@ def check_inputs(case: Case, document: Document, place: Place) -> list[str]:
     """
     told = []
     for key, path in input_paths(case.experiment, ("experiment",)):
-        where = f"{place(Problem(key, document.line(key), ''))}: {'.'.join(map(str, key))}"
+        where, name = place(Problem(key, document.line(key), "")), ".".join(map(str, key))
+        where = where if where == f"--set {name}" else f"{where}: {name}"
         try:
             found = located(path)
         except Unreadable as error:
             raise StorageError(f"{where}: {error}") from None
         if found == "elsewhere":
-            told.append(f"{'.'.join(map(str, key))}: {one_line(path)} lies neither beside the case nor in the working folder")
+            told.append(f"{name}: {one_line(path)} lies neither beside the case nor in the working folder")
     return told

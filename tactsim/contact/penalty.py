@@ -40,6 +40,11 @@ class Regularisation:
         """Penalty in Pa/m for the largest pressure seen so far."""
         return max(self.softest, EXPECTED_RISE * self.largest_pressure) / (TARGET_SHARE * self.tolerance)
 
+    @property
+    def reach(self) -> float:
+        """Largest gap in m across which a point may press."""
+        return 0.0
+
     def excess(self, penetration: float, elastic_slip: float) -> float:
         """Penetration in m over the tolerance; at most one if it is small enough."""
         return penetration / self.tolerance
@@ -75,6 +80,11 @@ class Augmentation(Regularisation):
         pressure = 0.0 if state is None else state.pressure
         penalty = np.maximum(self.softest, EXPECTED_RISE * pressure) / self.softness
         return pair.with_penalty(penalty, penalty, self._switch)
+
+    @property
+    def reach(self) -> float:
+        """Largest gap in m across which a point may press: where its multiplier over its penalty ends."""
+        return self.softness / EXPECTED_RISE
 
     def excess(self, penetration: float, elastic_slip: float) -> float:
         """Penetration and elastic slip in m over the largest allowed; at most one if both are small enough."""

@@ -87,12 +87,16 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        body = self.body if relaxation is None else self.body.with_relaxation(relaxation)
         forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
-        balance = Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
+        balance = self.balance(forces, relaxation)
         return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(
             guess.copy(), rigid_displacement
         )
+
+    def balance(self, forces: ExternalForces, relaxation: RelaxationStep | None = None) -> Balance:
+        """What measures how far a state under these forces is from equilibrium; ``relaxation`` as in `solve`."""
+        body = self.body if relaxation is None else self.body.with_relaxation(relaxation)
+        return Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
 
     def displacements(
         self, unknowns: Array, interfaces: Sequence[AnyInterface], load_control: PrescribedForce | None, rigid_displacement: float

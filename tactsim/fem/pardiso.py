@@ -172,7 +172,19 @@ def _fresh_binding(kind: int) -> Any:
 
 @functools.cache
 def _pardiso_binding(kind: int) -> Any:
-    """A solver for a kind of matrix that has never been used, to copy: making one searches the disk for MKL for 0.2 s."""
+    """A solver for a kind of matrix that has never been used, to copy: making one searches the disk for MKL for 0.2 s.
+
+    Raises
+    ------
+    InputError
+        If pypardiso is there, but not the library that it binds.
+    """
     import pypardiso
 
-    return pypardiso.PyPardisoSolver(mtype=kind)
+    try:
+        return pypardiso.PyPardisoSolver(mtype=kind)
+    except ImportError as error:
+        raise InputError(
+            "the linear solver needs MKL's library mkl_rt, which is not beside this Python: pip install mkl, or set the "
+            "environment variable PYPARDISO_MKL_RT to the path of the library"
+        ) from error

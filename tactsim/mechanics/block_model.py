@@ -22,8 +22,9 @@ from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.first_touch import first_touch
+from tactsim.mechanics.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
@@ -139,7 +140,7 @@ class GraspModel:
         ConvergenceError
             If Newton fails, or no penalty keeps the tissue out of the jaws.
         """
-        return contact_equilibrium(
+        return guaranteed_equilibrium(
             self.problem,
             state,
             closing,

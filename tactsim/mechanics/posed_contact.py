@@ -90,6 +90,10 @@ class PosedContact:
         state = ContactState(pressure, traction, points, normals, creep=creep)
         return replace(self, surface=surface, reference=reference, state=state)
 
+    def gap(self, displacement: Array) -> Array:
+        """Gap (n,) in m at displacements (d, n) of the points, negative where they are in the body."""
+        return self.pair.body.signed_distance(self._points(displacement))[0]
+
     def at(self, displacement: Array) -> ContactTraction:
         """Contact that holds at displacements (d, n) of the points."""
         return self.pair.converged(self._points(displacement), self.state)
@@ -109,7 +113,7 @@ class PosedContact:
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body."""
         along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
-        gap = self.pair.body.signed_distance(self._points(displacement))[0]
+        gap = self.gap(displacement)
         lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
         return np.where((gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
 

@@ -19,8 +19,9 @@ from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.space import Measure, TaylorHood
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.interfaces import ContactLaw, Material, RigidBody
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.first_touch import first_touch
+from tactsim.mechanics.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
@@ -137,7 +138,7 @@ class PressedModel(ABC):
         ``relaxation`` holds the coefficients of the time step of materials that relax, ``loads`` what else acts on the tissue.
         """
         directions = (self.down,) * len(state.contacts)
-        return contact_equilibrium(
+        return guaranteed_equilibrium(
             self.problem, state, load, guess, directions=directions, force=force, relaxation=relaxation, loads=loads
         )
 

@@ -29,7 +29,7 @@ from tactsim.storage.building import (
     waiting_content,
     waiting_folder,
 )
-from tactsim.storage.files import beside, naming, write_bytes
+from tactsim.storage.files import beside, naming, refuse_few_descriptors, write_bytes
 from tactsim.storage.locking import only_one
 from tactsim.storage.own_files import MANIFEST, manifest_of, names_in, read_manifest
 
@@ -38,6 +38,8 @@ _OWN_NAME = re.compile(
     r"result\.json|history\.csv|provenance\.json|figures|figures/\w+\.(png|svg|pdf)|fields\.pvd|fields_\d+\.vtu|validation\.(json|md)"
 )
 """Paths in the folders that tactsim wrote before it wrote manifests."""
+SPARE = 6
+"""Files that a run opens at once before its result is written: libraries, their fonts, and the folder with a file in it."""
 MOST_EARLIER = 100
 """Earlier results without a manifest that are kept beside one folder; somebody should look at them."""
 
@@ -188,6 +190,7 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
             folder.recover()
             check_replaceable(path, replace)
             folder.start()
+            refuse_few_descriptors(path.absolute().parent, SPARE)
             yield folder
         finally:
             folder.discard()

@@ -69,3 +69,30 @@ def replace_file(path: Path, content: bytes) -> None:
             sync(path.parent)
         finally:
             waiting.unlink(missing_ok=True)
+
+
+def refuse_few_descriptors(folder: Path, spare: int) -> None:
+    """Refuses to begin what would break off later because too few files may be open at once.
+
+    Parameters
+    ----------
+    folder : that exists, and is meant to be read or written
+    spare : files that must still be free to be opened
+
+    Raises
+    ------
+    StorageError
+        With how to raise the limit.
+    """
+    if os.name == "nt":  # which has no such limit and opens no folders
+        return
+    opened: list[int] = []
+    try:
+        opened.append(os.open(folder, os.O_RDONLY))
+        opened.extend(os.dup(opened[0]) for _ in range(spare - 1))
+    except OSError as error:
+        reason = f"{error.strerror}; {spare} files must be free to be opened, raise the limit with: ulimit -n 256"
+        raise StorageError(f"cannot use {one_line(folder)}: {reason}") from None
+    finally:
+        for descriptor in opened:
+            os.close(descriptor)

@@ -207,6 +207,32 @@ def test_an_array_that_is_gone_does_not_stop_an_extension(store: Path, tmp_path:
     assert check(store).findings == ()
 
 
+def test_a_store_with_nothing_but_its_description_is_filled_anew(
+    store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What earlier versions left when they were killed while they made a store."""
+    for array in [entry for entry in store.iterdir() if entry.is_dir()]:
+        shutil.rmtree(array)
+    for other in [entry for entry in store.iterdir() if entry.name != "zarr.json"]:
+        other.unlink()
+    code, printed = resumed(store, tmp_path, capsys)
+    assert (code, "24 samples done" in printed) == (0, True), printed
+    assert check(store).findings == ()
+
+
+@pytest.mark.parametrize("change", [{"units": "mN"}, {"scale_factor": 1000.0}])
+def test_changed_units_are_not_read_as_data(
+    change: dict[str, Any], store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    edited(store, "force", lambda metadata: metadata["attributes"].update(change))
+    (name, value), *_ = change.items()
+    with pytest.raises(StorageError, match=rf"force/zarr\.json: {name} is {value!r}, but .* in the zarr\.json of the store"):
+        load(store)
+    assert main(["data", "export", str(store), "--to", str(tmp_path / "shards")]) == 5
+    assert f"{name} is {value!r}" in capsys.readouterr().err
+    assert not (tmp_path / "shards").exists()
+
+
 DESCRIPTIONS: dict[str, tuple[str, Callable[[dict[str, Any]], object]]] = {
     "unit": ("force", lambda metadata: metadata["attributes"].update(units="mN")),
     "no unit": ("force", lambda metadata: metadata["attributes"].pop("units")),

@@ -89,7 +89,7 @@ def test_what_cannot_be_read_is_reported_with_file_line_and_key(
 
 def test_an_option_that_names_a_missing_file_is_blamed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(case), "--set", f"{KEY}=none.csv"]) == 5
-    assert capsys.readouterr().err.startswith(f"error: --set {KEY}: {KEY}: cannot read the file none.csv")
+    assert capsys.readouterr().err.startswith(f"error: --set {KEY}: cannot read the file none.csv")
 
 
 def test_a_missing_result_is_reported_with_file_line_and_key(capsys: pytest.CaptureFixture[str], case: Path) -> None:

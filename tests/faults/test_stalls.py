@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -192,5 +193,5 @@ def test_grasps_that_crept_end(name: str, settings: tuple[str, ...], monkeypatch
     assert sum(spent) < MOST_FURTHER
     if result.status is not Status.CONVERGED:
         assert result.status is Status.FAILED
-        assert "gave up at" in result.reason
+        assert re.search("gave up at|has kept .* of its volume, and no step leads on", result.reason)
         assert result.steps[-1].values["displacement"] > 0.5e-3

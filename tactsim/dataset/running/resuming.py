@@ -104,13 +104,11 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
     """The store with all its arrays, of the sweep's length and described as one."""
     _refuse_other_arrays(store, layout)
     present = store.described.get("status") or next(iter(store.described.values()), None)
-    if present is None:
-        raise StorageError(f"{one_line(store.path)} has no array left; compute it anew with another --out, or bring back a copy")
-    if sweep.samples < present.shape[0]:
+    if present is not None and sweep.samples < present.shape[0]:
         fewer = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
         raise StorageError(f"the data set {one_line(store.path)} {fewer}")
     remove_torn(store.path, store.described)
-    restored = restore(store, layout.variables)
+    restored = restore(store, layout.variables, sweep.samples)
     lengths = {array.shape[0] for array in store.described.values()}
     if restored or lengths != {sweep.samples}:
         store = Store.open(store.path, writing=True)

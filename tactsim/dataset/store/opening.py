@@ -21,6 +21,7 @@ from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, descri
 from tactsim.errors import StorageError
 from tactsim.outside.files import Unreadable, opened_folder
 from tactsim.outside.text import one_line
+from tactsim.storage.files import refuse_few_descriptors
 
 if TYPE_CHECKING:
     import zarr
@@ -77,7 +78,7 @@ class Store:
         from tactsim.dataset.store.files import GuardedFiles
 
         folder = _folder(path)
-        _refuse_few_descriptors(folder)
+        refuse_few_descriptors(folder, SPARE)
         attributes = read_attributes(folder)
         readable, faults = _arrays(folder, attributes)
         if not damaged and faults:
@@ -213,22 +214,6 @@ def read_attributes(folder: Path) -> dict[str, Any]:
     if not isinstance(names, list) or not all(isinstance(name, str) and NAME.fullmatch(name) for name in names):
         raise StorageError(f"{one_line(folder)} is damaged: {ARRAYS} in {META} are no names of arrays; bring back a copy")
     return attributes
-
-
-def _refuse_few_descriptors(folder: Path) -> None:
-    """Refuses to begin where Zarr, which reads several chunks at once, would break off within."""
-    if os.name == "nt":  # which has no such limit and opens no folders
-        return
-    spare: list[int] = []
-    try:
-        spare.append(os.open(folder, os.O_RDONLY))
-        spare.extend(os.dup(spare[0]) for _ in range(SPARE - 1))
-    except OSError as error:
-        reason = f"{error.strerror}; {SPARE} files must be free to be opened, raise the limit with: ulimit -n 256"
-        raise StorageError(f"cannot read {one_line(folder)}: {reason}") from None
-    finally:
-        for descriptor in spare:
-            os.close(descriptor)
 
 
 def _without(folder: Path, name: str) -> str:

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.dataset.store.arrays import DONE, FAILED, PENDING
+from tactsim.dataset.store.arrays import DONE, FAILED, META, PENDING
 from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, checksum
-from tactsim.dataset.store.opening import Store
-from tactsim.errors import StorageError
+from tactsim.dataset.store.opening import Store, consolidated_metadata
+from tactsim.errors import StorageError, shown
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
 from tactsim.storage.files import naming
@@ -166,6 +166,27 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
             f"{one_line(store.path)} has holes: {', '.join(list(holed)[:SHOWN])}{more} of {samples_in_words(numbers)} "
             "are gone; bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
         )
+
+
+def refuse_redescribed(store: Store) -> None:
+    """Refuses arrays whose units or other attributes are no longer those that the store gathered when it was made.
+
+    Raises
+    ------
+    StorageError
+        Naming the array and what differs.
+    """
+    gathered = consolidated_metadata(store.path)
+    for name, array in store.described.items():
+        whole = gathered.get(name)
+        now, made = array.metadata.get("attributes"), whole.get("attributes") if isinstance(whole, dict) else None
+        if isinstance(now, dict) and isinstance(made, dict) and now != made:
+            key = next(key for key in (*now, *made) if now.get(key) != made.get(key))
+            words = f"{one_line(key, 80)} is {shown(now.get(key))}, but {shown(made.get(key))} in the {META} of the store"
+            raise StorageError(
+                f"{one_line(store.path / name / META)}: {words}; tactsim data check says which is right; bring back a copy, or "
+                "remove the wrong file of an array and go on with --resume"
+            )
 
 
 def refuse_changed(store: Store, samples: Array) -> None:

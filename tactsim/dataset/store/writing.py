@@ -93,8 +93,8 @@ def resize(store: Store, samples: int, variables: Iterable[Variable]) -> None:
                 sync(store.path / variable.name / META)
 
 
-def restore(store: Store, variables: Iterable[Variable]) -> list[str]:
-    """Makes arrays anew that are gone, filled with nothing; returns their names.
+def restore(store: Store, variables: Sequence[Variable], samples: int) -> list[str]:
+    """Makes arrays anew that are gone, filled with nothing; returns their names. ``samples`` is their number if all are gone.
 
     Raises
     ------
@@ -102,10 +102,11 @@ def restore(store: Store, variables: Iterable[Variable]) -> list[str]:
         If one cannot be written.
     """
     gone = [variable for variable in variables if variable.name not in store.described]
-    present = store.described["status" if "status" in store.described else next(iter(store.described))]
+    present = store.described.get("status") or next(iter(store.described.values()), None)
+    length, per_chunk = (samples, chunk_samples(variables, samples)) if present is None else (present.shape[0], present.chunks[0])
     with naming(store.path):
         for variable in gone:
-            _add(store.group, variable, present.shape[0], present.chunks[0])
+            _add(store.group, variable, length, per_chunk)
             sync(store.path / variable.name / META)
     return [variable.name for variable in gone]
 

@@ -17,7 +17,7 @@ from tactsim.dataset.store.arrays import FAILED, refuse_link
 from tactsim.dataset.store.files import CARD
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load, split_names
-from tactsim.errors import InputError, StorageError
+from tactsim.errors import InputError, StorageError, TactsimError
 from tactsim.outside.files import opened
 from tactsim.outside.processes import run_child
 from tactsim.outside.text import one_line
@@ -102,6 +102,8 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
     done = run_child(MODULE, arguments, time_limit=LONGEST)
     if done.out_of_time:
         raise StorageError(f"cannot write {one_line(target)}: it took longer than {LONGEST:g} s")
+    if done.code == StorageError.exit_code and done.last_line:
+        raise StorageError(done.last_line)
     if done.code:
         full = "No space left" in done.error_output or "File too large" in done.error_output
         raise StorageError(
@@ -178,9 +180,14 @@ def _listed(value: Any) -> Any:
 
 
 def main(store: str, target: str, splits: str) -> int:
-    """Writes HDF5; what the child process does."""
-    names, attributes = json.loads(splits), Store.open(store).attributes
-    _hdf5(load(store, split=names), attributes, Path(target), failed=_failed(store, names), card=_card(Path(store)))
+    """Writes HDF5; what the child process does. What is wrong with the store is its last line, without a traceback."""
+    names = json.loads(splits)
+    try:
+        attributes = Store.open(store).attributes
+        _hdf5(load(store, split=names), attributes, Path(target), failed=_failed(store, names), card=_card(Path(store)))
+    except TactsimError as error:
+        sys.stderr.write(f"{one_line(error)}\n")
+        return StorageError.exit_code
     return 0
 
 

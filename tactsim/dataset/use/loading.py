@@ -43,12 +43,14 @@ def load(
         If there is no such split or variable.
     StorageError
         If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
-        gone; if ``verified``, also if a sample is not what was written. Else a damaged chunk is refused when it is read.
+        gone, or arrays whose units or other attributes were changed; if ``verified``, also if a sample is not what was written.
+        Else a damaged chunk is refused when it is read.
     """
     from tactsim.dataset.store.opening import Store
-    from tactsim.dataset.store.verifying import refuse_changed, refuse_holes
+    from tactsim.dataset.store.verifying import refuse_changed, refuse_holes, refuse_redescribed
 
     place = Store.open(store)
+    refuse_redescribed(place)
     whole = dataset_of(place)
     names = [*map(str, whole.data_vars), *place.missing]
     keep = names if variables is None else list(map(str, variables))
@@ -67,12 +69,13 @@ def opened(store: str | Path) -> xarray.Dataset:
     Raises
     ------
     StorageError
-        If the folder is not a data set, was written by another version, or has holes.
+        If the folder is not a data set, was written by another version, has holes or arrays whose attributes were changed.
     """
     from tactsim.dataset.store.opening import Store
-    from tactsim.dataset.store.verifying import refuse_holes
+    from tactsim.dataset.store.verifying import refuse_holes, refuse_redescribed
 
     place = Store.open(store)
+    refuse_redescribed(place)
     whole = dataset_of(place)
     refuse_holes(place, [*map(str, whole.data_vars), *place.missing], chosen_samples(whole, failed=True))
     return whole
