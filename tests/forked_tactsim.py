@@ -1,4 +1,4 @@
-"""``python -IS forked_tactsim.py SOCKET strict|lax|pretended ARGUMENTS``: a child of the fork server as if it were itself."""
+"""``python -IS forked_tactsim.py SOCKET strict|lax|pretended|python ARGUMENTS``: a child of the fork server as if it were itself."""
 
 import contextlib
 import json
