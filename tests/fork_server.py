@@ -173,7 +173,7 @@ def _program(text: str) -> int:
     sys.path.insert(0, "")
     try:
         exec(compile(text, "<string>", "exec"), vars(main))  # noqa: S102  the text is a block of our own pages
-    except BaseException:
+    except BaseException:  # noqa: BLE001  the child ends with it, the server does not
         traceback.print_exc()
         return 1
     return 0
