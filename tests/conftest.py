@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import gc
+import io
 import os
 import signal
 import subprocess
 import sys
+import traceback
+import warnings
 from collections.abc import Callable, Generator, Iterator
+from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +32,17 @@ def _forget_classes_of_tests() -> None:
 
 
 _forget_classes_of_tests()  # the pretended experiment
+
+
+gc.disable()  # until all tests are collected: what is loaded stays, and to look through it again and again takes seconds
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish() -> None:
+    """What is loaded by now is looked through no more."""
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -81,6 +97,25 @@ def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
         return subprocess.Popen(command, text=True, cwd=tmp_path, env=environment, **{**streams, **options})  # type: ignore[call-overload]
 
     return started
+
+
+@pytest.fixture
+def reader_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mesh files are read in this process; where the child is what is tried, it is started as ever."""
+    from tactsim.outside import mesh_files
+    from tactsim.outside.processes import Ended
+
+    def read(module: str, arguments: list[str], **limits: object) -> Ended:
+        words, code = io.StringIO(), 1
+        with warnings.catch_warnings(), redirect_stderr(words):
+            warnings.simplefilter("default")
+            try:
+                code = mesh_files.main(*arguments)
+            except BaseException:  # noqa: BLE001  with which a child would end
+                traceback.print_exc()
+        return Ended(code, words.getvalue())
+
+    monkeypatch.setattr(mesh_files, "run_child", read)
 
 
 @pytest.fixture

@@ -15,6 +15,8 @@ import socket
 import subprocess
 import sys
 import tempfile
+import traceback
+import types
 from functools import cache
 from pathlib import Path
 from typing import NoReturn
@@ -47,6 +49,11 @@ def forked_command(*options: str) -> list[str]:
     """The beginning of a command that does what ``python OPTIONS -m tactsim.cli`` does; the options are none or ``-W error``."""
     assert options in ((), ("-W", "error"))
     return [sys.executable, "-IS", str(CLIENT), _served(), "strict" if options else "lax"]
+
+
+def forked_python() -> list[str]:
+    """The beginning of a command that does what ``python -c`` does, with tactsim loaded."""
+    return [sys.executable, "-IS", str(CLIENT), _served(), "python"]
 
 
 def forked_pretended_command() -> list[str]:
@@ -146,17 +153,30 @@ class _Server:
         os.chdir(str(request["folder"]))
         os.environ.clear()
         os.environ.update(request["environment"])  # type: ignore[call-overload]
-        if request["mode"] != "lax":
+        if request["mode"] in ("strict", "pretended"):
             warnings.simplefilter("error")
         if request["mode"] == "pretended":
             from pretended_cli import pretend
 
             pretend()
         sys.argv = ["tactsim", *request["arguments"]]  # type: ignore[misc]
-        code = main()
+        code = _program(sys.argv[1]) if request["mode"] == "python" else main()
         for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.flush()
         os._exit(code)  # taking apart what was loaded costs more than the command
+
+
+def _program(text: str) -> int:
+    """In the child: what ``python -c TEXT`` does, its exit code."""
+    main = types.ModuleType("__main__")
+    sys.modules["__main__"] = main
+    sys.path.insert(0, "")
+    try:
+        exec(compile(text, "<string>", "exec"), vars(main))  # noqa: S102  the text is a block of our own pages
+    except BaseException:  # noqa: BLE001  the child ends with it, the server does not
+        traceback.print_exc()
+        return 1
+    return 0
 
 
 def _load() -> None:

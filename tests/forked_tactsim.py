@@ -1,4 +1,7 @@
-"""``python -IS forked_tactsim.py SOCKET strict|lax|pretended ARGUMENTS``: a child of the fork server as if it were itself."""
+"""``python -IS forked_tactsim.py SOCKET MODE ARGUMENTS``: a child of the fork server as if it were itself.
+
+Modes: strict, lax, pretended, python.
+"""
 
 import contextlib
 import json

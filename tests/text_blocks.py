@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from fork_server import forked_command
+from fork_server import forked_command, forked_python
 
 Block = tuple[str, str]
 """Language and text."""
@@ -40,9 +40,13 @@ def provide_command(folder: Path, *, installed: bool = False) -> None:
         command.chmod(0o755)
 
 
-def execute(language: str, text: str, folder: Path) -> None:
-    """Runs a block of ``sh`` or ``python`` in a folder; fails with what it wrote if it does not end well."""
-    command = ["sh", "-e", "-c", text] if language == "sh" else [sys.executable, "-c", text]
+def execute(language: str, text: str, folder: Path, *, installed: bool = False) -> None:
+    """Runs a block of ``sh`` or ``python`` in a folder; fails with what it wrote if it does not end well.
+
+    Python is ``installed``, a process of its own, or forked from one that has loaded tactsim.
+    """
+    python = [sys.executable, "-c"] if installed else forked_python()
+    command = ["sh", "-e", "-c", text] if language == "sh" else [*python, text]
     environment = {**os.environ, "HOME": str(folder), "PATH": f"{folder / '.venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"}
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
     assert done.returncode == 0, done.stderr + done.stdout

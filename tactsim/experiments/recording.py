@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.errors import CaseError
+from tactsim.errors import CaseError, UnknownName
 from tactsim.interfaces import Experiment, Recorder
 from tactsim.interfaces.recording import Recording, Values
 from tactsim.interfaces.variable import Variable, reading
-from tactsim.registry import kinds
+from tactsim.registry import kind_class, kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import ForceReading
 
@@ -82,27 +82,36 @@ def recorder_for(kind: str, settings: RecordingSettings, most_inclusions: int = 
     CaseError
         If the kind has no recorder and no quantities are named.
     """
-    known = recorders()
-    if kind not in known and settings.quantities is None:
+    own = _recorder_of(kind)
+    if own is None and settings.quantities is None:
         raise CaseError(
             f"sweep.quantities: missing; an experiment of kind {kind} stores what you name, such as quantities: "
-            f"{{max_penetration: m}}; kinds that need none: {', '.join(sorted(known))}"
+            f"{{max_penetration: m}}; kinds that need none: {', '.join(sorted(recorders()))}"
         )
-    recorder = known.get(kind, NamedQuantities)
+    recorder = own or NamedQuantities
     if settings.times > 1 and not recorder.histories:
         raise CaseError(
             f"sweep.times: {settings.times}, but of an experiment of kind {kind} only the end is stored; leave it out"
         )
     if settings.reading is not None and not recorder.reads_force:
-        able = ", ".join(sorted(name for name, one in known.items() if one.reads_force))
+        able = ", ".join(sorted(name for name, one in recorders().items() if one.reads_force))
         raise CaseError(f"sweep.reading: an experiment of kind {kind} has no force for it; leave it out; kinds that have: {able}")
     return recorder(kind=kind, settings=settings, most_inclusions=most_inclusions)
 
 
 def seed_place(kind: str) -> tuple[str, ...]:
     """Where an experiment of a kind keeps the seed of its noise; empty if it keeps none."""
-    known = recorders()
-    return known[kind].noise_seed if kind in known else ()
+    recorder = _recorder_of(kind)
+    return () if recorder is None else recorder.noise_seed
+
+
+def _recorder_of(kind: str) -> type[Recorder] | None:
+    """The recorder of a kind of experiment, if it has one; the modules of other kinds are not loaded for it."""
+    try:
+        recorder: type[Recorder] = kind_class(Recorder, kind)
+    except UnknownName:
+        return None
+    return recorder
 
 
 class NamedQuantities(Recorder):

@@ -184,5 +184,6 @@ def _twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array
     turned = np.take_along_axis(sides, (first[:, :, None] + np.arange(4)) % 4, axis=2)
     triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2).reshape(len(cells), 12, 3)
     centres = len(corners) + np.arange(len(cells))
-    simplices = np.concatenate([triangles[:, :, ::-1], np.broadcast_to(centres[:, None, None], (len(cells), 12, 1))], axis=2)
+    tips: Array = np.broadcast_to(centres[:, None, None], (len(cells), 12, 1))
+    simplices = np.concatenate([triangles[:, :, ::-1], tips], axis=2)
     return simplices.reshape(-1, 4), np.vstack([corners, corners[cells].mean(axis=1)])

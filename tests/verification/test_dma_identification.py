@@ -79,9 +79,11 @@ def test_the_band_holds_the_true_curves_in_forty_trials(times):
 
 
 def test_a_band_of_too_little_noise_or_of_another_curve_fails():
-    least = binom.ppf(1e-3, 40, CONFIDENCE) / 40
-    assert trials(TIMES[0], 40, stretched=0.5)[0] < least
-    assert trials(TIMES[0], 40, factor=1.05)[0] < least
+    """Twenty trials show it."""
+    least = binom.ppf(1e-3, 20, CONFIDENCE) / 20
+    assert trials(TIMES[0], 20)[0] >= least
+    assert trials(TIMES[0], 20, stretched=0.5)[0] < least
+    assert trials(TIMES[0], 20, factor=1.05)[0] < least
 
 
 @pytest.mark.slow

@@ -82,20 +82,33 @@ CASES = {
 LONG = ("solid-compressible", "plane_strain-compressible")
 
 
-def ladder(exact: Manufactured, *, posed: Manufactured | None = None) -> list[float]:
-    """Fitted orders of (u in L2, u in H1, p in L2) over three meshes, the bottom held and the rest under tractions."""
+def ladder(exact: Manufactured, *, posed: Manufactured | None = None, first: int = 1) -> list[float]:
+    """Fitted orders of (u in L2, u in H1, p in L2) over three meshes, the bottom held and the rest under tractions.
+
+    In the plane the meshes are refined ``first`` times and once and twice more.
+    """
     if exact.measure == "solid":
         meshes = {1 / count: box([1.0] * 3, [count] * 3) for count in (4, 6, 8)}
     else:
-        meshes = {2.0**-level: box([1.0] * 2, [5] * 2, jitter=0.2, seed=1, refinements=level) for level in (1, 2, 3)}
+        levels = range(first, first + 3)
+        meshes = {2.0**-level: box([1.0] * 2, [5] * 2, jitter=0.2, seed=1, refinements=level) for level in levels}
     bottom = on_plane(2 if exact.measure == "solid" else 1, 0.0)
     errors = np.array([measured_errors(exact, mesh, bottom, posed=posed or exact) for mesh in meshes.values()])
     return [fitted_order(list(meshes), errors[:, column]) for column in range(3)]
 
 
-def assert_orders(orders: list[float]) -> None:
+def assert_orders(orders: list[float], tolerance: float = TOLERANCE) -> None:
     """Every order within the tolerance of theory."""
-    assert np.abs(np.subtract(orders, ORDERS)).max() <= TOLERANCE, f"orders {np.round(orders, 3)}, theory {ORDERS}"
+    assert np.abs(np.subtract(orders, ORDERS)).max() <= tolerance, f"orders {np.round(orders, 3)}, theory {ORDERS}"
+
+
+def assert_seen(exact: Manufactured, posed: Manufactured, first: int) -> None:
+    """Loads of a wrong model miss an order by more than is allowed, those of the exact one do not."""
+    tolerance = TOLERANCE if first else 2 * TOLERANCE  # on coarse meshes the second term of the error still counts
+    if not first:
+        assert_orders(ladder(exact, first=first), tolerance)
+    with pytest.raises(AssertionError):
+        assert_orders(ladder(exact, posed=posed, first=first), tolerance)
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in CASES])
@@ -107,23 +120,31 @@ def test_orders_of_convergence(name, verification_record):
         verification_record(f"{name}, {norm}", order=order, theory=theory, mesh="three meshes", **known)
 
 
+coarse_and_fine = pytest.mark.parametrize("first", [0, pytest.param(1, marks=pytest.mark.slow)])
+"""A wrong model is seen on coarse meshes already; on those of the orders themselves it takes four times as long."""
+
+
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name.startswith("solid") else name for name in CASES]
+    ("name", "first"),
+    [
+        pytest.param(name, first, marks=pytest.mark.slow if first else ())
+        for name, exact in CASES.items()
+        for first in ((1,) if exact.measure == "solid" else (0, 1))
+    ],
 )
-def test_loads_of_a_material_with_c01_wrong_by_a_percent_are_seen(name):
+def test_loads_of_a_material_with_c01_wrong_by_a_percent_are_seen(name, first):
     wrong = CASES[name].material.model_copy(update={"c01": 0.505})
-    with pytest.raises(AssertionError):
-        assert_orders(ladder(CASES[name], posed=replace(CASES[name], material=wrong)))
+    assert_seen(CASES[name], replace(CASES[name], material=wrong), first)
 
 
-def test_a_missing_part_of_the_pressure_is_seen():
+@coarse_and_fine
+def test_a_missing_part_of_the_pressure_is_seen(first):
     exact = CASES["axisymmetric-incompressible"]
-    weaker = replace(exact, given_pressure=lambda X: 0.99 * exact.given_pressure(X))
-    with pytest.raises(AssertionError):
-        assert_orders(ladder(exact, posed=weaker))
+    assert_seen(exact, replace(exact, given_pressure=lambda X: 0.99 * exact.given_pressure(X)), first)
 
 
-def test_a_body_force_without_the_hoop_stress_is_seen():
+@coarse_and_fine
+def test_a_body_force_without_the_hoop_stress_is_seen(first):
     """Mutant: the divergence of plane strain on an axisymmetric body, its deformation and stress otherwise the same."""
 
     class WithoutHoop(Manufactured):
@@ -132,6 +153,4 @@ def test_a_body_force_without_the_hoop_stress_is_seen():
             return super().body_force(X) + np.stack([(P[0, 0] - P[2, 2]) / X[0], 0 * X[0]])
 
     exact = CASES["axisymmetric-incompressible"]
-    posed = WithoutHoop(exact.measure, exact.material, exact.placement, exact.given_pressure)
-    with pytest.raises(AssertionError):
-        assert_orders(ladder(exact, posed=posed))
+    assert_seen(exact, WithoutHoop(exact.measure, exact.material, exact.placement, exact.given_pressure), first)

@@ -69,6 +69,11 @@ class ArrayDescription:
         """Bytes of an unpacked chunk; of text the most that it can take."""
         return math.prod(self.chunks) * (4 + LONGEST_TEXT) + 4 if self.dtype == "str" else _bytes(self.chunks, self.dtype)
 
+    @property
+    def stored_type(self) -> np.dtype[Any]:
+        """Type of the values in a chunk, of text that of objects."""
+        return np.dtype(object) if self.dtype == "str" else np.dtype(self.dtype).newbyteorder("<")
+
     def chunk_key(self, number: int) -> str:
         """Path in the store of the chunk with this number."""
         return "/".join((self.name, "c", str(number), *("0" for _ in self.shape[1:])))

@@ -10,17 +10,19 @@ import asyncio
 import os
 import re
 import stat
-import struct
 from collections.abc import AsyncIterator, Iterable, Iterator, Mapping
 from pathlib import Path
+from types import EllipsisType
 from typing import Any, Self
 
 import numpy as np
 from zarr.core.buffer.core import default_buffer_prototype
 from zarr.storage import LocalStore
 
+from tactsim.array import Array
 from tactsim.dataset.store.arrays import META, ArrayDescription
 from tactsim.dataset.store.blocks import JOURNAL
+from tactsim.dataset.store.chunks import decoded, unpacked
 from tactsim.errors import StorageError
 from tactsim.outside.files import LIMITS, opened
 from tactsim.outside.text import one_line
@@ -28,6 +30,8 @@ from tactsim.storage.files import naming
 from tactsim.storage.own_files import IGNORED, OWN_LIST, OwnFiles
 
 CARD, FIGURES = "README.md", "figures"
+SPARE = 20
+"""Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
 DEEPEST = 16
 """Levels of folders; an array has one for each of its dimensions and two more."""
 EARLIER = re.compile(rf"{FIGURES}/[a-z]+\.png")
@@ -36,8 +40,6 @@ TORN_CHUNK = re.compile(r"(zarr|\d+)\.[0-9a-f]{32}\.partial")
 """A file that Zarr had not renamed yet."""
 TORN_FILE = re.compile(r"\.(README\.md|\.tactsim\.json|[a-z_]+\.png)\.\d+\.partial")
 """A card, a list or a figure that had not been renamed yet."""
-FRAME = 0xFD2FB528
-"""First four bytes of what Zstandard packs, RFC 8878, section 3.1.1."""
 PACKING_COSTS = 1024
 """Bytes by which a packed chunk may be larger than its content, beside a hundredth of it."""
 
@@ -172,23 +174,54 @@ class GuardedFiles(LocalStore):
         StorageError
             If it is reached through a link, is no regular file, is too large, or is no whole chunk.
         """
+        array = self.described.get(key.partition("/")[0]) if "/c/" in key else None
+        content = self._bytes(key, array)
+        if content is not None and array is not None:
+            self._unpacked(content, key, array)
+        return content
+
+    def rows(self, name: str, rows: slice | Array | EllipsisType) -> Array:
+        """Values (n, ...) of a variable of all samples or a slice or mask of them; where a chunk is no file, the fill value.
+
+        Straight from the files: to have Zarr read a small chunk takes ten times as long, most of it in threads that wait.
+
+        Raises
+        ------
+        StorageError
+            If a chunk is reached through a link, is no regular file, is too large, or is no whole chunk.
+        """
+        array = self.described[name]
+        numbers = _numbers(rows, array.shape[0])
+        values = np.full((len(numbers), *array.shape[1:]), array.metadata["fill_value"], array.stored_type)
+        if not values.size:
+            return values
+        chunks = numbers // array.chunks[0]
+        for part in np.split(np.arange(len(numbers)), np.flatnonzero(np.diff(chunks)) + 1):
+            key = array.chunk_key(int(chunks[part[0]]))
+            content = self._bytes(key, array)
+            if content is not None:
+                values[part] = decoded(self._unpacked(content, key, array), array)[numbers[part] % array.chunks[0]]
+        return values
+
+    def _bytes(self, key: str, array: ArrayDescription | None) -> bytes | None:
+        """The bytes of a chunk, or of a description if there is no array."""
         place = self.root / key
         if not os.path.lexists(place):
             return None
         if os.path.realpath(place) != os.path.join(self._real, *key.split("/")):
             raise StorageError(f"{one_line(place)} is reached through a link; a data set holds none; put a copy in its place")
-        array = self.described.get(key.partition("/")[0]) if "/c/" in key else None
         if array is None:
             return opened(place, "description", LIMITS["description"]).read()
-        most = array.chunk_bytes + array.chunk_bytes // 100 + PACKING_COSTS
-        content = opened(place, "chunk", most).read()
-        fault = chunk_fault(content, array)
-        if fault:
+        return opened(place, "chunk", array.chunk_bytes + array.chunk_bytes // 100 + PACKING_COSTS).read()
+
+    def _unpacked(self, content: bytes, key: str, array: ArrayDescription) -> bytes:
+        try:
+            return unpacked(content, array)
+        except ValueError as fault:
             raise StorageError(
                 f"the chunk {one_line(key)} of {one_line(self.root)} is damaged: {fault}; bring back a copy of it, or compute "
                 "its samples again with: tactsim sweep CASE --out STORE --resume"
-            )
-        return content
+            ) from None
 
     @staticmethod
     def _buffer(content: bytes | None, prototype: Any, byte_range: Any) -> Any:
@@ -197,46 +230,8 @@ class GuardedFiles(LocalStore):
         return None if content is None else (prototype or default_buffer_prototype()).buffer.from_bytes(content)
 
 
-def chunk_fault(content: bytes, array: ArrayDescription) -> str:
-    """Why these bytes are no chunk of the array, empty if they are one."""
-    from numcodecs import zstd
-
-    size = unpacked_size(content)
-    if size is None:
-        return "it is not packed by Zstandard"
-    if size > array.chunk_bytes or (array.dtype != "str" and size != array.chunk_bytes):
-        return f"it unpacks to {size} bytes; expected: {array.chunk_bytes}"
-    try:
-        unpacked = zstd.decompress(content, np.empty(size, np.uint8))
-    except (RuntimeError, ValueError) as error:
-        return one_line(error, 200)
-    return _text_fault(bytes(unpacked), array.chunks[0]) if array.dtype == "str" else ""
-
-
-def unpacked_size(content: bytes) -> int | None:
-    """Bytes to which a frame of Zstandard unpacks, None if it is none or does not say so (RFC 8878, section 3.1.1.1)."""
-    if len(content) < 6 or struct.unpack_from("<I", content)[0] != FRAME:
-        return None
-    flags = content[4]
-    single, length = bool(flags & 0x20), (0, 2, 4, 8)[flags >> 6]
-    length = length or int(single)
-    begin = 5 + (not single) + (0, 1, 2, 4)[flags & 3]
-    if not length or len(content) < begin + length:
-        return None
-    return int.from_bytes(content[begin : begin + length], "little") + (256 if length == 2 else 0)
-
-
-def _text_fault(content: bytes, samples: int) -> str:
-    """Whether the texts in a chunk are as many as its samples and lie within it."""
-    if len(content) < 4 or struct.unpack_from("<I", content)[0] != samples:
-        return f"it holds another number of texts than {samples}"
-    place = 4
-    for _ in range(samples):
-        if place + 4 > len(content):
-            return "a text ends behind its end"
-        begin, place = place + 4, place + 4 + struct.unpack_from("<I", content, place)[0]
-        try:
-            content[begin:place].decode("utf-8")
-        except UnicodeDecodeError:
-            return "a text is not UTF-8"
-    return "" if place == len(content) else "a text ends behind its end"
+def _numbers(rows: slice | Array | EllipsisType, count: int) -> Array:
+    """Numbers (n,) of the samples that are asked for."""
+    if isinstance(rows, np.ndarray):
+        return np.flatnonzero(rows) if rows.dtype == bool else rows
+    return np.arange(*(rows if isinstance(rows, slice) else slice(None)).indices(count))

@@ -26,6 +26,8 @@ from tactsim.storage.files import refuse_few_descriptors
 if TYPE_CHECKING:
     import zarr
 
+    from tactsim.dataset.store.files import GuardedFiles
+
 STORE_SCHEMA = "tactsim/dataset/1"
 KINDS = {
     "title": str,
@@ -43,8 +45,6 @@ KINDS = {
 ARRAYS = "arrays"
 """Attribute: names of all arrays. A store that has it holds a file for every chunk with a sample that was computed, so that a
 missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
-SPARE = 20
-"""Files that Zarr may open at once: ten chunks and the ends of its event loop, with as many again for what draws and writes."""
 NAME = re.compile(r"\w[\w.-]{0,254}")
 """Names of variables, which are names of folders."""
 DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
@@ -56,6 +56,7 @@ class Store:
     """A store, opened. A reader sees a sample by its ``status``, which is written after everything else of it."""
 
     path: Path
+    files: GuardedFiles
     group: zarr.Group
     described: dict[str, ArrayDescription] = field(default_factory=dict)
     """Arrays that are there and can be read."""
@@ -75,7 +76,7 @@ class Store:
         """
         import zarr
 
-        from tactsim.dataset.store.files import GuardedFiles
+        from tactsim.dataset.store.files import SPARE, GuardedFiles
 
         folder = _folder(path)
         refuse_few_descriptors(folder, SPARE)
@@ -88,7 +89,7 @@ class Store:
         files = GuardedFiles(folder, readable, read_only=not writing)
         with reading(folder), zarr.config.set({"array.write_empty_chunks": True}):
             group = zarr.open_group(files, mode="r+" if writing else "r", zarr_format=3, use_consolidated=False)
-        return cls(folder, group, readable, faults)
+        return cls(folder, files, group, readable, faults)
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -105,8 +106,7 @@ class Store:
         """
         import zarr
 
-        if name not in self.described:
-            raise StorageError(self.faults.get(name) or _without(self.path, name))
+        self._refuse_missing(name)
         if name in self._opened:
             return self._opened[name]
         with reading(self.path / name), zarr.config.set({"array.write_empty_chunks": True}):
@@ -124,10 +124,14 @@ class Store:
         StorageError
             Naming the array and the chunk that cannot be read.
         """
-        array = self.array(name)
+        self._refuse_missing(name)
         with reading(self.path / name):
-            values = np.asarray(array.oindex[rows] if isinstance(rows, np.ndarray) else array[rows])
+            values = self.files.rows(name, rows)
         return values if values.dtype.kind in "fiub" else np.array([str(value) for value in values])
+
+    def _refuse_missing(self, name: str) -> None:
+        if name not in self.described:
+            raise StorageError(self.faults.get(name) or _without(self.path, name))
 
     @property
     def missing(self) -> list[str]:

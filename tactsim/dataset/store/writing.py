@@ -170,7 +170,7 @@ def _put(store: Store, block: Block, variable: Variable) -> list[Path]:
         begin, end = chunk * per_chunk, min((chunk + 1) * per_chunk, array.shape[0])
         content = store.path / store.described[variable.name].chunk_key(chunk)
         new = [place for place in content.parents[: len(variable.dimensions) + 1] if not place.exists()]
-        values = np.asarray(array[begin:end])
+        values = store.files.rows(variable.name, slice(begin, end))
         values[numbers[inside] - begin] = block[variable.name][inside]
         array[begin:end] = values
         changed += [content, *new, content.parents[len(new)], *([folder / META] if content.parents[len(new)] == folder else ())]

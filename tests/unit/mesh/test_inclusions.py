@@ -15,6 +15,7 @@ from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
 from tactsim.mesh.inclusions.tube import Tube
 
+here = pytest.mark.usefixtures("reader_here")
 BLOCK = np.array(SIZE)
 GAP = 0.5e-3
 SHAPES = {"sphere": LUMP, "ellipsoid": TURNED, "artery": ARTERY, "curved": CURVED}
@@ -29,6 +30,7 @@ def shape(name, tmp_path):
     return Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3), rotation=(0.1, 0.2, 0.3))
 
 
+@here
 @pytest.mark.parametrize("name", [*SHAPES, "surface"])
 def test_the_triangles_are_closed_outward_and_on_the_surface(name, tmp_path):
     for solid in shape(name, tmp_path).solids(BLOCK):
@@ -43,6 +45,7 @@ def test_the_triangles_are_closed_outward_and_on_the_surface(name, tmp_path):
             assert np.abs(solid.signed_distance(vertices + 1e-8)).max() < 1e-12 * BLOCK.max()
 
 
+@here
 @pytest.mark.parametrize("name", [*SHAPES, "surface"])
 def test_projected_points_lie_on_the_surface_and_are_nearest(name, tmp_path):
     solid = shape(name, tmp_path).solids(BLOCK)[0]
@@ -59,6 +62,7 @@ def test_projected_points_lie_on_the_surface_and_are_nearest(name, tmp_path):
     assert np.abs(solid.patches[0](moved)[0] - moved).max() > 3e-8  # twin: the distance off the surface is seen
 
 
+@here
 @pytest.mark.parametrize("name", [*SHAPES, "surface"])
 def test_inside_is_where_the_distance_is_negative_and_has_the_exact_volume(name, tmp_path):
     solid = shape(name, tmp_path).solids(BLOCK)[0]
@@ -207,6 +211,7 @@ DAMAGED = {
 }
 
 
+@here
 @pytest.mark.parametrize("name", DAMAGED)
 def test_a_surface_that_bounds_no_body_is_refused(name, tmp_path):
     change, reason = DAMAGED[name]
@@ -214,6 +219,7 @@ def test_a_surface_that_bounds_no_body_is_refused(name, tmp_path):
         surface_of(tmp_path, *change(*irregular())).solids(BLOCK)
 
 
+@here
 def test_a_surface_turned_inside_out_as_a_whole_is_put_right(tmp_path):
     vertices, faces = irregular()
     solid = surface_of(tmp_path, vertices, faces[:, ::-1]).solids(BLOCK)[0]
@@ -235,6 +241,7 @@ def test_files_of_surfaces_are_read_and_truncated_ones_refused(ending, tmp_path)
         whole.solids(BLOCK)
 
 
+@here
 def test_the_identity_of_a_surface_follows_the_file_and_not_its_name(tmp_path):
     vertices, faces = irregular()
     first = surface_of(tmp_path, vertices, faces)

@@ -11,6 +11,7 @@ from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.fem.space import TaylorHood
 from tactsim.mesh.reading import read_mesh
 
+here = pytest.mark.usefixtures("reader_here")
 LINEAR = box([2.0, 1.0, 1.0], [2, 1, 1])
 CORNERS = LINEAR.nodes[: LINEAR.corner_count]
 TETRA = LINEAR.elements[:, :4]
@@ -31,6 +32,7 @@ def volume(mesh, region=None):
     return weights.sum() if region is None else weights[mesh.regions == region].sum()
 
 
+@here
 @pytest.mark.parametrize("ending", ["msh", "vtu", "vtk", "mesh"])
 def test_linear_tetrahedra_are_promoted_and_scaled(ending, tmp_path):
     name = {"msh": "gmsh:physical", "mesh": "medit:ref"}.get(ending, "region")
@@ -40,6 +42,7 @@ def test_linear_tetrahedra_are_promoted_and_scaled(ending, tmp_path):
     assert len(mesh.nodes) == len(LINEAR.nodes)
 
 
+@here
 def test_quadratic_tetrahedra_keep_their_curved_edges(tmp_path):
     nodes = LINEAR.nodes.copy()
     moved = LINEAR.elements[0, 4]
@@ -53,6 +56,7 @@ def test_quadratic_tetrahedra_keep_their_curved_edges(tmp_path):
     assert set(mesh.regions) == {0, 1}
 
 
+@here
 @pytest.mark.parametrize("kind", ["tetra", "tetra10"])
 def test_elements_numbered_the_other_way_round_are_turned(kind, tmp_path):
     mirror = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
@@ -62,6 +66,7 @@ def test_elements_numbered_the_other_way_round_are_turned(kind, tmp_path):
     assert_close(volume(mesh), 2.0, 1e-12)
 
 
+@here
 def test_an_element_turned_inside_out_by_a_middle_node_is_refused(tmp_path):
     nodes = LINEAR.nodes.copy()
     nodes[LINEAR.elements[0, 4]] = nodes[LINEAR.elements[0, 3]] + 0.3
@@ -69,6 +74,7 @@ def test_an_element_turned_inside_out_by_a_middle_node_is_refused(tmp_path):
         read_mesh(written(tmp_path / "a.vtu", nodes, [("tetra10", LINEAR.elements)], name="region"), unit="m")
 
 
+@here
 def test_named_groups_of_gmsh_may_be_used(tmp_path):
     path = written(tmp_path / "a.msh", field_data={"lump": np.array([3, 3]), "tissue": np.array([7, 3])})
     mesh = read_mesh(path, {"tissue": 0, "lump": 1}, unit="m")
@@ -95,6 +101,7 @@ BAD = {
 }
 
 
+@here
 @pytest.mark.parametrize("name", BAD)
 def test_a_mesh_that_cannot_be_used_is_refused_with_its_reason(name, tmp_path):
     change, reason = BAD[name]
@@ -103,6 +110,7 @@ def test_a_mesh_that_cannot_be_used_is_refused_with_its_reason(name, tmp_path):
         read_mesh(path, {7: 0, 3: 1} if name not in ("mixed",) else None, unit="m")
 
 
+@here
 @pytest.mark.parametrize(
     ("region_map", "reason"), [({7: 0}, r"without a region: \[3\]"), ({7: 0, 3: 1, 5: 2}, r"\[5\]"), ({7: 0, 3: 2}, "gaps")]
 )
@@ -111,6 +119,7 @@ def test_every_tag_needs_its_region_and_every_region_its_tag(region_map, reason,
         read_mesh(written(tmp_path / "a.msh"), region_map, unit="m")
 
 
+@here
 def test_a_region_map_needs_tags_and_a_unit_must_be_known(tmp_path):
     path = written(tmp_path / "a.vtu", tags=())
     with pytest.raises(InputError, match="no region tag"):

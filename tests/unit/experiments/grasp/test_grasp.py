@@ -21,7 +21,7 @@ from tactsim.mechanics.surface_forces import TaxelForces
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.structured_block import structured_block
 
-pytestmark = pytest.mark.usefixtures("one_thread")
+pytestmark = pytest.mark.usefixtures("one_thread", "reader_here")
 SIZE = (40e-3, 40e-3, 20e-3)
 FEW = {"kind": "structured", "cells": (2, 2, 2)}
 C10 = 1000.0
