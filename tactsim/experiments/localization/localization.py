@@ -172,7 +172,9 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
         quantities["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
         quantities["estimated_contrast"] = Quantity(
-            first.contrast, "1", "contrast of the strongest inclusion, negative if softer"
+            first.contrast,
+            "1",
+            "contrast of the strongest inclusion with the tissue at this closing, 0 if alike, negative if softer",
         )
     if first.covariance is not None:
         deviations = np.sqrt(np.diag(first.covariance))
