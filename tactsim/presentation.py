@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html as markup
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,8 +74,8 @@ def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
     return grid
 
 
-def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
-    """Write the folder of a result and return its path.
+def save(result: Result, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
+    """Write the folder of a result, its fields only if they are asked for, and return its path.
 
     Raises
     ------
@@ -90,7 +91,8 @@ def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
         case = Case(schema="tactsim/case/1", title=result.title, experiment=result.experiment)
         origin = case.provenance()
     drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
-    return write_result(result, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
+    kept = result if fields else replace(result, frames=())
+    return write_result(kept, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
 
 
 def html(result: Result) -> str:

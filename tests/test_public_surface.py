@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
+from tactsim.results import FieldFrame
 from tactsim.shipped import shipped_cases
 
 # fmt: off
@@ -124,6 +126,16 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     with pytest.raises(StorageError, match="first"):
         result.save(tmp_path / "first")
     assert again.save(tmp_path / "first", force=True).is_dir()
+
+
+def test_a_result_is_saved_without_its_fields_if_they_are_not_wanted(result: ts.Result, tmp_path: Path) -> None:
+    points, cells = np.zeros((3, 3)), {"triangle": np.array([[0, 1, 2]])}
+    frame = FieldFrame(0.0, points, cells, {"displacement [m]": points})
+    whole = replace(result, frames=(frame,))
+    assert len(ts.load_result(whole.save(tmp_path / "whole")).frames) == 1
+    without = ts.load_result(whole.save(tmp_path / "without", fields=False))
+    assert without.frames == ()
+    assert without == result
 
 
 def test_an_experiment_without_a_file_is_kept_too(tmp_path: Path) -> None:

@@ -222,8 +222,10 @@ class Result:
         figures: dict[str, Figure] | Figure = _presentation().figures(self, name)
         return figures
 
-    def save(self, directory: str | Path, *, force: bool = False) -> Path:
+    def save(self, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
         """Writes the folder that ``tactsim run`` writes and returns its path; `tactsim.load_result` reads it.
+
+        Without ``fields`` the deformed bodies, most of what a folder holds, stay out of it; its figures are drawn with them.
 
         Raises
         ------
@@ -232,7 +234,7 @@ class Result:
         InputError
             If the result was not run from a case or an experiment.
         """
-        place: Path = _presentation().save(self, directory, force=force)
+        place: Path = _presentation().save(self, directory, force=force, fields=fields)
         return place
 
     def _repr_html_(self) -> str:
@@ -264,8 +266,8 @@ def dimensions(name: str, quantity: Quantity) -> tuple[str, ...]:
 
     They stand in the description: ``[row][column]`` or ``[ratio, force]``, and ``(x, y, z)`` for components, which come last.
     """
-    count = quantity.numbers.ndim
-    stated = [axis.strip().replace(" ", "_") for axes in _AXES.findall(quantity.description) for axis in axes.split(",")]
+    count, bracketed = quantity.numbers.ndim, re.findall(r"\[([^\[\]]+)\]", quantity.description)
+    stated = [axis.strip().replace(" ", "_") for axes in bracketed for axis in axes.split(",")]
     components = ["component"] if re.search(r"\(x, y(, z)?\)", quantity.description) else []
     by_name = ["row", "column"] if name.partition("_")[0] in ("taxel", "voltage", "read") else []
     if name.endswith("_history"):
@@ -274,10 +276,6 @@ def dimensions(name: str, quantity: Quantity) -> tuple[str, ...]:
         if named and len(named) == count:
             return tuple(named)
     return ()
-
-
-_AXES = re.compile(r"\[([^\[\]]+)\]")
-"""Axes in a description."""
 
 
 def identical(one: Any, other: Any) -> bool:
