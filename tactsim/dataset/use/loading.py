@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,6 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
-from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     import xarray
@@ -29,7 +27,7 @@ def load(
     variables: Iterable[str] | None = None,
     verified: bool = False,
 ) -> xarray.Dataset:
-    """The samples of a data set, opened lazily; a warning if a split has none.
+    """The samples of a data set, opened lazily.
 
     Parameters
     ----------
@@ -57,11 +55,6 @@ def load(
     if unknown := [name for name in keep if name not in names]:
         raise UnknownName("variable", unknown[0], names)
     chosen = chosen_samples(whole, split, failed=failed)
-    if split is not None and not chosen.size:
-        which = split if isinstance(split, str) else ", ".join(map(str, split))
-        warnings.warn(
-            f"{one_line(store)}: no sample of the split {which} is done; the card says how many there are", stacklevel=2
-        )
     refuse_holes(place, dict.fromkeys((*(names if verified else keep), "split")), chosen)
     if verified:
         refuse_changed(place, chosen)
