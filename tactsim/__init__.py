@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from tactsim.experiments.grasp.setup import Block, Embedded
     from tactsim.experiments.indentation.indentation import Indentation
     from tactsim.experiments.indentation.timed_indentation import TimedIndentation
+    from tactsim.identification.relaxation_curve import fit_relaxation
+    from tactsim.identification.uniaxial import fit_uniaxial
+    from tactsim.identification.uniaxial_data import read_uniaxial_curve
     from tactsim.interfaces import Estimator, Experiment, Inclusion, Material, RigidBody, SensorFilm
     from tactsim.interfaces.points import kinds
     from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
     from tactsim.mesh.inclusions.sphere import Sphere
     from tactsim.mesh.inclusions.tube import Tube
     from tactsim.presentation import load_result
+    from tactsim.relaxation import Relaxation
     from tactsim.results.result import Quantity, Result
 
 __all__ = [
@@ -65,6 +69,7 @@ __all__ = [
     "MooneyRivlin3",
     "NeoHookean",
     "Quantity",
+    "Relaxation",
     "Result",
     "RigidBody",
     "SensorFilm",
@@ -76,6 +81,8 @@ __all__ = [
     "Tube",
     "choice",
     "close",
+    "fit_relaxation",
+    "fit_uniaxial",
     "kinds",
     "load_case",
     "load_data",
@@ -83,6 +90,7 @@ __all__ = [
     "log_uniform",
     "material",
     "normal",
+    "read_uniaxial_curve",
     "save_case",
     "sweep",
     "uniform",
@@ -107,6 +115,7 @@ _PLACES = {
     "NeoHookean": "tactsim.materials.neo_hookean:NeoHookean",
     "Quantity": "tactsim.results.result:Quantity",
     "Result": "tactsim.results.result:Result",
+    "Relaxation": "tactsim.relaxation:Relaxation",
     "RigidBody": "tactsim.interfaces:RigidBody",
     "SensorFilm": "tactsim.interfaces:SensorFilm",
     "Specimen": "tactsim.mechanics.specimen:Specimen",
@@ -117,6 +126,8 @@ _PLACES = {
     "Tube": "tactsim.mesh.inclusions.tube:Tube",
     "choice": "tactsim.interfaces.variation:choice",
     "close": "tactsim.mechanics.loading:close",
+    "fit_relaxation": "tactsim.identification.relaxation_curve:fit_relaxation",
+    "fit_uniaxial": "tactsim.identification.uniaxial:fit_uniaxial",
     "kinds": "tactsim.interfaces.points:kinds",
     "load_case": "tactsim.case.loading:load_case",
     "load_data": "tactsim.dataset.use.loading:load",
@@ -124,6 +135,7 @@ _PLACES = {
     "log_uniform": "tactsim.interfaces.variation:log_uniform",
     "material": "tactsim.materials.library:material",
     "normal": "tactsim.interfaces.variation:normal",
+    "read_uniaxial_curve": "tactsim.identification.uniaxial_data:read_uniaxial_curve",
     "save_case": "tactsim.case.writing:save_case",
     "sweep": "tactsim.dataset.running.whole:sweep",
     "uniform": "tactsim.interfaces.variation:uniform",

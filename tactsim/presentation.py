@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import base64
 import html as markup
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tactsim.case.model import Case
-from tactsim.errors import InputError
+from tactsim.errors import InputError, UnknownName
 from tactsim.outside.text import one_line
 from tactsim.plotting.canvas import encoded
 from tactsim.plotting.result_figures import figures_for
@@ -36,9 +37,21 @@ def load_result(directory: str | Path) -> Result:
     return read_result(directory).complete
 
 
-def figures(result: Result) -> dict[str, Figure]:
-    """Name -> figure of every figure of a result, the main one first."""
-    return {Path(name).stem: draw.figure() for name, draw in figures_for(result).items()}  # type: ignore[attr-defined]
+def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figure:
+    """One figure of a result by its name, or name -> figure of all of them, the main one first.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such figure, with the names of those there are.
+    """
+    drawings: dict[str, Any] = {Path(file).stem: draw for file, draw in figures_for(result).items()}
+    if name is None:
+        return {stem: draw.figure() for stem, draw in drawings.items()}
+    if name not in drawings:
+        raise UnknownName("figure", name, drawings)
+    figure: Figure = drawings[name].figure()
+    return figure
 
 
 def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
@@ -61,8 +74,8 @@ def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
     return grid
 
 
-def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
-    """Write the folder of a result and return its path.
+def save(result: Result, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
+    """Write the folder of a result, its fields only if they are asked for, and return its path.
 
     Raises
     ------
@@ -77,8 +90,9 @@ def save(result: Result, directory: str | Path, *, force: bool = False) -> Path:
             raise InputError("the result does not know the case that it comes from; run a case or an experiment")
         case = Case(schema="tactsim/case/1", title=result.title, experiment=result.experiment)
         origin = case.provenance()
-    drawn = {f"{name}.png": encoded(figure) for name, figure in figures(result).items()}
-    return write_result(result, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
+    drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
+    kept = result if fields else replace(result, frames=())
+    return write_result(kept, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
 
 
 def html(result: Result) -> str:

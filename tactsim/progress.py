@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,6 +15,9 @@ if TYPE_CHECKING:
 FORM = "{desc} {percentage:3.0f}%|{bar}| {postfix} [{elapsed}<{remaining}]"
 OPEN_FORM = "{desc} {n_fmt} steps {postfix} [{elapsed}]"
 """Where the end is not known beforehand."""
+ELAPSED_FORM, TICK = "{desc} [{elapsed}]", 0.5
+"""Of what cannot say how far it is, and the seconds after which its time is written anew."""
+_quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 
 
 @contextmanager
@@ -55,6 +60,40 @@ def count_bar(name: str, total: int) -> Iterator[Callable[[int], None]]:
             bar.update(done - bar.n)
 
         yield advance
+
+
+@contextmanager
+def quiet(silent: bool = True) -> Iterator[None]:
+    """A block in which nothing shows that it takes time, such as a run that reports to nobody."""
+    token = _quiet.set(silent)
+    try:
+        yield
+    finally:
+        _quiet.reset(token)
+
+
+@contextmanager
+def elapsed_time(name: str) -> Iterator[None]:
+    """A block that cannot say how far it is: its name with the time that it has taken; nothing in a quiet one."""
+    if _quiet.get() or not is_watched():
+        yield
+        return
+    from tqdm import tqdm
+
+    ended = threading.Event()
+    with tqdm(desc=name, bar_format=ELAPSED_FORM, leave=False) as bar:
+
+        def tick() -> None:
+            while not ended.wait(TICK):
+                bar.refresh()
+
+        clock = threading.Thread(target=tick, daemon=True)
+        clock.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            clock.join()
 
 
 def is_watched() -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +14,16 @@ import pytest
 import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
+from tactsim.results import FieldFrame
 from tactsim.shipped import shipped_cases
 
 # fmt: off
 NAMES = [
     "Annulus", "Block", "Case", "ClosedForm", "Coulomb", "Ellipsoid", "Embedded", "Estimator", "Experiment", "Grasp",
-    "Inclusion", "Indentation", "InputError", "Material", "MooneyRivlin3", "NeoHookean", "Quantity", "Result",
+    "Inclusion", "Indentation", "InputError", "Material", "MooneyRivlin3", "NeoHookean", "Quantity", "Relaxation", "Result",
     "RigidBody", "SensorFilm", "Specimen", "Sphere", "TactsimError", "TaxelLayout", "TimedIndentation", "Tube",
-    "choice", "close", "kinds", "load_case", "load_data", "load_result", "log_uniform", "material", "normal",
-    "save_case", "sweep", "uniform",
+    "choice", "close", "fit_relaxation", "fit_uniaxial", "kinds", "load_case", "load_data", "load_result", "log_uniform",
+    "material", "normal", "read_uniaxial_curve", "save_case", "sweep", "uniform",
 ]
 # fmt: on
 HEAVY = ("numpy", "scipy", "pydantic", "pint", "numba", "skfem", "matplotlib", "xarray", "pyvista", "zarr", "ruamel", "meshio")
@@ -88,6 +90,25 @@ def test_a_quantity_is_one_type_for_numbers_and_arrays(result: ts.Result) -> Non
     assert readings["taxel_force_upper"].array.attrs["units"] == "N"
 
 
+@pytest.mark.parametrize(
+    ("name", "shape", "words", "axes"),
+    [
+        ("jaw_force_upper", (3,), "force (x, y, z) of the tissue", ("component",)),
+        ("taxel_shear_upper", (4, 5, 2), "force (x, y) along the face; [row][column], row 1", ("row", "column", "component")),
+        ("taxel_force_upper_history", (2, 4, 5), "forces", ("time", "row", "column")),
+        ("rise", (2, 3, 4), "rise of the tissue [ratio, force, time]", ("ratio", "force", "time")),
+        ("confusion", (2, 2), "estimates by [true class][estimated class]: none", ("true_class", "estimated_class")),
+        ("noise", (3,), "of each sensor", ("dim_0",)),
+    ],
+)
+def test_axes_of_an_array_have_the_names_that_its_description_gives(
+    name: str, shape, words: str, axes, result: ts.Result
+) -> None:
+    quantities = {name: ts.Quantity(np.zeros(shape).tolist(), "1", words)}
+    array = ts.Result(kind="grasp", status=result.status, reason="", quantities=quantities)[name].array
+    assert array.dims == axes
+
+
 def test_the_history_is_a_dataset_with_units(result: ts.Result) -> None:
     history = result.history
     assert history["force"].attrs["units"] == "N"
@@ -107,6 +128,16 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     assert again.save(tmp_path / "first", force=True).is_dir()
 
 
+def test_a_result_is_saved_without_its_fields_if_they_are_not_wanted(result: ts.Result, tmp_path: Path) -> None:
+    points, cells = np.zeros((3, 3)), {"triangle": np.array([[0, 1, 2]])}
+    frame = FieldFrame(0.0, points, cells, {"displacement [m]": points})
+    whole = replace(result, frames=(frame,))
+    assert len(ts.load_result(whole.save(tmp_path / "whole")).frames) == 1
+    without = ts.load_result(whole.save(tmp_path / "without", fields=False))
+    assert without.frames == ()
+    assert without == result
+
+
 def test_an_experiment_without_a_file_is_kept_too(tmp_path: Path) -> None:
     result = ts.ClosedForm.example().run()
     again = ts.load_result(result.save(tmp_path / "second"))
@@ -122,6 +153,9 @@ def test_a_result_shows_itself(result: ts.Result) -> None:
     assert "largest_displacement" in html
     assert "data:image/png;base64," in html
     assert repr(result).startswith("<Result of closed_form: converged")
+    assert result.plot("closed_form").get_size_inches()[0] > 3
+    with pytest.raises(UnknownName, match=r"unknown figure 'closed_from' \(did you mean 'closed_form'\?\); known: closed_form"):
+        result.plot("closed_from")
     with pytest.raises(ts.InputError, match="holds no fields"):
         result.fields()
 
@@ -187,6 +221,7 @@ def test_kinds_are_listed_by_the_name_of_their_point() -> None:
     assert "annulus" in ts.kinds("body")
     with pytest.raises(UnknownName, match="known: body, contact"):
         ts.kinds("bodies")
+    assert ts.kinds()["contact"] == ts.kinds("contact")
 
 
 def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:

@@ -176,7 +176,12 @@ def large_classes() -> list[str]:
 
 def undocumented() -> list[str]:
     silent = [path.relative_to(ROOT).as_posix() for path in modules() if ast.get_docstring(tree(path)) is None]
-    return silent + [f.place for f in definitions() if f.public and ast.get_docstring(f.node) is None]
+    return silent + [f.place for f in definitions() if f.public and not overloaded(f.node) and ast.get_docstring(f.node) is None]
+
+
+def overloaded(node: ast.AST) -> bool:
+    """Whether it is but a signature of the function that follows."""
+    return any(isinstance(mark, ast.Name) and mark.id == "overload" for mark in getattr(node, "decorator_list", []))
 
 
 def silent_about_errors() -> list[str]:

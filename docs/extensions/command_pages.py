@@ -32,14 +32,24 @@ def command_pages() -> dict[str, str]:
 
 def _command_page(name: str, parser: argparse.ArgumentParser, examples: str) -> str:
     usage = parser.format_usage().removeprefix("usage: ").strip()
-    positional = [action for action in parser._actions if not action.option_strings]
-    options = [action for action in parser._actions if action.option_strings]
-    lines = [f"# tactsim {name}", "", *_prose(parser.description or ""), "```text", usage, "```", ""]
-    for title, actions in (("Arguments", positional), ("Options", options)):
-        if actions:
-            lines += [f"## {title}", "", *table(("name", "meaning"), [_row(action, parser) for action in actions])]
+    lines = [f"# tactsim {name}", "", *_prose(parser.description or ""), "```text", usage, "```", "", *_options(parser, "##")]
+    for action in parser._actions:
+        for part, inner in (action.choices or {}).items() if isinstance(action, argparse._SubParsersAction) else ():
+            lines += [f"## {part}", "", *_prose(inner.description or ""), *_options(inner, "###")]
     lines += ["## Examples", "", "```text", *(line.strip() for line in examples.strip().splitlines()[1:]), "```"]
     return page(lines)
+
+
+def _options(parser: argparse.ArgumentParser, level: str) -> list[str]:
+    """Tables of the arguments and of the options of a parser, without actions that have parsers of their own."""
+    own = [action for action in parser._actions if not isinstance(action, argparse._SubParsersAction)]
+    positional = [action for action in own if not action.option_strings]
+    options = [action for action in own if action.option_strings]
+    lines = []
+    for title, actions in (("Arguments", positional), ("Options", options)):
+        if actions:
+            lines += [f"{level} {title}", "", *table(("name", "meaning"), [_row(action, parser) for action in actions])]
+    return lines
 
 
 def _prose(text: str) -> list[str]:

@@ -17,7 +17,7 @@ KINDS = {
     "published": ("Published numbers", "Numbers printed by others, or computed by another program."),
     "invariance": (
         "Identities",
-        "What must hold whatever the solution is: balance, symmetry, round-off between two forms of one formula.",
+        "What must hold whatever the solution is: balance, symmetry, and the same from two formulas, models, meshes or programs.",
     ),
     "convergence": (
         "Orders of convergence",

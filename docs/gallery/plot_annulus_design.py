@@ -18,7 +18,7 @@ print(result["point_force_to_touch"].to("N").value, "N to touch at the design po
 # %%
 # Below the black line the tissue touches with the recommended 2 N. The red star is the design of the thesis: with 1 N it is not
 # touched. Hatched designs need a displacement too large for the small-displacement theory; finite elements have to check them.
-result.plot()["annulus_design"]
+result.plot("annulus_design")
 
 # %%
 # The deepest recess that is still touched with 2 N after 0.5 s, over the ratio of the radii:

@@ -22,4 +22,4 @@ print("noise    ", f"{result['noise'].to('mV'):.1f}")
 
 # %%
 # Above the readings and the line, below what it reads wrong. The largest errors are the linearity that a data sheet quotes.
-result.plot()["calibration"]
+result.plot("calibration")

@@ -19,7 +19,7 @@ print(result["largest_displacement"].to("mm"), "at most")
 # %%
 # Force, displacement and the rise of the tissue on the axis of the hole. Where the force pulls, a real contact would open, and
 # the closed form, which stays bonded, no longer holds; these times are shaded.
-result.plot()["closed_form"]
+result.plot("closed_form")
 
 # %%
 # How much of the rise under the hole is left when the hole is narrow? An override changes one value of the case.

@@ -29,4 +29,4 @@ print(result.reason)
 
 # %%
 # Rows are the truth, columns what the estimator said.
-result.plot()["confusion"]
+result.plot("confusion")

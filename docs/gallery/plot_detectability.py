@@ -31,4 +31,4 @@ print(result.reason)
 # %%
 # What one jaw loses with depth the other gains, so that the smallest radius hardly depends on the depth. A lump that is little
 # stiffer than the tissue has to be far larger than a hard one. In the grey corner a ball of that radius would reach the face.
-result.plot()["detectability"]
+result.plot("detectability")

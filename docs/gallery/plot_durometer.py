@@ -27,4 +27,4 @@ result
 # %%
 # The reading is where the force of the rod meets the force of the spring. The curve of a softer rubber would meet it further
 # down.
-result.plot()["durometer"]
+result.plot("durometer")

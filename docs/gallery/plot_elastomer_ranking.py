@@ -29,4 +29,4 @@ print(result.reason)
 # %%
 # Durometer, hand and sensor give one order. The predicted readings keep it for the harder ones; the softest are predicted off the
 # scale, and share a rank.
-result.plot()["elastomer_ranking"]
+result.plot("elastomer_ranking")

@@ -36,7 +36,7 @@ for name in ("threshold_force", "threshold_pressure", "threshold_displacement"):
 
 # %%
 # Left the deformed section with the pressure in the tissue, right the force and the rise of the tissue over the displacement.
-result.plot()["indentation"]
+result.plot("indentation")
 
 # %%
 # The history is an xarray data set with units, so that your own figure is a few lines. Force over rise answers a design

@@ -25,7 +25,7 @@ result
 
 # %%
 # The side that leans into the tissue carries most of the force.
-result.plot()["indentation_3d"]
+result.plot("indentation_3d")
 
 # %%
 # The deformed tetrahedra with their fields are a pyvista mesh, for a section or a measurement of your own.

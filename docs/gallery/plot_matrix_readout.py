@@ -32,7 +32,7 @@ result = readout.run()
 
 # %%
 # Voltages of all eighteen sensors while the jaws close:
-result.plot()["taxel_voltages"]
+result.plot("taxel_voltages")
 
 # %%
 # And the forces that a calibrated line makes of the last voltages, against the forces that acted. The line reads too little at

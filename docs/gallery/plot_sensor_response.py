@@ -17,7 +17,7 @@ print("rms error of the line:", f"{result['rms_error'].to('mN'):.0f}")
 
 # %%
 # The line reads too much, and the low pass makes it late. The inverse of the film follows.
-result.plot()["sensor_response"]
+result.plot("sensor_response")
 
 # %%
 # Reading over force shows it plainly: the line makes a loop, for the film remembers what came before.

@@ -76,7 +76,7 @@ if not folder.exists():
     indentation.run().save(folder)
 result = ts.load_result(folder)
 print(result.reason)
-result.plot()["indentation"]
+result.plot("indentation")
 
 # %%
 # Choose the recess

@@ -44,7 +44,7 @@ print(result)
 
 # %%
 # The upper curve is prescribed, the others follow. In the hold the sensor creeps; in the oscillation it lags behind the force.
-result.plot()["timed_indentation"]
+result.plot("timed_indentation")
 
 # %%
 # Drawn over each other, force and displacement of the oscillation make a loop. Its area is the work that the tissue turns to heat

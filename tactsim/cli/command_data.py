@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
+from tactsim.cli.data_actions import CONFUSION, RANKING
+from tactsim.cli.data_actions import EXAMPLES as EXAMPLES
+from tactsim.cli.data_actions import add_arguments as add_arguments
 from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimError
 from tactsim.outside.text import one_line
 
@@ -20,51 +23,12 @@ if TYPE_CHECKING:
 NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
 DESCRIPTION = """\
-check reads every sample and finds damaged content (checksums), missing, doubled, constant and
-not finite samples, specimens that are in two splits, arrays with other names, units, types,
-shapes or words than the sweep writes, and files of others; the exit code is 4 if it finds one.
-info prints counts, splits and variables with their units. export writes the samples that are
-done as one HDF5 file, or as a folder with an index (Parquet) and shards (npz).
-
-rank applies every estimator to every grasp that is done and judges it by the truth: errors,
-misses, false alarms, coverage; report.json, report.md and figures go to --out. The reference is
-the tissue without a lump, closed in several steps or in several results. train fits the
-learned estimator (kind: learned) to a part of a store (default: train).
-
-confusion counts how often nothing, one lump, two lumps, an artery and two arteries are taken for
-which, in grasps that all close as far as the reference; noise is added to the solved forces.
-"""
-EXAMPLES = """\
-examples:
-  tactsim data check lumps.zarr
-  tactsim data info lumps.zarr
-  tactsim data export lumps.zarr --to lumps.h5
-  tactsim data export lumps.zarr --to lumps_shards --split train
-  tactsim data train lumps.zarr --reference results/plain --out lumps_estimator.npz
-  tactsim data rank judged.zarr --reference results/plain --learned lumps_estimator.npz --out ranking
-  tactsim data confusion classes.zarr --reference results/plain --noise '0.63 mN' --out confusion
+What is done with a data set that tactsim sweep wrote: tactsim data ACTION --help says what an
+action does and what it takes.
 """
 MOST_FINDINGS, MOST_NOTES = 100, 10
 """Lines that are printed; the rest of the findings are counted."""
 REPORT = ("report.json", "report.md")
-RANKING, CONFUSION = "ranking", "confusion"
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options."""
-    parser.add_argument("action", choices=("check", "info", "export", "rank", "train", CONFUSION), help="what to do")
-    parser.add_argument("store", metavar="STORE", type=Path, help="folder that tactsim sweep wrote")
-    parser.add_argument("--to", metavar="PLACE", type=Path, help="export: file ending in .h5, or folder for Parquet and npz")
-    parser.add_argument("--split", metavar="NAME", action="append", help="only this part; may be repeated")
-    ranking = parser.add_argument_group("rank, train and confusion")
-    ranking.add_argument("--reference", metavar="RESULT", action="append", default=[], help="plain grasp; may be repeated")
-    ranking.add_argument(
-        "--out", metavar="PLACE", type=Path, help="folder (default: the name of the action); train: file ending in .npz"
-    )
-    ranking.add_argument("--readings", choices=("read_force", "taxel_force"), help="default: read_force if the store has it")
-    ranking.add_argument("--noise", metavar="FORCE", help="added, such as '2 mN' (default: rounding to 0.1 N, read_force: none)")
-    ranking.add_argument("--learned", metavar="FILE", type=Path, help="rank: also the estimator that train wrote")
-    ranking.add_argument("--seed", metavar="N", type=int, default=1, help="of added noise and of training (default 1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -143,8 +107,8 @@ def _confusion(arguments: argparse.Namespace) -> int:
     from tactsim.interfaces.readings import ROUNDING_NOISE
     from tactsim.localization.estimators.any_estimator import offered_estimators
 
-    if len(arguments.reference) > 1 or arguments.readings == "read_force" or arguments.learned is not None:
-        raise InputError("confusion: takes one --reference, the forces of the solution, and no --learned")
+    if len(arguments.reference) > 1:
+        raise InputError("confusion: takes one --reference")
     folder = arguments.out or Path(CONFUSION)
     _refuse_place(folder)
     classifying = [one for one in offered_estimators().values() if one.gives_classes]

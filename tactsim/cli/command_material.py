@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from tactsim.interfaces import Material
 
 NAME = "material"
-SUMMARY = "constants, stability and curves of a material; fits to a measured curve"
+SUMMARY = "constants, stability and curves of a material; fits to measured curves"
 DESCRIPTION = """\
 Without an argument lists the materials that ship with tactsim. With a name, or a case file,
 prints the constants, the small-strain moduli and the range of stretch in which each material
 is stable. With --fit reads a uniaxial curve (CSV with a header such as
 "stretch,nominal_stress_kPa"), fits every form of the energy, and prints the lines to put into
-a case file. --save draws the curves.
+a case file. --save draws the curves. With --relaxation reads what relaxes at a held
+deformation (CSV with a header such as "time [s], stress [kPa]") and prints its Prony series.
 """
 EXAMPLES = """\
 examples:
@@ -28,6 +29,7 @@ examples:
   tactsim material icf_stable --save icf.png
   tactsim material cases/annulus_icf.yaml
   tactsim material --fit my_rubber.csv --form stable --save fit.png
+  tactsim material --relaxation held.csv --rise "0.2 s"
 """
 
 
@@ -36,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("material", metavar="NAME|CASE", nargs="?", help="name of a shipped material, or a case file")
     what.add_argument("--fit", metavar="CURVE.csv", type=Path, help="fit a measured uniaxial curve")
+    what.add_argument("--relaxation", metavar="CURVE.csv", type=Path, help="fit a Prony series to a measured relaxation")
+    parser.add_argument("--rise", metavar="TIME", help="with --relaxation: how long the deformation rose; a step without it")
     parser.add_argument("--form", metavar="FORM", help="with --fit: report this form of the energy only")
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the curves")
 
@@ -49,6 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
     _check_image(arguments.save)
+    if arguments.rise is not None and arguments.relaxation is None:
+        raise InputError("--rise goes with --relaxation")
+    if arguments.relaxation is not None and (arguments.form, arguments.save) != (None, None):
+        raise InputError("--form and --save go with --fit; --relaxation prints its Prony series")
+    if arguments.relaxation is not None:
+        return _relaxation(arguments)
     if arguments.fit is not None:
         return _fit(arguments)
     if arguments.form is not None:
@@ -80,6 +90,17 @@ def _report(arguments: argparse.Namespace) -> int:
         for name, material in materials.items():
             place = arguments.save if len(materials) == 1 else _numbered(arguments.save, name)
             _save(png(material_figure(material, name)), place)
+    return 0
+
+
+def _relaxation(arguments: argparse.Namespace) -> int:
+    from tactsim.identification.relaxation_curve import fit_relaxation
+    from tactsim.units import parse_quantity
+
+    rise = 0.0 if arguments.rise is None else parse_quantity(arguments.rise, "s")
+    fit = fit_relaxation(arguments.relaxation, rise=rise)
+    errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
+    console.out(f"{len(fit.relaxation.times)} relaxation times: {errors}\n  {fit.case_line}")
     return 0
 
 

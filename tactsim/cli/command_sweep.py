@@ -141,7 +141,8 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
     if not arguments.quiet:
         for line in going.tally.summary():
             console.out(line)
-        for line in empty_split_lines(empty_splits(split_counts(going.store), going.sweep.settings.splits)):
+        splits = going.sweep.settings.splits
+        for line in empty_split_lines(empty_splits(split_counts(going.store), splits), splits):
             console.note(line)
         left = len(going.store.pending())
         if left:

@@ -19,18 +19,20 @@ POINTS = {
 """Name -> base class, of those whose kinds a case file can name."""
 
 
-def kinds(point: str) -> dict[str, Any]:
+def kinds(point: str | None = None) -> dict[str, Any]:
     """Kind -> class of everything known for an extension point, such as ``kinds("experiment")["film_test"]``.
 
     Parameters
     ----------
-    point : experiment, material, body, contact, inclusion, film or estimator
+    point : experiment, material, body, contact, inclusion, film or estimator; without one, point -> kind -> class of all
 
     Raises
     ------
     UnknownName
         If there is no such point.
     """
+    if point is None:
+        return {name: registry.kinds(base) for name, base in POINTS.items()}
     if point not in POINTS:
         raise UnknownName("extension point", point, POINTS)
     return registry.kinds(POINTS[point])

@@ -18,7 +18,7 @@ from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation
 from tactsim.kind import CaseKind
-from tactsim.progress import step_bar
+from tactsim.progress import quiet, step_bar
 from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
 from tactsim.results.scene import Scene
 from tactsim.units import parse_quantity
@@ -134,7 +134,8 @@ class Runnable(CaseKind):
         """
         seconds = parse_quantity(time_limit, "s") if isinstance(time_limit, str) else time_limit
         if progress != "bar":
-            return run_experiment(self, progress, seconds)
+            with quiet(progress is None):
+                return run_experiment(self, progress, seconds)
         with step_bar(self.kind.replace("_", " "), self.extent) as shown:
             return run_experiment(self, shown, seconds)
 

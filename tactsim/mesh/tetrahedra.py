@@ -34,6 +34,7 @@ from tactsim.mesh.sizing import at_jaw_edges, background
 from tactsim.mesh.solid import outward
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.processes import Ended, run_child
+from tactsim.progress import elapsed_time
 
 ENVELOPE = 0.03
 """Distance that the mesher's surface may keep from the given one, in element sizes; projection then removes it."""
@@ -147,7 +148,8 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
         asked, answer = Path(folder) / "request.npz", Path(folder) / "answer.npz"
         np.savez(asked, **request)  # type: ignore[arg-type]
         allowed = max(0.0, min(time_limit, seconds_left()))
-        done = run_child(MODULE, [str(asked), str(answer)], time_limit=allowed)
+        with elapsed_time("meshing"):
+            done = run_child(MODULE, [str(asked), str(answer)], time_limit=allowed)
         if done.out_of_time:
             check_time()
         if done.code or not answer.exists():

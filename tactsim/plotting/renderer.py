@@ -32,7 +32,7 @@ from tactsim.errors import TactsimError
 from tactsim.outside.arrays import read_arrays
 
 AMBIENT = 0.25
-CREASE_ANGLE, CREASE_COLOUR, CREASE_WIDTH = 30.0, "#30363d", 2.0
+CREASE_ANGLE, CREASE_COLOUR, CREASE_WIDTH = 60.0, "#30363d", 2.0
 FINEST = 1 / 16
 """Longest edge of a translucent triangle over the size of the scene: small ones are sorted well by their middles."""
 DISTANCE = 20

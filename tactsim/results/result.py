@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import numpy as np
 
@@ -162,7 +163,7 @@ class Result:
         if name not in self.quantities:
             raise UnknownName("quantity", str(name), self.quantities)
         quantity = self.quantities[name]
-        return replace(quantity, dims=dimensions(name, quantity.numbers.ndim))
+        return replace(quantity, dims=dimensions(name, quantity))
 
     def __contains__(self, name: object) -> bool:
         return name in self.quantities
@@ -204,13 +205,27 @@ class Result:
         mesh: pyvista.UnstructuredGrid = _presentation().field_mesh(self)
         return mesh
 
-    def plot(self) -> dict[str, Figure]:
-        """Name -> `matplotlib.figure.Figure` of every figure of the run, the main one first."""
-        figures: dict[str, Figure] = _presentation().figures(self)
+    @overload
+    def plot(self) -> dict[str, Figure]: ...
+
+    @overload
+    def plot(self, name: str) -> Figure: ...
+
+    def plot(self, name: str | None = None) -> dict[str, Figure] | Figure:
+        """One figure of the run by its name, or name -> `matplotlib.figure.Figure` of all of them, the main one first.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such figure, with the names of those there are.
+        """
+        figures: dict[str, Figure] | Figure = _presentation().figures(self, name)
         return figures
 
-    def save(self, directory: str | Path, *, force: bool = False) -> Path:
+    def save(self, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
         """Writes the folder that ``tactsim run`` writes and returns its path; `tactsim.load_result` reads it.
+
+        Without ``fields`` the deformed bodies, most of what a folder holds, stay out of it; its figures are drawn with them.
 
         Raises
         ------
@@ -219,7 +234,7 @@ class Result:
         InputError
             If the result was not run from a case or an experiment.
         """
-        place: Path = _presentation().save(self, directory, force=force)
+        place: Path = _presentation().save(self, directory, force=force, fields=fields)
         return place
 
     def _repr_html_(self) -> str:
@@ -246,12 +261,21 @@ class Result:
         raise InputError(f"the result of {shown(self.kind)} holds no {model.__name__}")
 
 
-def dimensions(name: str, count: int) -> tuple[str, ...]:
-    """Names of the axes of a quantity's array, empty where only their number is known."""
-    over_time = ("time",) if name.endswith("_history") else ()
-    known = {"taxel": ("row", "column"), "voltage": ("row", "column"), "read": ("row", "column")}
-    named = (*over_time, *known.get(name.partition("_")[0], ()))
-    return named if len(named) == count else ()
+def dimensions(name: str, quantity: Quantity) -> tuple[str, ...]:
+    """Names of the axes of a quantity's array, empty where only their number is known.
+
+    They stand in the description: ``[row][column]`` or ``[ratio, force]``, and ``(x, y, z)`` for components, which come last.
+    """
+    count, bracketed = quantity.numbers.ndim, re.findall(r"\[([^\[\]]+)\]", quantity.description)
+    stated = [axis.strip().replace(" ", "_") for axes in bracketed for axis in axes.split(",")]
+    components = ["component"] if re.search(r"\(x, y(, z)?\)", quantity.description) else []
+    by_name = ["row", "column"] if name.partition("_")[0] in ("taxel", "voltage", "read") else []
+    if name.endswith("_history"):
+        by_name.insert(0, "time")
+    for named in (stated, [*stated, *components], by_name):
+        if named and len(named) == count:
+            return tuple(named)
+    return ()
 
 
 def identical(one: Any, other: Any) -> bool:

@@ -32,6 +32,7 @@ THIN = {
 SIZES = {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}
 TILT = 0.02
 """In rad: the outer edge stands 0.06 mm lower than the middle."""
+COARSE = "solid, elements of 0.5 mm at the fillet, two sectors"
 DEMANDED = 0.02
 """Part of the axisymmetric force and rise by which the shipped case may differ."""
 
@@ -77,18 +78,23 @@ def quarter():
     return posed().run()
 
 
-def test_a_quarter_presses_like_the_axisymmetric_model(quarter):
+def test_a_quarter_presses_like_the_axisymmetric_model(quarter, verification_record):
     section = Indentation(**(THIN | {"mesh": MeshSettings(**SIZES)})).run()
     assert quarter.status == section.status == "converged"
     assert quarter.scene.symmetry == "quarter"
     apart = differences(quarter, section)[-1]
     check_differences(apart)  # on elements as long as the fillet is wide, touched at other points than the section's
+    known = {"reference": "axisymmetric model", "kind": "invariance", "mesh": COARSE, "tolerance": DEMANDED}
+    for name, difference in zip(("force", "rise"), apart, strict=True):
+        verification_record(f"annulus in space, {name}", 1 + difference, 1.0, **known)
     assert_kills(check_differences, one_quarter=(with_force(apart, 1 / 4),), half=(with_force(apart, 1 / 2),))
 
 
-def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
+def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter, verification_record):
     values = {name: quantity.value for name, quantity in quarter.quantities.items()}
     assert values["reaction_force"] == pytest.approx(values["base_force"], rel=1e-8)
+    known = {"reference": "balance of forces", "kind": "invariance", "mesh": COARSE, "tolerance": 1e-8}
+    verification_record("annulus in space, force on the base", values["base_force"], values["reaction_force"], **known)
     np.testing.assert_array_equal(values["force_vector"][:2], 0.0)
     np.testing.assert_array_equal(values["moment_vector"], 0.0)
     body = THIN["body"]
@@ -97,21 +103,27 @@ def test_forces_balance_and_the_upright_annulus_feels_no_moment(quarter):
         assert np.mean(values["pressure_around"]) * area == pytest.approx(values["reaction_force"], rel=1e-10)
 
     check(body.area)
+    around = np.mean(values["pressure_around"]) * body.area
+    known |= {"reference": "its own force", "tolerance": 1e-10}
+    verification_record("annulus in space, pressure around it", around, values["reaction_force"], **known)
     assert_kills(check, without_a_hole=(np.pi * body.outer_radius**2,), one_quarter=(body.area / 4,))
 
 
 @pytest.mark.slow
-def test_half_a_body_is_two_quarters(quarter):
+def test_half_a_body_is_two_quarters(quarter, verification_record):
     half = posed(Half).run()
     assert half.scene.solver.unknowns > 1.7 * quarter.scene.solver.unknowns
     assert len(half.steps) == len(quarter.steps)
     np.testing.assert_allclose(histories(half), histories(quarter), rtol=1e-6)  # Newton's tolerance, and steps that add it up
+    known = {"reference": "a quarter of it", "kind": "invariance", "mesh": COARSE, "tolerance": 1e-6}
+    ratios = histories(half) / histories(quarter)
+    verification_record("half of an annulus in space, force and rise", ratios, np.ones_like(ratios), **known)
     np.testing.assert_allclose(half.quantities["moment_vector"].value, 0.0, atol=1e-9 * half.quantities["reaction_force"].value)
     with pytest.raises(AssertionError):
         np.testing.assert_allclose(histories(half)[:, 1] / 2, histories(quarter)[:, 1], rtol=3e-6)
 
 
-def test_a_leaning_annulus_is_held_in_balance_by_the_base():
+def test_a_leaning_annulus_is_held_in_balance_by_the_base(verification_record):
     coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh and at any penetration
     experiment = posed(tilt_y=TILT, displacement=0.04e-3, penetration_tolerance=2e-6, mesh=coarse)
     model = experiment.model()
@@ -128,12 +140,15 @@ def test_a_leaning_annulus_is_held_in_balance_by_the_base():
         np.testing.assert_allclose(moment, expected, atol=1e-8 * abs(expected[1]))  # Newton's tolerance is 1e-10
 
     check(moment)
+    mesh = "solid, half, elements of 0.6 mm"
+    known = {"reference": "moment of the forces on the base", "kind": "invariance", "mesh": mesh, "tolerance": 1e-8}
+    verification_record("leaning annulus, moment", moment, expected, **known)
     assert_kills(check, sign=(-moment,), one_half=(moment / 2,))
     np.testing.assert_allclose(model.base_force(state.unknowns), force, atol=1e-8 * force[2])
 
 
 @pytest.mark.slow
-def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
+def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle(verification_record):
     half, whole = (posed(displacement=0.04e-3, **{axis: TILT}).run() for axis in ("tilt_y", "tilt_x"))
     assert (half.scene.symmetry, whole.scene.symmetry) == ("half", "whole")
     for name in ("force_vector", "moment_vector"):
@@ -144,12 +159,14 @@ def test_leaning_about_x_is_leaning_about_y_turned_by_a_right_angle():
             np.testing.assert_allclose(whole.quantities[name].value, turned, atol=1e-6 * size)  # as for the half and quarter
 
         check([y, -x, z])
+        known = {"reference": "the same about y, turned", "kind": "invariance", "mesh": COARSE, "tolerance": 1e-6, "scale": size}
+        verification_record(f"annulus leaning about x, {name}", whole.quantities[name].value, [y, -x, z], **known)
         assert_kills(check, not_turned=([x, y, z],), other_way=([-y, x, z],))
     np.testing.assert_allclose(histories(whole), histories(half), rtol=1e-6)
 
 
 @pytest.mark.slow
-def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
+def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold(verification_record):
     space, section = (load_case(CASES / name).experiment.run() for name in ("annulus_icf_3d.yaml", "annulus_icf.yaml"))
     assert space.status == section.status == "converged"
     apart = differences(space, section)
@@ -157,4 +174,7 @@ def test_the_shipped_case_follows_the_axisymmetric_one_up_to_the_threshold():
     names = ("threshold_force", "threshold_displacement")
     thresholds = np.array([space.quantities[name].value / section.quantities[name].value - 1 for name in names])
     check_differences(thresholds)
+    known = {"reference": "annulus_icf", "kind": "invariance", "mesh": "annulus_icf_3d as shipped", "tolerance": DEMANDED}
+    for name, difference in zip(names, thresholds, strict=True):
+        verification_record(f"annulus_icf_3d, {name.replace('_', ' ')}", 1 + difference, 1.0, **known)
     assert_kills(check_differences, history=(with_force(apart, 1 / 4),), threshold=(with_force(thresholds, 1 / 4),))

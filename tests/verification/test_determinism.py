@@ -19,13 +19,14 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 TESTS = Path(__file__).parents[1]
 MEASURES = {2: "axisymmetric", 3: "solid"}
+CELLS = {2: 12, 3: 3}
 TOLERANCE = 1e-12
 """Of unknowns between runs with different numbers of threads: the direct solver may add in another order."""
 
 
 def inflated_block(dim: int, spoil: float = 0.0) -> np.ndarray:
     """Unknowns of a block glued to its base under pressure on its side; c01 is changed by the part ``spoil``."""
-    mesh = box([1.0] * dim, [12, 12] if dim == 2 else [3, 3, 3], jitter=0.2)
+    mesh = box([1.0] * dim, [CELLS[dim]] * dim, jitter=0.2)
     body = body_of(mesh, MEASURES[dim], MooneyRivlin2(c10=1.0, c01=0.25 * (1 + spoil)))
     load = FollowerPressure(body.space, facets_where(mesh, on_plane(0, 1.0)), body.pattern, 0.4)
     fixed = np.concatenate([held(mesh, axis, on_plane(1, 0.0)) for axis in range(dim)] + [held(mesh, 0, on_plane(0, 0.0))])
@@ -48,22 +49,32 @@ def forces_and_tangent(dim: int, threads: int, spoil: float = 0.0) -> np.ndarray
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_forces_and_tangent_are_equal_bit_by_bit_whatever_the_threads(dim, monkeypatch):
+def test_forces_and_tangent_are_equal_bit_by_bit_whatever_the_threads(dim, monkeypatch, verification_record):
     monkeypatch.setattr(fem_threads, "SERIAL_ELEMENTS", 0)  # a body so small has one thread otherwise
-    assert (forces_and_tangent(dim, 1) == forces_and_tangent(dim, 2)).all()
+    one, two = forces_and_tangent(dim, 1), forces_and_tangent(dim, 2)
+    assert (one == two).all()
+    known = {"reference": "the same with one thread, bit by bit", "kind": "invariance", "tolerance": 0.0}
+    verification_record(
+        "residual and tangent assembled by two threads", two, one, mesh=f"{MEASURES[dim]}, 8 cells per side", **known
+    )
     assert not (forces_and_tangent(dim, 1) == forces_and_tangent(dim, 1, spoil=1e-15)).all()
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_two_solutions_in_one_process_are_equal(dim, one_thread):
+def test_two_solutions_in_one_process_are_equal(dim, one_thread, verification_record):
     first = inflated_block(dim)
-    assert_close(inflated_block(dim), first, TOLERANCE)
+    again = inflated_block(dim)
+    assert_close(again, first, TOLERANCE)
+    known = {"reference": "the first solution", "kind": "invariance", "tolerance": TOLERANCE}
+    verification_record(
+        "solution again in one process", again, first, mesh=f"{MEASURES[dim]}, {CELLS[dim]} cells per side", **known
+    )
     with pytest.raises(AssertionError):
         assert_close(inflated_block(dim, spoil=1e-10), first, TOLERANCE)
 
 
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.slow)])
-def test_one_thread_and_two_give_the_same(dim, tmp_path):
+def test_one_thread_and_two_give_the_same(dim, tmp_path, verification_record):
     program = f"import numpy, test_determinism as t; numpy.save('unknowns.npy', t.inflated_block({dim}))"
     results = []
     for threads in ("1", "2"):
@@ -75,5 +86,9 @@ def test_one_thread_and_two_give_the_same(dim, tmp_path):
         subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=environment, check=True)
         results.append(np.load(tmp_path / "unknowns.npy"))
     assert_close(*results, TOLERANCE)
+    known = {"reference": "one thread", "kind": "invariance", "tolerance": TOLERANCE}
+    verification_record(
+        "solution with two threads", *results[::-1], mesh=f"{MEASURES[dim]}, {CELLS[dim]} cells per side", **known
+    )
     with pytest.raises(AssertionError):
         assert_close(results[0], inflated_block(dim, spoil=1e-10), TOLERANCE)

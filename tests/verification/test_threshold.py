@@ -99,31 +99,33 @@ def test_force_and_rise_grow_with_the_indentation(icf):
         assert (np.diff([step.values[name] for step in record.steps]) > 0).all(), name
 
 
-def check_halved_steps(case, whole, refinement=1.0):
+def check_halved_steps(case, whole, verification_record, refinement=1.0):
     def check(halved):
         assert halved == pytest.approx(whole, rel=STEP_TOLERANCE)
 
     steps = "experiment.steps.largest=0.075 mm", "experiment.steps.first=1.5 um"
     halved, before = threshold_pressures(case, *steps, f"experiment.mesh.refinement={refinement}")
     check(halved)
+    known = {"reference": "half the steps", "kind": "invariance", "mesh": f"{case}, refinement {refinement:g}"}
+    verification_record("threshold pressure", whole, halved, tolerance=STEP_TOLERANCE, **known)
     assert_kills(check, not_located=(before,))
 
 
-def test_halved_steps_change_little(icf):
+def test_halved_steps_change_little(icf, verification_record):
     record, _ = icf
     whole = record.event.values["reaction_force"] / record.setup.body.area
-    check_halved_steps("annulus_icf", whole, record.setup.mesh.refinement)
+    check_halved_steps("annulus_icf", whole, verification_record, record.setup.mesh.refinement)
 
 
 @pytest.mark.slow
-def test_halved_steps_change_little_on_stiffer_tissue():
+def test_halved_steps_change_little_on_stiffer_tissue(verification_record):
     whole, _ = threshold_pressures("annulus_b1a")
-    check_halved_steps("annulus_b1a", whole)
+    check_halved_steps("annulus_b1a", whole, verification_record)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", ["annulus_icf", "annulus_b1a"])
-def test_halved_mesh_changes_little(case):
+def test_halved_mesh_changes_little(case, verification_record):
     whole, _ = threshold_pressures(case)
 
     def check(halved):
@@ -131,6 +133,8 @@ def test_halved_mesh_changes_little(case):
 
     halved, before = threshold_pressures(case, "experiment.mesh.refinement=2")
     check(halved)
+    known = {"reference": "elements of half the size", "kind": "invariance", "mesh": f"{case}, refinement 1"}
+    verification_record("threshold pressure", whole, halved, tolerance=MESH_TOLERANCE, **known)
     assert_kills(check, not_located=(before,))
 
 

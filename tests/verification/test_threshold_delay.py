@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -22,6 +24,11 @@ PLATE_RATE, SMALL_RATE, TOUCH = 2.0, 0.5, 1.0
 """In N/s, N/s and s."""
 # A load of 1 ohm makes the divider linear to 1e-4 of the signal; 32 bits leave no rounding.
 LINEAR = SignalChain(load_resistor=1.0, converter=Converter(bits=32), low_pass=LowPass(cutoff=10.0), sampling_rate=1000.0)
+
+
+LAG = PLATE_RATE / (2 * np.pi * 10.0)
+"""In N: the large ramp in a time constant of the low pass."""
+SAMPLED = "none: 1000 samples/s"
 
 
 def ramps(**changes):
@@ -51,7 +58,7 @@ def lagged_error(level, cutoff, *, filtered=True):
 
 @pytest.mark.parametrize("level", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("capture", ["filtered", "unfiltered"])
-def test_filter_lag_on_ramps(level, capture):
+def test_filter_lag_on_ramps(level, capture, verification_record):
     """Mutants: a cut-off of 5 Hz, which a level far above the lag does not show, and the other capture."""
     computed = ramps(capture=capture).ideal_error(LowPass(cutoff=10.0), level)
 
@@ -61,12 +68,16 @@ def test_filter_lag_on_ramps(level, capture):
 
     filtered = capture == "filtered"
     check(10.0, filtered)
+    allowed = (PLATE_RATE / 16_000 + 3.2e-5) / LAG
+    known = {"reference": "lag of a first-order low pass on ramps", "kind": "exact", "mesh": SAMPLED, "tolerance": allowed}
+    expected = lagged_error(level, 10.0, filtered=filtered)
+    verification_record(f"threshold, error of a {capture} capture over the lag of 32 mN", computed, expected, scale=LAG, **known)
     assert_kills(check, capture=(10.0, not filtered))
     if level < 0.1 or not filtered:
         assert_kills(check, cutoff=(5.0, filtered))
 
 
-def test_without_filter_only_the_level_remains():
+def test_without_filter_only_the_level_remains(verification_record):
     """Mutants: the level itself, and the rates swapped."""
     computed = ramps().ideal_error(None, 0.01)
 
@@ -74,6 +85,9 @@ def test_without_filter_only_the_level_remains():
         assert computed == pytest.approx(factor * 0.01, abs=PLATE_RATE / 16_000)
 
     check(PLATE_RATE / SMALL_RATE)
+    known = {"reference": "level over the rate of the small force", "kind": "exact", "mesh": SAMPLED}
+    expected, allowed = 0.01 * PLATE_RATE / SMALL_RATE, SMALL_RATE / 16_000 / 0.01
+    verification_record("threshold, error of the level alone", computed, expected, tolerance=allowed, **known)
     assert_kills(check, level=(1.0,), swapped=(SMALL_RATE / PLATE_RATE,))
 
 
@@ -92,7 +106,7 @@ def test_lags_cancel_for_a_level_far_above_the_lag():
     assert ramps().ideal_error(LowPass(cutoff=10.0), 1e-4) < 0
 
 
-def test_sampling_adds_half_an_interval():
+def test_sampling_adds_half_an_interval(verification_record):
     sampling = ramps()
     trigger = ThresholdTrigger(np.array(0.0), np.array(0.01))
     (trials,) = sampling.trials(SILENT, [None], [trigger], trials=100, seed=(1,))
@@ -103,10 +117,12 @@ def test_sampling_adds_half_an_interval():
         assert computed == pytest.approx(delay * interval, abs=interval / 10), "ten phases, each a tenth of an interval"
 
     check(0.5)
+    known = {"reference": "half an interval", "kind": "exact", "mesh": SAMPLED, "tolerance": 0.2}
+    verification_record("threshold, delay by sampling", computed, 0.5 * interval, **known)
     assert_kills(check, instant=(0.0,), whole=(1.0,))
 
 
-def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
+def test_threshold_of_the_closed_form_and_the_sum_of_the_parts(verification_record):
     source = ClosedFormSource(material=NeoHookean(c10=5e3), recess=0.1e-3)
     tissue = source.tissue()
     approach = tissue.approach(2e-3)
@@ -120,6 +136,8 @@ def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
 
     per_rise = annulus.length * 1e4 * 0.1e-3
     check_threshold(per_rise / annulus.rise_factor)  # 8 a kappa G L / rho
+    exact: dict[str, Any] = {"reference": "exact annulus", "kind": "exact", "mesh": "integral equation", "tolerance": 1e-9}
+    verification_record("threshold force", approach.threshold_force, per_rise / annulus.rise_factor, **exact)
     assert_kills(check_threshold, without_the_rise=(per_rise,))
     assert small[:2] == pytest.approx(0.0, abs=1e-15)
     excess = annulus.rise_factor * source.beyond
@@ -138,4 +156,6 @@ def test_threshold_of_the_closed_form_and_the_sum_of_the_parts():
         np.testing.assert_allclose(np.sum(parts, axis=0), total, rtol=1e-9, err_msg="differences of the same numbers")
 
     check_sum(parts)
+    identity = {"reference": "their sum", "kind": "invariance", "mesh": "none: 20 trials", "tolerance": 1e-9}
+    verification_record("threshold, parts of the error", np.sum(parts, axis=0), total, **identity)
     assert_kills(check_sum, without_the_level=(parts[1:],), without_the_filter=(parts[:2] + parts[3:],))

@@ -32,7 +32,7 @@ def deformations(count: int = 60) -> np.ndarray:
 
 
 @pytest.mark.parametrize("alpha", [2.0, 3.5, -2.0])
-def test_the_tangent_is_the_derivative_of_the_stress(alpha):
+def test_the_tangent_is_the_derivative_of_the_stress(alpha, verification_record):
     material, F = PrincipalOgden(modulus=MODULUS, alpha=alpha), deformations()
     pressure, step = np.full(F.shape[2], 300.0), 1e-6
     computed = np.empty((3, 3, 3, 3, F.shape[2]))
@@ -45,15 +45,21 @@ def test_the_tangent_is_the_derivative_of_the_stress(alpha):
     assert_close(
         material.tangent(F, pressure), computed, 1e-7
     )  # a central difference: the square of the step and round-off over it
+    known = {"reference": "central differences of its stress", "kind": "exact", "mesh": "none", "tolerance": 1e-7}
+    verification_record("tangent of a user's law, exponents of 2, 3.5 and -2", material.tangent(F, pressure), computed, **known)
     with pytest.raises(AssertionError):
         assert_close(PrincipalOgden(modulus=MODULUS, alpha=alpha + 0.01).tangent(F, pressure), computed, 1e-7)
 
 
-def test_an_exponent_of_two_is_neo_hooke():
+def test_an_exponent_of_two_is_neo_hooke(verification_record):
     own, known, F = PrincipalOgden(modulus=MODULUS), NeoHookean(c10=MODULUS / 2), deformations()
     pressure = np.full(F.shape[2], 300.0)
     assert_close(own.first_piola_kirchhoff(F, pressure), known.first_piola_kirchhoff(F, pressure), SAME)
     assert_close(own.tangent(F, pressure), known.tangent(F, pressure), SAME)
+    identity = {"reference": "neo-Hooke's law", "kind": "invariance", "mesh": "none", "tolerance": SAME}
+    for name in ("first_piola_kirchhoff", "tangent"):
+        computed, expected = (getattr(one, name)(F, pressure) for one in (own, known))
+        verification_record(f"a user's law with an exponent of two, {name.replace('_', ' ')}", computed, expected, **identity)
     other = PrincipalOgden(modulus=MODULUS, alpha=2.001)
     with pytest.raises(AssertionError):
         assert_close(other.first_piola_kirchhoff(F, pressure), known.first_piola_kirchhoff(F, pressure), SAME)
@@ -89,18 +95,21 @@ def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, rela
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_interpreted_elements_equal_compiled_ones(measure):
+def test_interpreted_elements_equal_compiled_ones(measure, verification_record):
     own, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS), relaxing=True)
     known, _ = body_and_unknowns(measure, NeoHookean(c10=MODULUS / 2), relaxing=True)
     assert_close(own.residual(unknowns), known.residual(unknowns), SAME)
     assert_close(own.tangent(unknowns), known.tangent(unknowns), SAME)
+    identity = {"reference": "compiled loops", "kind": "invariance", "mesh": f"{measure}, one to four cells", "tolerance": SAME}
+    verification_record("residual by interpreted loops", own.residual(unknowns), known.residual(unknowns), **identity)
+    verification_record("tangent by interpreted loops", own.tangent(unknowns), known.tangent(unknowns), **identity)
     other, _ = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=2.1), relaxing=True)
     with pytest.raises(AssertionError):
         assert_close(other.residual(unknowns), known.residual(unknowns), SAME)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_a_patch_takes_any_homogeneous_deformation(measure):
+def test_a_patch_takes_any_homogeneous_deformation(measure, verification_record):
     """u prescribed on the boundary: inside, u = (F - 1) X, and P is the same everywhere."""
     dim = 3 if measure == "solid" else 2
     mesh = box([1.0, 1.5, 0.8][:dim], [2, 2, 2][:dim], jitter=0.25, seed=7)
@@ -116,6 +125,8 @@ def test_a_patch_takes_any_homogeneous_deformation(measure):
     solved = solve_near(body, fixed, displacement)
     u, _ = body.space.split(solved.unknowns)
     assert_close(u, displacement, 1e-10)
+    known = {"reference": "affine map", "kind": "exact", "mesh": f"{measure}, distorted", "tolerance": 1e-10}
+    verification_record("patch test of a user's law, displacement", u, displacement, **known)
     pressure = np.array(2e4 * float(material.volume_change(F)))
     expected = material.first_piola_kirchhoff(F, pressure)[:, :, None, None]
     assert_close(first_piola_kirchhoff(body, solved), np.broadcast_to(expected, solved.kinematics.F.shape), 1e-9)
@@ -138,11 +149,14 @@ def pressed(material: Material) -> Result:
     return Indentation.model_validate(case).run(lambda step: None)
 
 
-def test_an_indentation_of_a_users_material_is_that_of_the_compiled_one_and_says_that_it_is_slow():
+def test_an_indentation_of_a_users_material_is_that_of_the_compiled_one_and_says_that_it_is_slow(verification_record):
     own, known = pressed(PrincipalOgden(modulus=MODULUS)), pressed(NeoHookean(c10=MODULUS / 2))
     assert own.status is known.status is Status.CONVERGED
     force = float(known.quantities["reaction_force"].value)
-    assert float(own.quantities["reaction_force"].value) == pytest.approx(force, rel=SAME)
+    computed = float(own.quantities["reaction_force"].value)
+    assert computed == pytest.approx(force, rel=SAME)
+    identity = {"reference": "the compiled law", "kind": "invariance", "mesh": "axisymmetric, coarse", "tolerance": SAME}
+    verification_record("indentation of a user's material, force", computed, force, **identity)
     warning = "specimen.material: material principal_ogden has no compiled form: assembly is interpreted, several times slower"
     assert warning in own.warnings
     assert not any("interpreted" in words for words in known.warnings)

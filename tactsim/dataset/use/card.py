@@ -26,6 +26,8 @@ GENERAL_LIMITS = (
     "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
 )
+LIKELY = 0.99
+"""Probability with which enough specimens put one into every split."""
 MOST_REASONS = 50
 """Reasons of failures that are listed; the rest are counted."""
 
@@ -99,17 +101,25 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     counts = split_counts(store)
     splits = [(name, str(count)) for name, count in counts.items()]
     lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
-    lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits)), ""]
+    lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits), sweep.settings.splits), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
     return lines + (_table("Failures", ("reason", "samples"), failed) if failed else [])
 
 
-def empty_split_lines(names: Sequence[str]) -> list[str]:
+def empty_split_lines(names: Sequence[str], splits: Splits) -> list[str]:
     """A sentence on parts of the data set without a sample, if there are any."""
     if not names:
         return []
     which = f"the split {names[0]} has" if len(names) == 1 else f"the splits {', '.join(names)} have"
-    return [f"warning: {which} no sample that is done; take more samples, or other shares in sweep.splits."]
+    shares = [share for name, share in split_shares(splits).items() if name in names]
+    needed = f" ({_specimens_needed(min(shares))})" if shares else ""
+    return [f"warning: {which} no sample that is done; take more samples{needed}, or other shares in sweep.splits."]
+
+
+def _specimens_needed(share: float) -> str:
+    """How many specimens make it likely that a part with a share has one, as each of them falls to it by that chance."""
+    count = int(np.ceil(np.log(1 - LIKELY) / np.log1p(-share))) if share < 1 else 1
+    return f"a share of {100 * share:.3g} % has a specimen with a probability of {100 * LIKELY:g} % among {count}"
 
 
 def _figures(path: Path) -> list[str]:
@@ -194,9 +204,14 @@ def split_counts(store: Store) -> dict[str, int]:
 
 def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
     """Parts of a data set that have a share, or conditions, and no sample that is done."""
-    shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
-    wanted = [name for name, share in shares.items() if share > 1e-9] + list(splits.out_of_distribution)  # round-off of the rest
+    wanted = [*split_shares(splits), *splits.out_of_distribution]
     return [name for name in wanted if not counts.get(name)]
+
+
+def split_shares(splits: Splits) -> dict[str, float]:
+    """Share of the specimens of every part that has one."""
+    shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
+    return {name: share for name, share in shares.items() if share > 1e-9}  # round-off of the rest
 
 
 def redrawn(store: Store) -> tuple[int, int]:

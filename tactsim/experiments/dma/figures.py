@@ -90,7 +90,7 @@ def _draw_curves(axis: Axes, result: Result, part: str) -> None:
 def _band(result: Result, method: str) -> str:
     """The label of a band."""
     fit = result.scene_as(DmaScene).fits[method]
-    return f"{100 * fit.confidence:.3g} % band, {fit.band}"
+    return f"{METHODS[method][0]}, {100 * fit.confidence:.3g} % band, {fit.band}"
 
 
 def _draw_differences(axis: Axes, result: Result, part: str) -> None:

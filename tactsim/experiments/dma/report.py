@@ -111,8 +111,8 @@ class DmaReport:
         constants, method = finding.fit.constants, finding.fit.method.replace("_", " ")
         return {
             f"{prefix}glassy_modulus": Quantity(constants.glassy_modulus, "Pa", f"E0, {method}"),
-            f"{prefix}moduli": Quantity(constants.moduli, "Pa", f"E_i of the Kelvin units, {method}"),
-            f"{prefix}retardation_times": Quantity(constants.retardation_times, "s", f"tau_i, {method}"),
+            f"{prefix}moduli": Quantity(constants.moduli, "Pa", f"E_i of the Kelvin units [unit], {method}"),
+            f"{prefix}retardation_times": Quantity(constants.retardation_times, "s", f"tau_i [unit], {method}"),
         }
 
     def _errors(self, method: str, finding: DmaFinding) -> dict[str, Quantity]:

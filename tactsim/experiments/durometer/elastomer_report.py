@@ -132,9 +132,9 @@ class RankingReport:
             "atrium_reading_relaxed": Quantity(
                 predicted[-1], "1", "reading of the relaxed modulus of Table 4.1; 0 is off the scale"
             ),
-            "atrium_table_modulus": Quantity([*moduli.values()], "Pa", f"Young's modulus of Table 4.1: {at}"),
-            "atrium_reading": Quantity(predicted, "1", f"reading of Table 4.1, {name}: {at}; 0 is off the scale"),
-            "atrium_reading_by_hertz": Quantity(by_hertz, "1", f"reading of Table 4.1 by Hertz: {at}; 0 is off the scale"),
+            "atrium_table_modulus": Quantity([*moduli.values()], "Pa", f"Young's modulus of Table 4.1 [time]: {at}"),
+            "atrium_reading": Quantity(predicted, "1", f"reading of Table 4.1, {name} [time]: {at}; 0 is off the scale"),
+            "atrium_reading_by_hertz": Quantity(by_hertz, "1", f"reading of Table 4.1 by Hertz [time]: {at}; 0 is off the scale"),
         }
 
     def _column(self, shape: int, name: str) -> list[float | None]:
@@ -156,7 +156,7 @@ class RankingReport:
         for name, values in measured.items():
             words = f"Spearman's rank correlation of the predicted reading and the {name}"
             coefficients = [_spearman(self._readings(shape), values) for shape in range(len(self._finished))]
-            correlations[f"spearman_predicted_{name}"] = Quantity(coefficients, "1", f"{words}, by shape")
+            correlations[f"spearman_predicted_{name}"] = Quantity(coefficients, "1", f"{words} [shape]")
             known = [value for value in coefficients if value is not None]
             if known:
                 correlations[f"smallest_spearman_predicted_{name}"] = Quantity(
@@ -173,19 +173,19 @@ class RankingReport:
         printed = np.array([one.durometer for one in self._elastomers])
         differences = [(np.array(self._readings(shape)) - printed).tolist() for shape in shapes]
         columns = {
-            "predicted_reading": ("1", "predicted reading, by shape and elastomer; 0 is off the scale"),
-            "modulus_of_threshold": ("Pa", "Young's modulus from the threshold pressure, by shape and elastomer"),
-            "modulus_of_reading": ("Pa", "Young's modulus from the printed reading, by shape and elastomer"),
-            "modulus_ratio": ("1", "modulus from the printed reading over that from the threshold, by shape and elastomer"),
+            "predicted_reading": ("1", "predicted reading [shape, elastomer]; 0 is off the scale"),
+            "modulus_of_threshold": ("Pa", "Young's modulus from the threshold pressure [shape, elastomer]"),
+            "modulus_of_reading": ("Pa", "Young's modulus from the printed reading [shape, elastomer]"),
+            "modulus_ratio": ("1", "modulus from the printed reading over that from the threshold [shape, elastomer]"),
         }
         quantities = self._rank_correlations()
         quantities |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in columns.items()}
-        words = "predicted minus printed reading, by shape and elastomer"
+        words = "predicted minus printed reading [shape, elastomer]"
         quantities["reading_difference"] = Quantity(differences, "1", words)
         at_own_modulus = [self._own(shape) for shape in shapes]
         for name, unit, words in (
-            ("own_threshold_pressure", "Pa", "threshold pressure by the constants of each shape"),
-            ("own_reading", "1", "reading by the constants of each shape; 0 is off the scale"),
+            ("own_threshold_pressure", "Pa", "threshold pressure by the constants of each [shape]"),
+            ("own_reading", "1", "reading by the constants of each [shape]; 0 is off the scale"),
         ):
             quantities[name] = Quantity([pair[name] for pair in at_own_modulus], unit, words)
         return quantities | self._atrium

@@ -97,9 +97,9 @@ class ForceCalibration(Experiment):
         sure, scaled = f"{100 * self.confidence:g} % interval", "over the full scale"
         quantities = {
             "slope": (fit.slope, "S/N", "m of C = m F + n"),
-            "slope_interval": (fit.slope_interval, "S/N", f"{sure} of m, lower and upper"),
+            "slope_interval": (fit.slope_interval, "S/N", f"{sure} of m, lower and upper [bound]"),
             "intercept": (fit.intercept, "S", "n of C = m F + n"),
-            "intercept_interval": (fit.intercept_interval, "S", f"{sure} of n, lower and upper"),
+            "intercept_interval": (fit.intercept_interval, "S", f"{sure} of n, lower and upper [bound]"),
             "linearity_positive": (fit.linearity_positive, "1", f"largest force read less applied, {scaled}"),
             "linearity_negative": (fit.linearity_negative, "1", f"smallest force read less applied, {scaled}"),
             "rms": (fit.rms, "N", "root mean square of force read less applied"),
@@ -111,7 +111,8 @@ class ForceCalibration(Experiment):
         if truth is not None:
             quantities["slope_error"] = (fit.slope / truth[0] - 1, "1", "m over its true value, less one")
             quantities["intercept_error"] = (fit.intercept - truth[1], "S", "n less its true value")
-        return {name: Quantity(_alone(value), unit, words) for name, (value, unit, words) in quantities.items()}
+        each = "" if len(fit.slope) == 1 else " [sensor]"
+        return {name: Quantity(_alone(value), unit, words + each) for name, (value, unit, words) in quantities.items()}
 
     def _assumptions(self) -> list[str]:
         assumptions = ["the applied forces are exact; the noise is independent, Gaussian and alike in voltage at every force"]

@@ -110,9 +110,9 @@ class FilmTest(Experiment):
     def _readings(self, times: Array, signal: Array) -> dict[str, Quantity]:
         drift = signal[-1] / signal[0] - 1
         quantities = {
-            "forces": Quantity(list(self.forces), "N", "forces that were held"),
-            "times": Quantity(times.tolist(), "s", "times since the force began"),
-            "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time, for each force"),
+            "forces": Quantity(list(self.forces), "N", "forces that were held [force]"),
+            "times": Quantity(times.tolist(), "s", "times since the force began [time]"),
+            "drift": Quantity(drift.tolist(), "1", f"growth of the {self.film.signal} from 0 s to the last time [force]"),
         }
         shown = {name: values for name, values in self._shown(signal).items() if name != "conductance"}
         readings = {name: Quantity(v.tolist(), self.history_units[name], f"{name} [time][force]") for name, v in shown.items()}
@@ -123,7 +123,7 @@ class FilmTest(Experiment):
         (slope, intercept), symbol = slope_and_intercept(forces, read), self.film.signal
         errors = (read - intercept) / slope - forces
         quantities = {
-            f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time, for each force")
+            f"reading_{name}": Quantity(values.tolist(), self.history_units[name], f"{name} at the reading time [force]")
             for name, values in self._shown(read).items()
             if name != "conductance"
         }

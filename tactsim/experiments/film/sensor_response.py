@@ -149,17 +149,17 @@ class SensorResponse(Experiment):
 
     def _by_range(self, force: Array, raw: Array, model: Array, good: Array) -> dict[str, Quantity]:
         """Errors by range of force; those of the inverse from the ``good`` samples, before the first saturated one."""
-        quantities = {"ranges": Quantity(list(self.ranges), "N", "borders of the ranges of force")}
+        quantities = {"ranges": Quantity(list(self.ranges), "N", "borders of the ranges of force [border]")}
         every = np.ones(len(force), bool)
         for name, reading, how, chosen in (
             ("model", model, "inverse of the film", good),
             ("linear", raw, "straight line", every),
         ):
             errors = range_errors(force[chosen], reading[chosen], self.ranges)
-            where = f"by the {how} without low pass, for each range of force" + ("" if chosen is every else "; to saturation")
+            where = f"by the {how} without low pass [range of force]" + ("" if chosen is every else "; to saturation")
             quantities[f"{name}_range_rms_error"] = Quantity([r.rms for r in errors], "N", f"root mean square error {where}")
             quantities[f"{name}_range_largest_error"] = Quantity([r.largest for r in errors], "N", f"largest error {where}")
-        quantities["range_samples"] = Quantity([r.samples for r in errors], "1", "samples in each range of force")
+        quantities["range_samples"] = Quantity([r.samples for r in errors], "1", "samples [range of force]")
         return quantities
 
     def _warnings(self, force: Array, recording: Recording) -> tuple[str, ...]:

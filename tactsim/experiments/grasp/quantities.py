@@ -39,7 +39,9 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
         }
     if experiment.lumens:
         pressures = [last[f"lumen_pressure_{number}"] for number in experiment.lumens]
-        quantities["lumen_pressure"] = Quantity(pressures, "Pa", "pressure in each lumen, by the order of the inclusions" + LAST)
+        quantities["lumen_pressure"] = Quantity(
+            pressures, "Pa", "pressure in each [lumen], by the order of the inclusions" + LAST
+        )
     least = min(step["min_volume_ratio"] for step in values)
     quantities["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
     return quantities
@@ -56,14 +58,14 @@ def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]]
     }
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}
     histories = {
-        f"{name}_history": Quantity([step[name] for step in values], units[name], f"{text}, at each accepted step")
+        f"{name}_history": Quantity([step[name] for step in values], units[name], f"{text}, at each accepted step [time]")
         for name, text in descriptions.items()
     }
     for side in readings[0]:
         forces = [reading[side].taxels.taxels[2].tolist() for reading in readings]
-        text = f"force pressing on each taxel of the {side} jaw, [step]{BY_TAXEL}"
+        text = f"force pressing on each taxel of the {side} jaw, [time]{BY_TAXEL}"
         histories[f"taxel_force_{side}_history"] = Quantity(forces, "N", text)
     if experiment.lumens:
         pressures = [[step[f"lumen_pressure_{number}"] for number in experiment.lumens] for step in values]
-        histories["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [step][lumen]")
+        histories["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [time][lumen]")
     return histories

@@ -16,7 +16,7 @@ OVER_TIME = "at each of readout_time, [time][row][column]"
 
 def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
     """Readings with the channels (jaw, row, column), upper jaw first."""
-    quantities = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels")}
+    quantities = {"readout_time": Quantity(reading.time.tolist(), "s", "times of the samples of all taxels [time]")}
     for k, side in enumerate(JAWS):
         of = f"of each taxel of the {side} jaw"
         voltage, force = reading.filtered[:, k], reading.force[:, k]
@@ -26,7 +26,9 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
             f"voltage_{side}_history": Quantity(voltage.tolist(), "V", f"voltage after the low pass {of} {OVER_TIME}"),
             f"read_force_{side}_history": Quantity(force.tolist(), "N", f"force by the calibration {of} {OVER_TIME}"),
             f"saturated_{side}": Quantity(
-                reading.saturated[:, k].mean(axis=0).tolist(), "1", f"part of the samples {of} outside the range of the converter"
+                reading.saturated[:, k].mean(axis=0).tolist(),
+                "1",
+                f"part of the samples {of} outside the range of the converter, [row][column]",
             ),
             f"saturated_{side}_history": Quantity(
                 reading.saturated[:, k].astype(int).tolist(), "1", f"1 for a sample {of} outside that range, else 0, {OVER_TIME}"

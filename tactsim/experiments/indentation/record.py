@@ -136,7 +136,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         if self.setup.body.kind == "annulus":
             sectors = self._posed.sectors
             around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
-            text = "force along the annulus's axis over its area, by equal sectors of the angle about it, from its x axis on"
+            text = "axial force over area, by equal sectors of the angle about the annulus's axis, from its x axis on [sector]"
             quantities["pressure_around"] = Quantity(around.tolist(), "Pa", text)
         return quantities
 

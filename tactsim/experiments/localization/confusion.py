@@ -113,7 +113,7 @@ def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
     quantities = {"confusion": Quantity(table.counts.tolist(), "1", f"estimates by [true class][estimated class]: {order}")}
     if table.share_right is not None:
         quantities["share_right"] = Quantity(table.share_right, "1", "share of all estimates that named the right class")
-        recalls = Quantity(table.recalls, "1", f"share of each true class named right: {order}; null if there is none")
+        recalls = Quantity(table.recalls, "1", f"share that was named right [true class]: {order}; null if there is none")
         quantities["recalls"] = recalls
     return quantities
 

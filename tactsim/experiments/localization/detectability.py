@@ -157,12 +157,16 @@ class Detectability(Experiment):
         order = "[shear ratio][matrix][depth]; null where none that fits is found"
         words = {"same": "the same noise on every reading", "by_area": "noise in proportion to the area of a taxel"}
         return {
-            "depths": Quantity(list(self.depths), "m", "of the centre below the upper face of the undeformed tissue"),
-            "matrices": Quantity(list(self.matrices), "1", "taxels along each side"),
-            "shear_ratios": Quantity(list(self.shear_ratios), "1", "shear modulus of the lump over that of the tissue"),
+            "depths": Quantity(list(self.depths), "m", "of the centre below the upper face of the undeformed tissue [depth]"),
+            "matrices": Quantity(list(self.matrices), "1", "taxels along each side [matrix]"),
+            "shear_ratios": Quantity(
+                list(self.shear_ratios), "1", "shear modulus of the lump over that of the tissue [shear ratio]"
+            ),
             "smallest_radius": Quantity(radii["same"], "m", f"smallest radius found, {words['same']}; {order}"),
             "smallest_radius_by_area": Quantity(radii["by_area"], "m", f"smallest radius found, {words['by_area']}; {order}"),
-            "thresholds": Quantity(thresholds, "1", "largest match of the filter that counts as noise, in standard deviations"),
+            "thresholds": Quantity(
+                thresholds, "1", "largest match of the filter that counts as noise, in standard deviations [matrix]"
+            ),
         }
 
     def _assumptions(self) -> tuple[str, ...]:

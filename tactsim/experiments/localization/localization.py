@@ -159,22 +159,26 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
         quantities["probability"] = Quantity(estimate.probability, "1", "that anything is there")
     if estimate.classes is not None:
         names = ", ".join(estimate.classes)
-        quantities["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")
+        quantities["class_probabilities"] = Quantity(
+            list(estimate.classes.values()), "1", f"probability of each [class]: {names}"
+        )
     if not estimate.inclusions:
         return quantities
     first = estimate.inclusions[0]
     quantities["estimated_center"] = Quantity(
-        list(first.center), "m", "x, y, z of the strongest inclusion, in the undeformed block"
+        list(first.center), "m", "(x, y, z) of the strongest inclusion, in the undeformed block"
     )
     if first.radius is not None:
         quantities["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
         quantities["estimated_contrast"] = Quantity(
-            first.contrast, "1", "contrast of the strongest inclusion, negative if softer"
+            first.contrast,
+            "1",
+            "contrast of the strongest inclusion with the tissue at this closing, 0 if alike, negative if softer",
         )
     if first.covariance is not None:
         deviations = np.sqrt(np.diag(first.covariance))
-        quantities["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations of x, y and z")
+        quantities["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations (x, y, z)")
         quantities["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
         quantities["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
     return quantities
@@ -187,7 +191,9 @@ def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quanti
     nearest, lateral, depth = away_from_truth(np.array(estimate.inclusions[0].center), np.concatenate(true))
     of = "of the strongest inclusion from the nearest true one (its centre, or the centre line of an artery)"
     return {
-        "true_center": Quantity(nearest.tolist(), "m", "x, y, z of the true inclusion nearest in plan, in the undeformed block"),
+        "true_center": Quantity(
+            nearest.tolist(), "m", "(x, y, z) of the true inclusion nearest in plan, in the undeformed block"
+        ),
         "lateral_error": Quantity(lateral, "m", f"distance in plan {of}"),
         "depth_error": Quantity(depth, "m", f"height {of}; positive if estimated too near to the upper jaw"),
     }

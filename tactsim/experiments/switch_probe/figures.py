@@ -83,8 +83,8 @@ def switch_panel_figure(result: Result) -> Figure:
     scene = result.scene_as(SwitchProbeScene)
     touch = scene.touches[0]
     with styled():
-        figure = new_figure(9.4, 4.2)
-        probe, record = figure.subplots(1, 2, width_ratios=(1, 1.1))
+        figure = new_figure(9.4, 3.7)
+        probe, record = figure.subplots(1, 2, width_ratios=(1.1, 1))
         _draw_probe(probe, scene.switch_sides, touch)
         _draw_record(record, result, touch)
         rate = touch.mean_rate
@@ -107,7 +107,7 @@ def _draw_probe(axis: Axes, sides: tuple[str, ...], touch: RecordedTouch) -> Non
         axis.text(place, number, str(number), ha="center", va="center", color="k" if closing is None else "w", fontsize=8)
         words = "open" if closing is None else f"{closing.force:.3f} N\n{closing.time - start:.3f} s"
         axis.text(place + sign * 0.6, number, words, ha="left" if sign > 0 else "right", va="center", fontsize=8)
-    axis.set(xlim=(-7, 7), ylim=(-1.3, HEIGHT + 0.3), aspect="equal")
+    axis.set(xlim=(-6.4, 6.4), ylim=(-1.1, HEIGHT + 0.2), aspect="equal")
     axis.set_axis_off()
     axis.set_title("switches: force and time since the touch", loc="left")
 
@@ -125,9 +125,8 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     axis.set(
         xlabel="time since the touch in s", ylabel="force in N", ylim=(min(0.0, 1.05 * force.min()), 1.1 * max(force.max(), 1e-9))
     )
-    axis.set_title(
-        f"threshold of the touch {format_quantity(result.scene_as(SwitchProbeScene).touch_threshold, 'N')}", loc="left"
-    )
+    threshold = float(f"{result.scene_as(SwitchProbeScene).touch_threshold:.3g}")
+    axis.set_title(f"threshold of the touch {format_quantity(threshold, 'N')}", loc="left")
     despined(axis)
 
 

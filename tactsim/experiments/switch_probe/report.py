@@ -68,7 +68,7 @@ class SwitchProbeReport:
         for number, touch in enumerate(self._touches, 1):
             where = _where(touch)
             forces = touch.force_at(self._depths())
-            quantities[f"forces_{number}"] = Quantity(forces, "N", f"force on the probe at each pitch of depth, {where}")
+            quantities[f"forces_{number}"] = Quantity(forces, "N", f"force on the probe at each pitch [depth], {where}")
             quantities[f"largest_force_{number}"] = Quantity(
                 float(touch.true.force.max()), "N", f"largest force on the probe, {where}"
             )
@@ -89,10 +89,14 @@ class SwitchProbeReport:
             return {}
         array = self._setup.array
         quantities = {
-            f"switching_times_{number}": Quantity(touch.times(), "s", f"times since the touch at which switches closed, {where}"),
-            f"switching_intervals_{number}": Quantity(touch.intervals(), "s", f"intervals between them, {where}"),
+            f"switching_times_{number}": Quantity(
+                touch.times(), "s", f"times since the touch at which switches closed [closing], {where}"
+            ),
+            f"switching_intervals_{number}": Quantity(touch.intervals(), "s", f"intervals between them [interval], {where}"),
             f"switching_forces_{number}": Quantity(
-                np.array([closing.force for closing in touch.closings]), "N", f"force read when each switch closed, {where}"
+                np.array([closing.force for closing in touch.closings]),
+                "N",
+                f"force read when each switch closed [closing], {where}",
             ),
             f"closed_switches_{number}": Quantity(len(touch.closings), "1", f"switches that closed, {where}"),
         }

@@ -65,3 +65,13 @@ def test_help_is_quick_because_it_imports_nothing_heavy() -> None:
     code = "import sys; from tactsim.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "pydantic", "pint", "ruamel", "matplotlib", "meshio"} & set(done.stderr.split())
+
+
+@pytest.mark.parametrize("action", ["check", "info", "export", "rank", "train", "confusion"])
+def test_each_action_of_data_has_its_own_help(action: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["data", action, "--help"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"usage: tactsim data {action}")
+    assert f"tactsim data {action} " in text.split("example:")[1]
+    assert ("--reference" in text) == (action in ("rank", "train", "confusion"))
+    assert ("--to" in text) == (action == "export")

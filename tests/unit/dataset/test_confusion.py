@@ -86,12 +86,19 @@ def test_a_changed_sample_is_not_counted(store: Path, plain: str, tmp_path: Path
     assert len(judged_samples(place, [plain], source="taxel_force", split="train").truths) == 30
 
 
-@pytest.mark.parametrize("extra", [["--reference", "y"], ["--readings", "read_force"], ["--learned", "x.npz"]])
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        (["--reference", "y"], "takes one --reference"),
+        (["--readings", "read_force"], "unrecognized arguments: --readings read_force"),
+        (["--learned", "x.npz"], "unrecognized arguments: --learned x.npz"),
+    ],
+)
 def test_options_that_do_not_fit_are_refused(
-    store: Path, plain: str, extra: list[str], capsys: pytest.CaptureFixture[str]
+    store: Path, plain: str, extra: list[str], words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["data", "confusion", str(store), "--reference", plain, *extra]) == 2
-    assert "takes one --reference" in capsys.readouterr().err
+    assert words in capsys.readouterr().err
 
 
 def test_no_reference_is_an_error(store: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
+from scipy.interpolate import RectBivariateSpline
 
 from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
@@ -22,6 +23,10 @@ from tactsim.units import format_quantity
 PANELS = 3
 """Times that are shown: the shortest, the middle and the longest of more."""
 LIMIT_COLOURS, POINT_COLOUR = ("#000000", "#ff9d5c"), "#d62728"
+RIM = 1.25
+"""Hatched part beyond the end of linear theory, over that end."""
+FINE, FEWEST = 200, 4
+"""Points of a fine map along each side, and the fewest of a map that cubic splines take."""
 DECADES = 4
 """Decades of the force that are coloured below the largest one."""
 
@@ -70,19 +75,29 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     drawn = axis.pcolormesh(ratio, recess, force, norm=norm, cmap="viridis", shading="gouraud", rasterized=True)
     for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
         if force.min() < limit < force.max():
-            axis.contour(ratio, recess, np.log(force), levels=[np.log(limit)], colors=[colour], linewidths=2)
+            axis.contour(*_finer(ratio, recess, force), levels=[np.log(limit)], colors=[colour], linewidths=2)
     relative, end = np.array(result.quantities["touch_displacement_over_radius"].value).T, scene.small_displacement
-    if relative.max() > end:
-        levels = [end, max(float(relative.max()), 2 * end) * 1.01]
-        hatched = axis.contourf(ratio, recess, relative, levels=levels, colors="none", hatches=["///"])
-        hatched.set_edgecolor((1, 1, 1, 0.45))
+    if relative.min() < end < relative.max():
+        fine = _finer(ratio, recess, relative)
+        hatched = axis.contourf(*fine, levels=np.log([end, RIM * end]), colors="none", hatches=["////"])
+        hatched.set_edgecolor((1, 1, 1, 0.6))
         hatched.set_linewidth(0)
-        if relative.min() < end:
-            axis.contour(ratio, recess, relative, levels=levels[:1], colors="white", linewidths=1, linestyles="dashed")
+        axis.contour(*fine, levels=[np.log(end)], colors="white", linewidths=1.4, linestyles="dashed")
+    elif relative.min() >= end:
+        axis.text(0.03, 0.03, "all outside small-displacement theory", transform=axis.transAxes, color="w", fontsize=8)
     axis.set_yscale("log")
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     return drawn
+
+
+def _finer(ratio: Array, recess: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Ratios, recesses and the logarithm of positive values between those of a map, by cubic splines if all are finite."""
+    logarithms = np.log(values)
+    if min(values.shape) < FEWEST or not np.isfinite(logarithms).all():
+        return ratio, recess, logarithms
+    fine = np.linspace(ratio[0], ratio[-1], FINE), np.geomspace(recess[0], recess[-1], FINE)
+    return *fine, RectBivariateSpline(np.log(recess), ratio, logarithms)(np.log(fine[1]), fine[0])
 
 
 def _draw_point(axis: Axes, result: Result, time: float) -> None:
@@ -93,11 +108,11 @@ def _draw_point(axis: Axes, result: Result, time: float) -> None:
         return
     needed, rise = (_three_digits(result, name) for name in ("point_force_to_touch", "point_rise"))
     axis.annotate(
-        f"touches at {needed};\n{format_quantity(point.force, 'N')} lifts it by {rise}",
-        (point.ratio, 1e3 * point.recess),
-        (12, 0),
-        textcoords="offset points",
-        va="center",
+        f"design point: touches at {needed};\n{format_quantity(point.force, 'N')} lifts it by {rise}",
+        (0.97, 0.03),
+        xycoords="axes fraction",
+        ha="right",
+        va="bottom",
         fontsize=8,
         color="black",
         bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
@@ -124,5 +139,7 @@ def _legend(result: Result) -> list[Any]:
     point = scene.design_point
     where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
-    words = f"displacement at touch beyond {scene.small_displacement:g} ro: outside small-displacement theory"
+    words = (
+        f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, outside small-displacement theory"
+    )
     return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=words)]

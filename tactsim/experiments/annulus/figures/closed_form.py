@@ -46,7 +46,7 @@ def closed_form_figure(result: Result) -> Figure:
             axis.set_ylabel(f"{words} in {prefixed}")
             despined(axis)
         if pulls.any():
-            axes[0].legend(fontsize=8, loc="upper left")
+            axes[0].legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
         axes[-1].set(xlabel="time in s", xlim=(0, time[-1]))
         entitle(figure, result.title or "Annulus on viscoelastic tissue, closed form")
     return figure

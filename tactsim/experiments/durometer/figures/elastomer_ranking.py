@@ -66,6 +66,10 @@ def _draw_readings(axis: Axes, result: Result, colours: Array) -> None:
         crowded = np.sum((np.abs(printed - across) < NEAR) & (np.abs(best - up) < NEAR) & (printed < across)) % 2
         at, side = (0, 15 if crowded else 6), "left" if across < NEAR / 2 else "center"
         axis.annotate(name, (across, up), at, textcoords="offset points", fontsize=7.5, ha=side)
+    short = (printed - readings)[np.isfinite(readings) & (readings > 0)]
+    if short.size and (short > 0).all():
+        words = f"each prediction is below\nits reading, those above 0\nby {short.min():.0f} to {short.max():.0f}"
+        axis.text(0.45, 0.2, words, transform=axis.transAxes, ha="center", va="center", fontsize=8, color="#57606a")
     axis.set(xlabel="printed Shore OO", ylabel="Shore OO predicted from the sensor's threshold", xlim=(0, top), ylim=(0, top))
     axis.set_title("predicted over printed; a reading of 0: bottomed out", loc="left")
     axis.legend(loc="upper left", fontsize=8)

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
 from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
@@ -16,6 +17,8 @@ from tactsim.results import Result
 
 LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
 MILLISIEMENS = 1e3
+DENSE = 200
+"""Forces at which the bands are compared."""
 COLUMNS = ("force", "line", "line_lower", "line_upper", "conductance", "used")
 
 
@@ -42,7 +45,9 @@ def force_calibration_figure(result: Result) -> Figure:
 
 def _draw_line(axis: Axes, result: Result) -> None:
     """Conductance in mS over force in N, one line per sensor."""
-    confidence = f"{100 * result.scene_as(CalibrationScene).confidence:.3g} % band of the line"
+    many = np.ndim(result.quantities["slope"].value) > 0
+    share = f"{100 * result.scene_as(CalibrationScene).confidence:.3g} % band"
+    confidence = f"{share} of each line; below, all as one" if many else f"{share} of the line"
     for number, sensor in enumerate(_sensors(result)):
         force, line, low, high, conductance, used = (sensor.history_values(name) for name in COLUMNS)
         order = np.argsort(force, kind="stable")
@@ -72,17 +77,26 @@ def _draw_errors(axis: Axes, result: Result) -> None:
     """Force read less force applied, and the bands of the lines in force, in percent of full scale."""
     scale = result.scene_as(CalibrationScene).full_scale
     slopes = np.atleast_1d(result.quantities["slope"].value)
-    for slope, sensor in zip(slopes, _sensors(result), strict=True):
-        force, line, low, high = (sensor.history_values(name) for name in COLUMNS[:4])
-        order = np.argsort(force, kind="stable")
-        low, high = (100 * (end - line)[order] / slope / scale for end in (low, high))
-        axis.fill_between(force[order], low, high, color=LINE_COLOUR, alpha=0.3 / np.sqrt(slopes.size), linewidth=0)
+    _draw_bands(axis, result, slopes * scale / 100)
+    for sensor in _sensors(result):
+        force = sensor.history_values("force")
         axis.plot(force, 100 * sensor.history_values("force_error") / scale, "o", color=DATA_COLOUR, markersize=_size(result))
     axis.axhline(0.0, color=LINE_COLOUR, linewidth=1)
     for name, extreme in (("linearity_positive", np.max), ("linearity_negative", np.min)):
         _draw_limit(axis, 100 * float(extreme(result.quantities[name].value)))
-    axis.set(xlabel="force in N", ylabel=f"read less applied,\n% of {scale:g} N")
+    axis.set(xlabel="force in N", ylabel=f"read − applied,\n% of {scale:g} N")
     despined(axis)
+
+
+def _draw_bands(axis: Axes, result: Result, scales: Array) -> None:
+    """The bands of the lines over scales (sensors,), as one between the widest of them: many on each other hide the readings."""
+    force = result.history_values("force")
+    along, ends = np.linspace(force.min(), force.max(), DENSE), []
+    for scale, sensor in zip(scales, _sensors(result), strict=True):
+        force, line, low, high = (sensor.history_values(name) for name in COLUMNS[:4])
+        order = np.argsort(force, kind="stable")
+        ends += [np.interp(along, force[order], (end - line)[order] / scale) for end in (low, high)]
+    axis.fill_between(along, np.min(ends, axis=0), np.max(ends, axis=0), color=LINE_COLOUR, alpha=0.3, linewidth=0)
 
 
 def _draw_limit(axis: Axes, limit: float) -> None:

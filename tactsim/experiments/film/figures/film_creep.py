@@ -9,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.film.figures.film_test import COEFFICIENTS
+from tactsim.experiments.film.figures.film_test import COEFFICIENTS, coefficient_axes, finish_coefficients
 from tactsim.experiments.film.scene import FilmCreepScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
@@ -58,15 +58,15 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 
 
 def _draw_coefficients(axis: Axes, result: Result) -> None:
-    forces = result.history_values("force")
+    forces, axes = result.history_values("force"), coefficient_axes(axis)
     for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
         values = result.history_values(name) / 1e6
         widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
-        axis.errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
+        axes[name].errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
         if f"{name}_slope" in result.quantities:
             slope, intercept = (float(result.quantities[f"{name}_{part}"].value) / 1e6 for part in ("slope", "intercept"))
             ends = np.array([0.0, forces.max()])
-            axis.plot(ends, slope * ends + intercept, "-", color=colour, linewidth=1)
-    axis.set(xlabel="force in N", ylabel="coefficient", ylim=(0, None), xlim=(0, None))
+            axes[name].plot(ends, slope * ends + intercept, "-", color=colour, linewidth=1)
+    axis.set(xlim=(0, None))
     axis.set_title("coefficients and their lines", loc="left")
-    axis.legend(loc="upper left")
+    finish_coefficients(axes)

@@ -12,6 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from scipy.interpolate import PchipInterpolator
 
 from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
@@ -21,14 +22,16 @@ from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
+DENSE = 200
+"""Points of a smooth curve."""
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
 SURFACE_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Resistances in kilohms that are written beside the surface."""
 COEFFICIENTS = (
-    ("instantaneous", "$E_0$ in MPa", "#1f4e79", "-"),
-    ("delayed", "$E_1$ in MPa", "#b8540a", "--"),
-    ("viscosity", "$\\mu_1$ in MPa s", "#4d9221", "-."),
+    ("instantaneous", "$E_0$", "#1f4e79", "-"),
+    ("delayed", "$E_1$", "#b8540a", "--"),
+    ("viscosity", "$\\mu_1$ (right)", "#4d9221", "-."),
 )
 
 
@@ -94,7 +97,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     resistance.legend(loc="upper right")
     resistance.set(xlabel="force in N", ylabel="resistance in kΩ")
     resistance.set_title(f"resistance, {when}", loc="left")
-    conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3, label="film")
+    conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3)
     slope, intercept = (float(result.quantities[f"line_{part}"].value) for part in ("slope", "intercept"))
     sign = "−" if intercept < 0 else "+"
     label = f"C = {slope * 1e3:.4g} mS/N · F {sign} {abs(intercept) * 1e3:.3g} mS\n{_inverse(slope, intercept)}"
@@ -102,13 +105,13 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     conductance.plot(ends, 1e3 * (slope * ends + intercept), "--", color=LINE, label=label)
     conductance.set(xlabel="force in N", ylabel="conductance in mS", ylim=(0, None))
     conductance.set_title("conductance and its line", loc="left")
-    conductance.legend(loc="lower right")
+    conductance.legend(loc="upper left")
 
 
 def _inverse(slope: float, intercept: float) -> str:
     """The line solved for the force: of these forces and this reading time, not the one printed of a whole sensor."""
     per_force, offset = 1e-3 / slope, intercept / slope
-    return f"or F = {per_force:.4g} N/mS · C {'−' if offset > 0 else '+'} {abs(offset):.3g} N, of these readings"
+    return f"or F = {per_force:.4g} N/mS · C {'−' if offset > 0 else '+'} {abs(offset):.3g} N,\nof these readings"
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:
@@ -116,18 +119,46 @@ def _draw_creep(axis: Axes, result: Result) -> None:
     chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):
-        axis.semilogy(times, resistance[:, k] / 1e3, "-", color=colour, label=f"{forces[k]:.3g} N")
+        axis.semilogy(*_smooth(times, resistance[:, k] / 1e3), "-", color=colour, label=f"{forces[k]:.3g} N")
+        axis.semilogy(times, resistance[:, k] / 1e3, ".", color=colour, markersize=4)
     axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ")
-    axis.set_title("creep of the resistance", loc="left")
+    axis.set_title("creep of the resistance; dots: the times of the case", loc="left")
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.legend(loc="center right", bbox_to_anchor=(1.0, 0.62), ncols=2)
 
 
+def _smooth(times: Array, values: Array) -> tuple[Array, Array]:
+    """A curve through positive values at times from 0 s on that has no other ups and downs than they have."""
+    if len(times) < 3:
+        return times, values
+    along = np.log1p(times / times[1])
+    dense = np.linspace(0.0, along[-1], DENSE)
+    return times[1] * np.expm1(dense), np.exp(PchipInterpolator(along, np.log(values))(dense))
+
+
 def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:
+    axes = coefficient_axes(axis)
     for name, label, colour, style in COEFFICIENTS:
-        axis.plot(forces, np.array(coefficients[name]) / 1e6, style, color=colour, label=label)
-    axis.set(xlabel="force in N", ylabel="coefficient", ylim=(0, None))
+        axes[name].plot(forces, np.array(coefficients[name]) / 1e6, style, color=colour, label=label)
     axis.set_title("standard linear solid over force", loc="left")
-    axis.legend(loc="upper left")
+    finish_coefficients(axes)
+
+
+def coefficient_axes(axis: Axes) -> dict[str, Axes]:
+    """Axes of each coefficient: the moduli on the left, the viscosity, which has another unit, on the right."""
+    right: Any = axis.twinx()
+    return {name: right if name == "viscosity" else axis for name, *_ in COEFFICIENTS}
+
+
+def finish_coefficients(axes: Mapping[str, Axes]) -> None:
+    """Labels, limits and the legend of the coefficients, once they are drawn."""
+    left, right = axes["delayed"], axes["viscosity"]
+    left.set(xlabel="force in N", ylabel="moduli $E_0$ and $E_1$ in MPa", ylim=(0, None))
+    right.set(ylim=(0, None))
+    right.set_ylabel("viscosity $\\mu_1$ in MPa s", color=COEFFICIENTS[-1][2])
+    right.tick_params(axis="y", colors=COEFFICIENTS[-1][2])
+    right.spines["top"].set_visible(False)
+    handles = [handle for one in (left, right) for handle in one.get_legend_handles_labels()[0]]
+    left.legend(handles, [label for _, label, *_ in COEFFICIENTS], loc="upper left")

@@ -11,9 +11,9 @@ from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 READINGS = (
-    ("unfiltered_force", "line, unfiltered", "#9ecae1", 0.8),
-    ("read_force", "line, low pass", "#1f4e79", 1.4),
-    ("model_force", "inverse of the film", "#b8540a", 1.0),
+    ("unfiltered_force", "line, unfiltered", "#9ecae1", 0.7, 3),
+    ("read_force", "line, low pass", "#1f4e79", 2.2, 2),
+    ("model_force", "inverse of the film", "#b8540a", 1.4, 4),
 )
 APPLIED, SATURATED = "#000000", "#b00020"
 
@@ -36,14 +36,14 @@ def sensor_response_figure(result: Result) -> Figure:
         figure = new_figure(10.0, 6.0)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1))
         above.plot(time, force, "--", color=APPLIED, linewidth=1.0, label="applied", zorder=5)
-        for name, label, colour, width in READINGS:
-            above.plot(time, columns[name], color=colour, linewidth=width, label=label)
-            below.plot(time, columns[name] - force, color=colour, linewidth=width)
+        for name, label, colour, width, order in READINGS:
+            above.plot(time, columns[name], color=colour, linewidth=width, label=label, zorder=order)
+            below.plot(time, columns[name] - force, color=colour, linewidth=min(width, 1.4), zorder=5 - order)
         flagged = columns["saturated"] > 0
         if flagged.any():
             above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")
         rms = float(result.quantities["rms_error"].value)
-        below.set(xlabel="time in s", ylabel="reading - applied in N")
+        below.set(xlabel="time in s", ylabel="reading − applied in N")
         below.set_title(f"error; root mean square {rms:.3g} N with low pass", loc="left")
         above.set(ylabel="force in N")
         above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

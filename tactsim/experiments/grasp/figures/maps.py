@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,12 @@ from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels
+from tactsim.experiments.grasp.figures.viewed import outline, true_bodies
+from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
 from tactsim.plotting.colours import PRESSURE_COLOURS
-from tactsim.plotting.plane_cut import QUARTERS, interfaces
-from tactsim.results import FieldFrame, Result
+from tactsim.results import Result
 
 MOST_NAMED = 5
 """Matrices with more rows or columns than this have the first and the last one named."""
@@ -30,18 +32,16 @@ BRIGHT = 0.5
 """Brightness of a cell above which numbers are dark."""
 LUMA = (0.299, 0.587, 0.114)
 """Weights of red, green and blue in brightness (ITU-R BT.601)."""
-CELL = 0.25e-3
-"""Spacing in m of the points on which the shadow of an inclusion is traced."""
 
 
 def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> None:
     """The upper and the lower jaw seen from above, with one colour bar."""
     factor, unit = scale_of(grasp.largest_pressure, "Pa")
     norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    shadows = inclusion_shadows(result.frames[-1], grasp.scene.size) if result.frames else None
+    bodies = list(true_bodies(grasp.scene))
     for axis, side in zip(axes, JAWS, strict=True):
         _draw_matrix(axis, grasp, side, (factor, unit, norm))
-        _draw_surroundings(axis, grasp, side, shadows)
+        _draw_surroundings(axis, grasp, side, bodies)
         total = float(grasp.forces[side].sum())
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
         axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
@@ -52,7 +52,7 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> N
         ScalarMappable(norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
     small = "; beneath it the force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
-    dashed = "undeformed block" + (" and outline of the inclusions" if shadows is not None and shadows[2].any() else "")
+    dashed = "undeformed block" + (" and outline of the inclusions" if bodies else "")
     bar.set_label(f"mean pressure on the taxel in {unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}")
     bar.outline.set_linewidth(0.5)
 
@@ -107,8 +107,8 @@ def _extent(grasp: LoadedTaxels, side: str) -> tuple[Array, Array]:
     return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.scene.size[:2], middle + half)
 
 
-def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, shadows: tuple[Array, Array, Array] | None) -> None:
-    """The jaw's face, the undeformed block and the shadows of the inclusions in it."""
+def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, bodies: Sequence[Solid]) -> None:
+    """The jaw's face, the undeformed block and the outlines of the inclusions in it."""
     jaw, place, size = grasp.scene.jaws[side], 1e3 * grasp.scene.place(side), 1e3 * grasp.scene.size
     half = 1e3 * np.array([jaw.width, jaw.depth]) / 2
     face = Rectangle(tuple(place[:2] - half), *(2 * half), facecolor="#e6e8eb", edgecolor="#30363d", linewidth=1.0, zorder=1)
@@ -119,27 +119,7 @@ def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, shadows: tupl
     axis.set(xlim=(low[0] - 1.0, high[0] + BESIDE + room), ylim=(low[1] - 1.0, high[1] + BESIDE + room / 2))
     axis.set_xticks([tick for tick in axis.get_xticks() if low[0] <= tick <= high[0]])
     axis.set_yticks([tick for tick in axis.get_yticks() if low[1] <= tick <= high[1]])
-    if shadows is not None and shadows[2].any():
-        x, y, covered = shadows
-        axis.contour(x, y, covered, levels=[0.5], colors=["w"], linewidths=2.2, zorder=3)
-        axis.contour(x, y, covered, levels=[0.5], colors=["k"], linewidths=1.0, linestyles="--", zorder=3)
-
-
-def inclusion_shadows(frame: FieldFrame, size: Array) -> tuple[Array, Array, Array]:
-    """Grid lines x and y in mm, and where (y, x) an undeformed inclusion lies above or below."""
-    x, y = (np.arange(-CELL, length + 1.5 * CELL, CELL) for length in size[:2])
-    covered = np.zeros((len(y), len(x)))
-    faces, between = interfaces(frame)
-    inner = faces[between.max(axis=1) > 0]
-    for a, b, c in frame.points[inner[:, QUARTERS].reshape(-1, 3)][:, :, :2]:
-        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-        columns, rows = (slice(*np.searchsorted(line, (low[k], high[k]))) for k, line in enumerate((x, y)))
-        turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-        if turn == 0 or columns.start == columns.stop or rows.start == rows.stop:
-            continue
-        px, py = x[None, columns], y[rows, None]
-        first = ((b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0])) / turn
-        second = ((px - a[0]) * (c[1] - a[1]) - (py - a[1]) * (c[0] - a[0])) / turn
-        within = (first >= -1e-9) & (second >= -1e-9) & (first + second <= 1 + 1e-9)
-        covered[rows, columns] = np.maximum(covered[rows, columns], within)
-    return 1e3 * x, 1e3 * y, covered
+    for body in bodies:
+        x, y, distance = outline(body, grasp.scene.size, 2)
+        axis.contour(x, y, distance, levels=[0.0], colors=["w"], linewidths=2.2, zorder=3)
+        axis.contour(x, y, distance, levels=[0.0], colors=["k"], linewidths=1.0, linestyles="--", zorder=3)

@@ -88,8 +88,9 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     drawn = axis.tripcolor(mesh, values, **style)
     extend = extension(values, (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)
-    extremes = f"{values.min():.3g} to {values.max():.3g} {unit} in this cut"
-    bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})")
+    extremes = f"in this cut {values.min():.3g} to {values.max():.3g} {unit}"
+    words = "as computed: it varies linearly within an element, so that steep changes show the elements"
+    bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})\n{words}")
     bar.outline.set_linewidth(0.5)
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
@@ -32,7 +33,7 @@ APART = 0.002
 LEAST_BAR = 0.01
 """Length of a bar without pressure, over the height of the block, so that its place is seen."""
 TISSUE_COLOUR, INCLUSION_COLOUR, JAW_COLOUR = "#f0b8a0", "#009e73", "#aab1ba"
-ARROW = 0.2
+ARROW = 0.15
 """Length of the arrows along the axes, over the longest side of the block."""
 _BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
 _BOX_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
@@ -56,7 +57,7 @@ def view_figure(result: Result) -> Figure:
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)
-        _write_captions(axes[1], result)
+            _name_inclusions(axis, result, camera)
         pressure_bar(figure, axes, grasp, "pressure", "its bar on the back of the jaw")
         status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
         title = result.title or "Grasp"
@@ -76,15 +77,26 @@ def pressure_bar(figure: Figure, axes: Any, grasp: LoadedTaxels, meaning: str, b
 def scene(frame: FieldFrame, grasp: LoadedTaxels) -> list[Surface]:
     """Everything in the view, in m."""
     nodes, (faces, between) = deformed(frame), interfaces(frame)
-    triangles = faces[:, QUARTERS]
+    triangles, sides = faces[:, QUARTERS], _sides(frame.points, faces, grasp.scene.size)
     outer = (between == [OUTER, 0]).all(axis=1)
-    surfaces = [_surface(nodes, triangles[outer], TISSUE_COLOUR, opacity=0.22, creases=True)]
+    surfaces = [
+        _surface(nodes, triangles[outer & (sides == side)], TISSUE_COLOUR, opacity=0.22, creases=True)
+        for side in np.unique(sides[outer])
+    ]
     for number in inclusions_of(frame):
         mine = (between == number).any(axis=1)
         surfaces.append(_surface(nodes, triangles[mine], INCLUSION_COLOUR, smooth=True))
     for side in JAWS:
         surfaces += jaw_surfaces(grasp, side)
     return surfaces
+
+
+def _sides(points: Array, faces: Array, size: Array) -> Array:
+    """Side of the undeformed block on which each face lies, 0 to 5, or -1: edges between sides are drawn however they roll."""
+    middles = points[faces[:, :3]].mean(axis=1)
+    distance = np.abs(np.concatenate([middles, middles - size], axis=1))
+    nearest = distance.argmin(axis=1)
+    return np.where(distance.min(axis=1) < 1e-6 * size.max(), nearest, -1)
 
 
 def _surface(nodes: Array, triangles: Array, colour: str, **style: Any) -> Surface:
@@ -130,7 +142,7 @@ def framing_camera(surfaces: list[Surface], direction: tuple[float, float, float
 def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
     """The directions of the axes with a length, and the jaws' names."""
     length = ARROW * float(grasp.scene.size.max())
-    corner = np.array([0.06, 0.93]) * camera.pixels
+    corner = np.array([0.05, 0.98]) * camera.pixels
     begin, *ends = camera.project(length * np.vstack([np.zeros(3), np.eye(3)]))
     for name, end in zip("xyz", ends, strict=True):
         tip = corner + end - begin
@@ -138,12 +150,13 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
             "",
             (tip[0], tip[1]),
             (corner[0], corner[1]),
+            annotation_clip=False,
             arrowprops={"arrowstyle": "-|>", "color": "k", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
         )
         beyond = corner + 1.18 * (end - begin)
         axis.text(beyond[0], beyond[1], name, ha="center", va="center")
     words = f"arrows: {format_quantity(length, 'm')}"
-    axis.text(0.0, -0.03, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
+    axis.text(0.0, -0.06, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
     for side in JAWS:
         jaw, sign = grasp.scene.jaws[side], 1.0 if side == "upper" else -1.0
         plate_corner = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
@@ -151,8 +164,10 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
         axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
 
 
-def _write_captions(axis: Axes, result: Result) -> None:
-    """The names of the inclusions in their colour."""
-    named = ", ".join(result.scene_as(GraspScene).named_inclusion(number) for number in inclusions_of(result.frames[-1]))
-    if named:
-        axis.text(0.99, 0.04, named, transform=axis.transAxes, ha="right", color=INCLUSION_COLOUR, fontweight="bold")
+def _name_inclusions(axis: Axes, result: Result, camera: Camera) -> None:
+    """The names of the inclusions where they lie."""
+    frame, rim = result.frames[-1], [withStroke(linewidth=2.5, foreground="w")]
+    for number, nodes in inclusions_of(frame).items():
+        x, y = camera.project(deformed(frame)[nodes].mean(axis=0)[None])[0]
+        name = result.scene_as(GraspScene).named_inclusion(number)
+        axis.text(x, y, name, ha="center", va="center", fontsize=8.5, fontweight="bold", path_effects=rim)

@@ -69,10 +69,10 @@ def viewed(result: Result) -> ViewedGrasp:
     signal, meaning = np.array([result.quantities[f"{name}_{side}"].numbers for side in JAWS]), "force"
     if name == "taxel_difference":
         signal, meaning = shown_change(signal)
-    return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(_bodies(scene)))
+    return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(true_bodies(scene)))
 
 
-def _bodies(scene: GraspScene) -> Iterator[Solid]:
+def true_bodies(scene: GraspScene) -> Iterator[Solid]:
     """Bodies of the inclusions that are not tissue themselves; one whose surface file is not at hand is left out."""
     for shape in scene.true_inclusions:
         try:

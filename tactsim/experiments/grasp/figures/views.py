@@ -19,6 +19,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS
+from tactsim.experiments.grasp.figures.taxel_numbers import draw_taxel_numbers
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies, outline
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
@@ -143,7 +144,7 @@ def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) ->
     (force, force_unit), (pressure, pressure_unit) = view.force_scale, view.pressure_scale(grasp)
     apart = "\n" if below else "  "
     bar.locator = MaxNLocator(nbins=6)
-    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({value * pressure / force:.2g})")
+    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({float(f'{value * pressure / force:.2g}'):g})")
     bar.update_ticks()
     bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit})")
     bar.outline.set_linewidth(0.5)
@@ -190,6 +191,13 @@ def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
     axis.add_collection(PatchCollection(squares, facecolor="none", edgecolor="w", linewidth=1.4, zorder=3.5, alpha=0.7))
     for chosen, hatch in ((valid.ravel(), None), (~valid.ravel(), "xxx")):
         axis.add_collection(PatchCollection([squares[k] for k in np.flatnonzero(chosen)], hatch=hatch, **none))
+    if max(valid.shape) <= MOST_NAMED:
+        named: dict[str, Any] = {"fontsize": 7, "color": GREY, "zorder": 4}
+        named["bbox"] = {"boxstyle": "round,pad=0.1", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
+        for number, middle in enumerate(rows.mean(axis=1), 1):
+            axis.text(columns[-1, 1] + 0.8, middle, f"row {number}", ha="left", va="center", **named)
+        for number, middle in enumerate(columns.mean(axis=1), 1):
+            axis.text(middle, rows[-1, 1] + 0.8, f"col. {number}", ha="center", va="bottom", **named)
 
 
 def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
@@ -245,4 +253,7 @@ def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
         words = "its centre lies in here with a probability of 90 %"
         handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
     axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)
-    axis.text(0.0, 0.68, "\n".join(grasp.findings), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
+    below = 0.98 - 0.046 * len(handles)
+    axis.text(0.0, below, "\n".join(grasp.findings), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
+    if max(grasp.signal.shape[1:]) <= MOST_NAMED:
+        draw_taxel_numbers(axis, grasp)

@@ -8,10 +8,17 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
-from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, draw_mesh, pressure_scale
+from tactsim.experiments.indentation.figures.section import (
+    Section,
+    draw_body,
+    draw_field,
+    draw_mesh,
+    pressure_bar,
+    pressure_scale,
+)
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
-from tactsim.plotting.canvas import despined, extension
+from tactsim.plotting.canvas import despined
 from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.results import Result
 from tactsim.units import format_quantity
@@ -49,12 +56,7 @@ def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[
     (low, high), factor, unit = pressure_scale(section, pressure, seen)
     values = factor * pressure
     drawn = draw_field(axis, section, values, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
-    extend = extension(values[seen], (low, high))
-    bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
-    bar.set_label(
-        f"pressure in {unit} (colours from the 1st to the 99th percentile of the area; largest {values.max():.4g} {unit})"
-    )
-    bar.outline.set_linewidth(0.5)
+    pressure_bar(axis, drawn, values[seen], (low, high), unit)
 
 
 def _window(section: Section, body: RigidBody, height: float) -> tuple[float, float, float]:

@@ -67,7 +67,10 @@ def draw_curve(axis: Axes, result: Result) -> None:
     axis.set_title(f"{len(result.steps)} accepted steps", loc="left")
     axis.margins(x=0.03, y=0.08)
     if np.isfinite(rise).all():
-        _draw_rise(axis.twinx(), displacement * along, rise * 1e3, result)
+        right = axis.twinx()
+        _draw_rise(right, displacement * along, rise * 1e3, result)
+        axis.set_zorder(right.get_zorder() + 1)  # its words stand on white, not under the dotted line
+        axis.patch.set_visible(False)
     else:
         despined(axis)
     _mark_threshold(axis, result, along, up)

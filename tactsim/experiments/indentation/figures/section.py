@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import scale_of, weighted_percentiles
+from tactsim.plotting.canvas import extension, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 
@@ -68,6 +68,17 @@ def pressure_scale(section: Section, pressure: Array, seen: Array) -> tuple[tupl
     low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
     return ((factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)), factor, unit
+
+
+def pressure_bar(axis: Axes, drawn: Any, pressure: Array, limits: tuple[float, float], unit: str) -> None:
+    """The colours of a pressure (n,) in a unit, pointed where values lie beyond the limits of the colours."""
+    extend = extension(pressure, limits)
+    bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
+    ends = [f"{float(f'{end:.3g}'):g}".replace("-", "−") for end in (pressure.min(), pressure.max())]
+    beyond = {"neither": "", "min": f"down to {ends[0]}", "max": f"up to {ends[1]}", "both": f"from {ends[0]} to {ends[1]}"}
+    arrows = f"\narrows: what lies beyond them, {beyond[extend]} {unit}" if beyond[extend] else ""
+    bar.set_label(f"pressure in {unit} (colours: 1st to 99th percentile of the area){arrows}")
+    bar.outline.set_linewidth(0.5)
 
 
 def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, ...] = (-1, 1), **style: Any) -> Any:

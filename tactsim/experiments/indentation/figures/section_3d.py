@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from tactsim.array import Array
 from tactsim.contact.tilted import Tilted
 from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, draw_inner_sensor
-from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, pressure_scale
+from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, pressure_bar, pressure_scale
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.plotting.canvas import despined
 from tactsim.plotting.colours import PRESSURE_COLOURS
@@ -85,11 +85,10 @@ def _draw_pressure(axis: Axes, section: Section, sides: tuple[float, ...], limit
     (left, right), (bottom, _) = limits
     pressure = np.asarray(section.frame.point_data["pressure [Pa]"]).ravel()
     x, z = section.places.T
-    (low, high), factor, unit = pressure_scale(section, pressure, (x >= left) & (x <= right) & (z >= bottom))
+    seen = (x >= left) & (x <= right) & (z >= bottom)
+    (low, high), factor, unit = pressure_scale(section, pressure, seen)
     drawn = draw_field(axis, section, factor * pressure, sides, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
-    bar = axis.figure.colorbar(drawn, ax=axis, extend="both", location="bottom", shrink=0.6, aspect=32, pad=0.02)
-    bar.set_label(f"pressure in {unit} (colours from the 1st to the 99th percentile of the area)")
-    bar.outline.set_linewidth(0.5)
+    pressure_bar(axis, drawn, factor * pressure[seen], (low, high), unit)
 
 
 def _draw_sensor(axis: Axes, recess: float | None, body: Tilted, height: float) -> None:

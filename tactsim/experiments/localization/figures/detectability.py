@@ -46,7 +46,9 @@ def detectability_figure(result: Result) -> Figure:
         figure = new_figure(10.4, 5.0)
         axes = figure.subplots(1, 2, sharey=True)
         for axis, (name, words) in zip(axes, PANELS.items(), strict=True):
-            _draw(axis, np.array(values[name], dtype=float), 1e3 * np.array(values["depths"]), colours)
+            radii = np.array(values[name], dtype=float)
+            _draw(axis, radii, 1e3 * np.array(values["depths"]), colours)
+            _name_curves(axis, radii, values, colours)
             axis.set_title(words, loc="left")
         axes[0].set_ylabel("smallest radius found in mm")
         figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
@@ -63,7 +65,7 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
             "marker": MARKERS[matrix % len(MARKERS)],
             "fillstyle": FILLS[ratio % len(FILLS)],
         }
-        axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=3.5, **style)
+        axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=5, **style)
     finite = 1e3 * radii[np.isfinite(radii)]
     top = 1.15 * float(finite.max()) if finite.size else 1.0
     axis.fill_between([0.0, top, top], [0.0, top, top], top, color=NEVER, linewidth=0)
@@ -72,9 +74,23 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
     despined(axis)
 
 
+def _name_curves(axis: Axes, radii: Array, values: Any, colours: Array) -> None:
+    """Taxels and stiffness of each curve above its end: few points make no line to look up in a legend."""
+    for ratio, matrix in np.ndindex(*radii.shape[:2]):
+        known = np.flatnonzero(np.isfinite(radii[ratio, matrix]))
+        if not known.size:
+            continue
+        end = known[-1 if matrix % 2 == 0 else 0]
+        place = (1e3 * values["depths"][end], 1e3 * radii[ratio, matrix, end])
+        count, times = values["matrices"][matrix], values["shear_ratios"][ratio]
+        words = f"{count} × {count}, {times:g}×" + (", at this depth only" if known.size == 1 else "")
+        style: Any = {"color": 0.75 * colours[matrix][:3], "fontsize": 7.5, "ha": "center", "va": "bottom"}
+        axis.annotate(words, place, (0, 5), textcoords="offset points", annotation_clip=False, **style)
+
+
 def _legend(values: Any, colours: Array) -> list[Any]:
     handles: list[Any] = [
-        Line2D([], [], color=colour, marker=MARKERS[k % len(MARKERS)], markersize=4, label=f"{count} x {count} taxels")
+        Line2D([], [], color=colour, marker=MARKERS[k % len(MARKERS)], markersize=4, label=f"{count} × {count} taxels")
         for k, (count, colour) in enumerate(zip(values["matrices"], colours, strict=True))
     ]
     handles += [
@@ -86,7 +102,7 @@ def _legend(values: Any, colours: Array) -> list[Any]:
             marker="o",
             markersize=4,
             fillstyle=FILLS[k % len(FILLS)],
-            label=f"{ratio:g} times the tissue's shear modulus",
+            label=f"{ratio:g}× the tissue's shear modulus",
         )
         for k, ratio in enumerate(values["shear_ratios"])
     ]

@@ -36,6 +36,16 @@ def localized(result: Result) -> ViewedGrasp:
     )
 
 
+def _contrast(result: Result) -> str:
+    """Whether the strongest inclusion is stiffer or softer than the tissue, as the estimate has it."""
+    value, deviation = (
+        float(result.quantities[name].value) if name in result.quantities else np.nan
+        for name in ("estimated_contrast", "contrast_deviation")
+    )
+    spread = f" ± {deviation:.2g}" if np.isfinite(deviation) else ""
+    return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: contrast {value:+.2g}{spread}, 0 is tissue"
+
+
 def _findings(centers: Array, result: Result) -> tuple[str, ...]:
     """The result in words, of estimates centred at ``centers`` (n, 3) in m."""
     quantities = result.quantities
@@ -48,6 +58,8 @@ def _findings(centers: Array, result: Result) -> tuple[str, ...]:
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+    if "estimated_contrast" in quantities:
+        lines.append(_contrast(result))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
         lines.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")

@@ -79,7 +79,7 @@ def threshold_error_figure(result: Result) -> Figure:
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
         force = result.quantities["threshold_force"].value
         true_force = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
-        _headed(figure, result, f"Error of the reported threshold (true: {true_force}); labels: mean ± standard deviation in %")
+        _headed(figure, result, f"true threshold {true_force}; in the squares: mean ± standard deviation of the error in %")
         mark_failure(figure, result)
     return figure
 

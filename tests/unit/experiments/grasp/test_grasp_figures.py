@@ -14,9 +14,9 @@ from tactsim.cli.figures.result_figures import rendered_figures
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures import view as grasp_view
 from tactsim.experiments.grasp.figures.grasp import history_figure, maps_figure, section_figure
-from tactsim.experiments.grasp.figures.maps import inclusion_shadows
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.section import cutting_plane
+from tactsim.experiments.grasp.figures.viewed import outline
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.block import BlockMeshSettings
@@ -165,8 +165,9 @@ def test_plane_passes_the_inclusion_and_crosses_a_long_one(frame):
     assert cutting_plane(bare, SIZE) == (1, 20e-3, 0)
 
 
-def test_shadow_of_a_ball_is_its_disc(frame):
-    x, y, covered = inclusion_shadows(frame, SIZE)
+def test_outline_of_a_ball_is_that_of_its_disc():
+    x, y, distance = outline(SPHERE.solids(SIZE)[0], SIZE, 2)
+    covered = (distance < 0).astype(float)
     area = covered.sum() * (x[1] - x[0]) * (y[1] - y[0])
     assert area == pytest.approx(np.pi * 5.0**2, rel=0.02)
     middle = ((covered * x).sum() / covered.sum(), (covered * y[:, None]).sum() / covered.sum())

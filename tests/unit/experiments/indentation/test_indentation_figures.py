@@ -45,6 +45,17 @@ def test_threshold_and_title_are_reported():
     assert "FAILED" not in written
 
 
+def test_a_colour_bar_says_what_lies_beyond_its_colours():
+    plain = made_up()
+    (frame,) = plain.frames
+    singular = {**frame.point_data, "pressure [Pa]": np.array([7.2e4, 1e3, 1e3, 2e3, 3e3, -5e2])}
+    written = texts(indentation_figure(replace(plain, frames=(replace(frame, point_data=singular),))))
+    assert "arrows: what lies beyond them, up to 72 kPa" in written
+    even = np.full(6, 1e3)
+    level = replace(plain, frames=(replace(frame, point_data={**frame.point_data, "pressure [Pa]": even}),))
+    assert "arrows" not in texts(indentation_figure(level))
+
+
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
     written = texts(indentation_figure(replace(made_up(status), quantities={})))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from scenes import grasp_scene
 
@@ -110,6 +113,25 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     row, column = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
     assert column > 70
     assert row < 30
+
+
+def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
+    figure = views_figure(localized(run(folders)), "")
+    for side, forces in zip(("upper", "lower"), BALL, strict=True):
+        axis = next(axis for axis in figure.findobj(Axes) if axis.get_title(loc="left") == f"{side} jaw in mN")
+        written = {text.get_position(): text.get_text() for text in axis.texts}
+        assert written == {(column, row): f"{1e3 * force:.3g}" for (row, column), force in np.ndenumerate(forces)}
+    named = [text.get_text() for axis in figure.axes for text in axis.texts]
+    assert {"row 1", "row 3", "col. 1", "col. 3"} <= set(named)
+
+
+@pytest.mark.parametrize(("contrast", "word"), [(-2.7, "Softer"), (0.8, "Stiffer")])
+def test_the_views_say_whether_it_is_softer_or_stiffer_than_the_tissue(contrast, word, folders):
+    result = run(folders)
+    estimated = {"estimated_contrast": Quantity(contrast, "1", ""), "contrast_deviation": Quantity(0.5, "1", "")}
+    line = f"{word} than the tissue at this closing: contrast {contrast:+.2g} ± 0.5, 0 is tissue"
+    assert line in localized(replace(result, quantities=result.quantities | estimated)).findings
+    assert not [line for line in localized(result).findings if "contrast" in line]
 
 
 def test_several_places_are_all_named_in_the_result(folders, tmp_path):
