@@ -102,7 +102,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     conductance.plot(ends, 1e3 * (slope * ends + intercept), "--", color=LINE, label=label)
     conductance.set(xlabel="force in N", ylabel="conductance in mS", ylim=(0, None))
     conductance.set_title("conductance and its line", loc="left")
-    conductance.legend(loc="lower right")
+    conductance.legend(loc="upper left")
 
 
 def _inverse(slope: float, intercept: float) -> str:
