@@ -124,7 +124,7 @@ class CatheterReport:
             self._steps,
             quantities={**self._sensors(), **(self._hardest() if complete else {})},
             assumptions=self._assumptions(),
-            warnings=self._warnings(),
+            warnings=(*self._warnings(), *(self._undecided() if complete else ())),
             scene=self._scene(),
         )
 
@@ -183,6 +183,16 @@ class CatheterReport:
         deviations = np.array([reading.deviation or 0.0 for reading in self._readings]) / self._area
         width = own * np.where(np.isfinite(means), means, 0.0) + 2 * deviations
         return [k + 1 for k in range(len(means)) if means[k] + width[k] >= means[best] - width[best]]
+
+    def _undecided(self) -> Iterator[str]:
+        """A warning if more than one sensor may be the hardest."""
+        means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+        if np.isfinite(means).any() and len(candidates := self._candidates(means, int(means.argmax()))) > 1:
+            finer = ", or set model: {kind: fem}" if self._experiment.model.kind == "closed_form" else ""
+            yield (
+                f"within noise and the errors that they do not share any of the sensors {', '.join(map(str, candidates))} may be "
+                f"the hardest; move the tip or lower the noise{finer}"
+            )
 
     def _chances(self) -> tuple[float, float, float]:
         """Part of the trials with a wrong sensor, with one mostly on a wrong tissue, and with no answer."""
