@@ -139,7 +139,7 @@ class AnnulusOnBands:
         nodes = mesh.nodes * np.column_stack([*np.ones((2, len(mesh.nodes))), thickness])
         body = Body(
             TaylorHood(nodes, mesh.elements, "solid"),
-            [LinearElastic(youngs_modulus=3 * float(modulus), poisson_ratio=0.5) for modulus in moduli],
+            [_incompressible(float(modulus)) for modulus in moduli],
             regions.ravel(),
         )
         height, radius = mesh.nodes[:, 2], np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1])
@@ -172,3 +172,8 @@ class AnnulusOnBands:
         away = np.hypot(distance + self._mesh.nodes[:, 0], self._mesh.nodes[:, 1])
         steps = scipy.special.ndtr((away[:, None] - self.borders) / (RAMP * self.outer_radius))
         return thickness[0] + steps @ np.diff(thickness)
+
+
+def _incompressible(shear_modulus: float) -> LinearElastic:
+    """Incompressible linear tissue of a shear modulus in Pa."""
+    return LinearElastic.model_validate({"youngs_modulus": 3 * shear_modulus, "poisson_ratio": 0.5})

@@ -132,8 +132,8 @@ class FiniteElementTip(FrozenModel):
         rows = rows[: 1 + _touch_row(result, rows, ring.recess)]
         rows[:, 2] = np.minimum(rows[:, 2], ring.recess)
         rows = np.vstack([rows, continued(rows, shape, tissue.thickness)])
-        columns = np.maximum(rows.T, 0.0)
-        return ContactCurve(shape, *columns, len(rows) - 2)
+        displacement, plate, rise, small = np.maximum(rows.T, 0.0)
+        return ContactCurve(shape, displacement, plate, rise, small, len(rows) - 2)
 
     def assumptions(self, recess_ratio: float) -> list[str]:
         """What the finite elements take."""

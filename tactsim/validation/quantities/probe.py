@@ -198,7 +198,7 @@ def probe_tissues_by_rate(
     """
     panels = []
     for rate in rates:
-        curves = []
+        curves: list[Data] = []
         for name, which in runs.items():
             style = "points" if curves and len(curves) >= tissues else "line"
             depths = np.array(EACH_MM) if style == "points" else np.linspace(0.1e-3, EACH_MM[-1], 50)

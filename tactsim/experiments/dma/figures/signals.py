@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,7 +14,7 @@ from tactsim.plotting.canvas import despined, entitle, new_figure, styled
 from tactsim.results import Result
 
 LOAD, DISPLACEMENT, TANGENT = "#1f4e79", "#b8540a", "#4d9221"
-TRUE_LINE = {"linestyle": ":", "linewidth": 1.2}
+TRUE_LINE: dict[str, Any] = {"linestyle": ":", "linewidth": 1.2}
 
 
 def signals_figure(result: Result) -> Figure:
