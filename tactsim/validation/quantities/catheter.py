@@ -76,6 +76,10 @@ def catheter_search_over_sensors(
 ) -> Data:
     """Chances of ``catheter_search`` over the number of sensors.
 
+    Parameters
+    ----------
+    sensors : numbers of sensors around the tip
+
     Raises
     ------
     CaseError, InputError
