@@ -19,6 +19,7 @@ ORDER = (
     "durometer",
     "elastomer_ranking",
     "dma_identification",
+    "thermogravimetry",
     "film_test",
     "film_creep",
     "calibration",

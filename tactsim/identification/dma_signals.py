@@ -22,6 +22,10 @@ SAMPLES_PER_PERIOD = 4.0
 """Largest gap between samples, as a part of the period: a quarter."""
 MOST_UNEXPLAINED = 0.5
 """Part of the variance of the signals that a refined frequency may leave: a sine at a wrong frequency leaves nearly all."""
+WHITE = 4.0
+"""Standard deviations of the correlation of white noise, 1 / sqrt(n), beyond which residuals count as correlated."""
+ROUND_OFF = 1e-12
+"""Residuals below this part of a signal are round-off."""
 SMALLEST_NOISE = 1e-13
 """Smallest relative noise that is reported, that of exact signals."""
 
@@ -95,6 +99,15 @@ class ModulusEstimate:
     """Standard errors of E_e and E_v in Pa."""
     compliance_errors: tuple[float, float]
     """Standard errors of D_e and D_v over their sizes, dimensionless."""
+    correlation: float
+    """Larger correlation of neighbouring residuals of load and displacement; 0 where only round-off is left."""
+    white_limit: float
+    """Correlation that white noise hardly exceeds, ``WHITE`` standard deviations; beyond it the errors are understated."""
+
+    @property
+    def has_white_residuals(self) -> bool:
+        """Whether the standard errors may be believed: transients, harmonics or a wrong frequency leave correlated residuals."""
+        return self.correlation <= self.white_limit
 
 
 def read_dma_signals(path: str | Path, *, frequency: float, area: float, height: float) -> DmaSignals:
@@ -119,6 +132,30 @@ def read_dma_signals(path: str | Path, *, frequency: float, area: float, height:
         return DmaSignals(**columns, frequency=frequency, area=area, height=height)
     except InvalidQuantity as error:
         raise InvalidQuantity(f"{path}: {error}") from None
+
+
+def read_dma_tests(path: str | Path, *, area: float, height: float) -> list[DmaSignals]:
+    """Signals of several tests in one CSV file ``frequency [Hz], time [s], load [N], displacement [mm]``, in order of frequency.
+
+    The rows of a test have its frequency; its times increase, and may begin anywhere.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be read.
+    InvalidQuantity
+        If a unit or a column is missing or the signals of a test do not determine a modulus, with file and frequency.
+    """
+    columns = read_columns(path, {"frequency": "Hz"} | COLUMNS, complete=True)
+    tests, frequencies = [], columns.pop("frequency")
+    for frequency in np.unique(frequencies):
+        rows = frequencies == frequency
+        try:
+            signals = {name: values[rows] for name, values in columns.items()}
+            tests.append(DmaSignals(**signals, frequency=float(frequency), area=area, height=height))
+        except InvalidQuantity as error:
+            raise InvalidQuantity(f"{path}: test at {frequency:g} Hz: {error}") from None
+    return tests
 
 
 def complex_modulus(signals: DmaSignals, *, refine: bool = False) -> ModulusEstimate:
@@ -153,7 +190,8 @@ def complex_modulus(signals: DmaSignals, *, refine: bool = False) -> ModulusEsti
     modulus_errors = _errors(modulus, load, displacement)
     compliance_errors = _errors(compliance, displacement, load)
     relative = (compliance_errors[0] / compliance.real, compliance_errors[1] / -compliance.imag)
-    return ModulusEstimate(frequency, complex(modulus), modulus_errors, relative)
+    correlation, limit = max(load.correlation, displacement.correlation), WHITE / float(np.sqrt(signals.time.size))
+    return ModulusEstimate(frequency, complex(modulus), modulus_errors, relative, correlation, limit)
 
 
 def dma_from_signals(signals: Sequence[DmaSignals], *, refine: bool = False) -> DmaData:
@@ -164,7 +202,18 @@ def dma_from_signals(signals: Sequence[DmaSignals], *, refine: bool = False) -> 
     InvalidQuantity
         If a test gives no modulus, or a frequency is repeated.
     """
-    estimates = sorted((complex_modulus(one, refine=refine) for one in signals), key=lambda estimate: estimate.frequency)
+    return dma_from_estimates([complex_modulus(one, refine=refine) for one in signals])
+
+
+def dma_from_estimates(estimates: Sequence[ModulusEstimate]) -> DmaData:
+    """Complex compliance at the frequencies of several estimates, in increasing order, with its noise.
+
+    Raises
+    ------
+    InvalidQuantity
+        If a frequency is repeated.
+    """
+    estimates = sorted(estimates, key=lambda estimate: estimate.frequency)
     noise = np.array([estimate.compliance_errors for estimate in estimates]).reshape(-1, 2).T
     return DmaData(
         np.array([estimate.frequency for estimate in estimates]),
@@ -182,10 +231,11 @@ def _design(time: Array, frequency: float) -> Array:
 
 @dataclass(frozen=True)
 class _Oscillation:
-    """Complex ``amplitude`` a - i b of a signal, and the ``covariance`` (2, 2) of (a, b)."""
+    """Complex ``amplitude`` a - i b of a signal, ``covariance`` (2, 2) of (a, b), ``correlation`` of neighbouring residuals."""
 
     amplitude: complex
     covariance: Array
+    correlation: float
 
 
 def _oscillation(signals: DmaSignals, values: Array, frequency: float) -> _Oscillation:
@@ -195,7 +245,10 @@ def _oscillation(signals: DmaSignals, values: Array, frequency: float) -> _Oscil
     residual = values - design @ coefficients
     variance = residual @ residual / (residual.size - coefficients.size)
     covariance = variance * np.linalg.inv(design.T @ design)[:2, :2]
-    return _Oscillation(complex(coefficients[0], -coefficients[1]), covariance)
+    square = float(residual @ residual)
+    exact = square <= residual.size * (ROUND_OFF * float(np.abs(values).max())) ** 2
+    correlation = 0.0 if exact else abs(float(residual[1:] @ residual[:-1])) / square
+    return _Oscillation(complex(coefficients[0], -coefficients[1]), covariance, correlation)
 
 
 def _errors(ratio: complex, numerator: _Oscillation, denominator: _Oscillation) -> tuple[float, float]:
@@ -226,3 +279,10 @@ def _refined_frequency(signals: DmaSignals) -> float:
     if not fit.success or unexplained > MOST_UNEXPLAINED:
         raise ConvergenceError(f"no frequency near {signals.frequency:g} Hz fits the signals; give it within {reach:.2g} Hz")
     return float(fit.x[0])
+
+
+def fitted_signals(signals: DmaSignals, frequency: float) -> tuple[Array, Array]:
+    """Sine, offset and drift that fit load (n,) in N and displacement (n,) in m best at a frequency in Hz."""
+    design = _design(signals.time, frequency)
+    load, displacement = (design @ np.linalg.lstsq(design, v, rcond=None)[0] for v in (signals.load, signals.displacement))
+    return load, displacement

@@ -53,6 +53,32 @@ def identify_film(
 
     Source: errata E28; thesis, eqs. 2.1.17 and 2.2.1.
     """
+    projection = projected_on_line(composite, line, forces=forces, delay=delay, points=points)
+    initial, touching = projection.resistances
+    if min(initial, touching) <= 0:
+        raise InvalidQuantity(f"the line {line} S/N, S gives resistances {initial:g} and {touching:g} ohm; both must be positive")
+    return FilmLine(float(initial), float(touching), projection.forces, projection.errors)
+
+
+@dataclass(frozen=True, eq=False)
+class LineProjection:
+    """Resistances (2,) in ohm, zero or above, of film and contacts that fit a line best, with forces (n,) in N, errors (n,)."""
+
+    resistances: Array
+    forces: Array
+    errors: Array
+
+
+def projected_on_line(
+    composite: Composite, line: tuple[float, float], *, forces: tuple[float, float], delay: float, points: int
+) -> LineProjection:
+    """The resistances of ``identify_film``, which may be zero; its arguments.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the line or the range is not positive.
+    """
     applied = np.linspace(*forces, points)
     measured = line[0] * applied + line[1]
     if not (0 < forces[0] < forces[1] and delay > 0 and np.all(measured > 0)):
@@ -63,7 +89,5 @@ def identify_film(
     contact = 1 / np.sqrt(applied)
     relative = 1 / unit.conductance([0.0, delay], history)[-1] - contact
     columns = np.column_stack([relative, contact]) * measured[:, None]
-    (initial, touching), _ = scipy.optimize.nnls(columns, np.ones(points))
-    if min(initial, touching) <= 0:
-        raise InvalidQuantity(f"the line {line} S/N, S gives resistances {initial:g} and {touching:g} ohm; both must be positive")
-    return FilmLine(float(initial), float(touching), applied, columns @ (initial, touching) - 1)
+    resistances, _ = scipy.optimize.nnls(columns, np.ones(points))
+    return LineProjection(resistances, applied, columns @ resistances - 1)

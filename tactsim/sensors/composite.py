@@ -8,7 +8,8 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from tactsim.model import FrozenModel
-from tactsim.sensors.tunnelling import LOOSEST_PACKING, particle_separation, tunnelling_decay
+from tactsim.sensors.thermogravimetry import FillerFraction, Thermogravimetry
+from tactsim.sensors.tunnelling import particle_separation, tunnelling_decay
 from tactsim.units import Area, Energy, Force, Length, Pressure, PressurePerForce, Resistance, Viscosity, ViscosityPerForce
 
 
@@ -41,8 +42,8 @@ class ViscosityLine(FrozenModel):
 class Composite(FrozenModel):
     """Filled polymer between two electrodes, measured on a sensor of ``reference_area``."""
 
-    volume_fraction: Annotated[float, Field(gt=0, lt=LOOSEST_PACKING)]
-    """Of the filler."""
+    volume_fraction: FillerFraction
+    """Of the filler: a number, or ``{sample_mass: 21.158 mg, filler_mass: 4.2083 mg, ...}`` of a thermogravimetric analysis."""
     particle_diameter: Annotated[Length, Field(gt=0)]
     """Of the filler."""
     barrier: Annotated[Energy, Field(gt=0)]
@@ -65,9 +66,20 @@ class Composite(FrozenModel):
     """Where the numbers come from."""
 
     @property
+    def filler_fraction(self) -> float:
+        """Volume fraction of the filler, however it is given."""
+        given = self.volume_fraction
+        return given.volume_fraction if isinstance(given, Thermogravimetry) else given
+
+    @property
+    def separation(self) -> float:
+        """s0 in m between neighbouring particles."""
+        return particle_separation(self.particle_diameter, self.filler_fraction)
+
+    @property
     def exponent(self) -> float:
         """gamma s0: how fast the resistance falls with strain."""
-        return tunnelling_decay(self.barrier) * particle_separation(self.particle_diameter, self.volume_fraction)
+        return tunnelling_decay(self.barrier) * self.separation
 
     def magnification(self, active_area: float | None) -> float:
         """Reference area over an active area in m^2, dimensionless; 1 for None, which is the reference area."""

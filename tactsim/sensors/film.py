@@ -22,9 +22,11 @@ from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.result import Quantity
+from tactsim.sensors.composite import Composite
 from tactsim.sensors.composite_library import AnyComposite, named_composite
 from tactsim.sensors.force_history import checked_forces, checked_signal, checked_times
-from tactsim.sensors.tunnelling import particle_separation, relative_resistance, tunnelling_decay
+from tactsim.sensors.thermogravimetry import Thermogravimetry
+from tactsim.sensors.tunnelling import relative_resistance, tunnelling_decay
 from tactsim.units import Area, format_quantity
 
 HOLM = 100.0
@@ -145,11 +147,10 @@ class Film(SensorFilm):
 
     def _constants(self) -> dict[str, Quantity]:
         composite = self.composite
-        separation = particle_separation(composite.particle_diameter, composite.volume_fraction)
         initial = composite.initial_resistance * self._magnification
-        return {
+        return _weighed(composite) | {
             "tunnelling_decay": Quantity(tunnelling_decay(composite.barrier), "1/m", "gamma of eq. 2.1.4"),
-            "particle_separation": Quantity(separation, "m", "s0 of eq. 2.1.8"),
+            "particle_separation": Quantity(composite.separation, "m", "s0 of eq. 2.1.8"),
             "resistance_exponent": Quantity(composite.exponent, "1", "gamma s0: fall of the resistance with strain"),
             "initial_resistance": Quantity(initial, "ohm", "R0 of the unstrained film of this area"),
             "contact_resistance": Quantity(composite.contact_resistance, "ohm", "of both contacts at 1 N"),
@@ -246,3 +247,14 @@ class Film(SensorFilm):
                 "lower the noise, the offset or the force"
             )
         return force, FilmState(time, force, delayed_strain(force))
+
+
+def _weighed(composite: Composite) -> dict[str, Quantity]:
+    """The filler's fraction with its uncertainty, if it comes from masses."""
+    given = composite.volume_fraction
+    if not isinstance(given, Thermogravimetry):
+        return {}
+    return {
+        "volume_fraction": Quantity(given.volume_fraction, "1", "of the filler, from the masses and densities"),
+        "volume_fraction_deviation": Quantity(given.volume_fraction_deviation, "1", "its standard uncertainty"),
+    }

@@ -23,8 +23,8 @@ class SensorRing(FrozenModel):
     Source: thesis, 7.3 and Fig. 7.1: at least four sensors; no size is printed, those here are assumptions.
     """
 
-    count: Annotated[int, Field(ge=4, le=64)] = 4
-    """Number of sensors; the thesis asks for at least four."""
+    count: Annotated[int, Field(ge=2, le=64)] = 4
+    """Number of sensors; the thesis asks for at least four, and fewer show what they miss."""
     radius: PositiveLength = 3e-3
     """Radius of the circle of their centres."""
     outer_radius: PositiveLength = 1e-3

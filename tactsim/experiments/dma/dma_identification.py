@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.experiments.dma.report import HISTORY_UNITS, DmaFinding, DmaReport
-from tactsim.experiments.dma.source import MeasuredDma, Seed, SignalsDma, SyntheticDma
+from tactsim.experiments.dma.source import MeasuredDma, Seed, SignalsDma, SyntheticDma, SyntheticSignals
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_determined import determination
@@ -34,7 +34,7 @@ class DmaIdentification(Experiment):
     """
 
     kind: Literal["dma_identification"] = "dma_identification"
-    data: Annotated[SyntheticDma | MeasuredDma | SignalsDma, Field(discriminator="kind")] = SyntheticDma()
+    data: Annotated[SyntheticDma | SyntheticSignals | MeasuredDma | SignalsDma, Field(discriminator="kind")] = SyntheticDma()
     """Where the compliances come from."""
     methods: Annotated[tuple[Method, ...], Field(min_length=1)] = ("least_squares", "genetic")
     """Fits to make; the constants that are reported without a prefix are those of the first."""
@@ -70,9 +70,10 @@ class DmaIdentification(Experiment):
 
     def begin(self) -> Course:
         """Fit by every method; one step per frequency of the curves, with data, fits and bands."""
-        data = self.data.measured()
+        analysis = self.data.analysis()
+        data = self.data.measured() if analysis is None else analysis.data
         spaced = np.geomspace(data.frequencies[0], data.frequencies[-1], CURVE_POINTS)
-        report = DmaReport(data, np.union1d(spaced, data.frequencies), self.data.model)
+        report = DmaReport(data, np.union1d(spaced, data.frequencies), self.data.model, analysis)
         reason = f"fitted by {' and '.join(name.replace('_', ' ') for name in self.methods)}"
         kept = "the fits made before are kept, the run is incomplete"
         return Course(self._fitted(report), lambda: report.findings(reason, self._assumptions()), kept)
@@ -106,6 +107,12 @@ class DmaIdentification(Experiment):
             assumptions.append(
                 f"synthetic data of Table 4.1 (times read as {self.data.times.replace('_', ' ')}) with {self.data.noise:.3g} "
                 "relative noise: the data of Fig. 4.10 are not printed"
+            )
+        if isinstance(self.data, SyntheticSignals):
+            settled = "in the steady state" if self.data.hold is None else "from rest, transients included"
+            assumptions.append(
+                f"synthetic signals of Table 4.1 (times read as {self.data.times.replace('_', ' ')}) {settled}, with "
+                f"{self.data.noise:.3g} of the amplitude as noise of each sample: the thesis prints neither signals nor specimen"
             )
         assumptions.append(
             "noise independent and Gaussian, its standard deviation proportional to each elastic and viscous compliance"

@@ -8,6 +8,8 @@ import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.experiments.dma.scene import DmaScene, KelvinFit
+from tactsim.experiments.dma.shown_signals import shown_signals
+from tactsim.experiments.dma.source import SignalsAnalysis
 from tactsim.identification.dma_bands import ComplianceBand
 from tactsim.identification.dma_data import PARTS, DmaData, parts_of
 from tactsim.identification.dma_determined import Determination
@@ -41,8 +43,14 @@ class DmaFinding:
 class DmaReport:
     """Collects the fits of one set of data and turns them into a result."""
 
-    def __init__(self, data: DmaData, frequencies: np.ndarray, model: GeneralizedKelvin | None):
-        self.data, self.frequencies = data, frequencies
+    def __init__(
+        self,
+        data: DmaData,
+        frequencies: np.ndarray,
+        model: GeneralizedKelvin | None,
+        analysis: SignalsAnalysis | None = None,
+    ):
+        self.data, self.frequencies, self.analysis = data, frequencies, analysis
         self.truth = None if model is None else parts_of(model.complex_compliance(2 * np.pi * frequencies))
         self.fits: dict[str, DmaFinding] = {}
         self.timing: dict[str, float] = {}
@@ -88,6 +96,7 @@ class DmaReport:
             quantities |= self._constants(finding, prefix="" if not quantities else f"{method}_")
         for method, finding in self.fits.items():
             quantities |= self._errors(method, finding)
+        quantities |= self._moduli()
         if self.fits:
             least = fit_least_squares(self.data, self._units, weighting="objective").objective
             quantities["least_objective"] = Quantity(least, "1/Pa**2", "the least of eq. 4.5.2, by least squares without weights")
@@ -100,6 +109,20 @@ class DmaReport:
                 "1",
                 f"combinations of the {len(determination.names)} constants that the data determine",
             )
+        return quantities
+
+    def _moduli(self) -> dict[str, Quantity]:
+        """Storage and loss modulus at the frequencies of the data, with their standard errors if signals were analysed."""
+        modulus, each = self.data.modulus, "at each frequency of the data"
+        values = {"storage": modulus.real, "loss": modulus.imag}
+        quantities = {f"{n}_modulus": Quantity(v.tolist(), "Pa", f"{n} modulus {each}") for n, v in values.items()}
+        quantities["loss_tangent"] = Quantity((modulus.imag / modulus.real).tolist(), "1", f"loss over storage modulus {each}")
+        if self.analysis is not None:
+            errors = np.array([estimate.modulus_errors for estimate in self.analysis.estimates]).T
+            quantities |= {
+                f"{n}_modulus_error": Quantity(error.tolist(), "Pa", f"standard error of the {n} modulus {each}")
+                for n, error in zip(values, errors, strict=True)
+            }
         return quantities
 
     @property
@@ -138,6 +161,14 @@ class DmaReport:
 
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
         warnings = [finding.determination.statement() for finding in list(self.fits.values())[:1]]
+        estimates = () if self.analysis is None else self.analysis.estimates
+        coloured = [f"{estimate.frequency:g}" for estimate in estimates if not estimate.has_white_residuals]
+        if coloured:
+            warnings.append(
+                f"the sines leave correlated residuals at {', '.join(coloured)} Hz: the specimen still creeps, the frequency is "
+                "off, or there are harmonics; the standard errors there are too small: hold and precycle longer, or set "
+                "refine: true"
+            )
         if "genetic" in self.fits:
             reached, least = quantities["genetic_objective"].value, quantities["least_objective"].value
             if reached > FAR_FROM_LEAST * least:
@@ -147,7 +178,8 @@ class DmaReport:
 
     def _scene(self) -> DmaScene:
         fits = {method: self._fit(finding) for method, finding in self.fits.items()}
-        return DmaScene(data_frequencies=self.data.frequencies.tolist(), fits=fits)
+        signals = () if self.analysis is None else shown_signals(self.analysis)
+        return DmaScene(data_frequencies=self.data.frequencies.tolist(), fits=fits, signals=signals)
 
     def _fit(self, finding: DmaFinding) -> KelvinFit:
         determination, band, history = finding.determination, finding.band, np.array(finding.fit.history or ())

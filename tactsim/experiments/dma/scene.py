@@ -35,6 +35,25 @@ class KelvinFit(FrozenModel):
     """Of synthetic data, whether the band holds the true curves."""
 
 
+class ShownSignals(FrozenModel):
+    """The beginning of the signals of one test, and the sines that fit them."""
+
+    frequency: float
+    """In Hz."""
+    time: tuple[float, ...]
+    """In s."""
+    load: tuple[float, ...]
+    """In N, at each time."""
+    displacement: tuple[float, ...]
+    """In m, at each time."""
+    fitted_load: tuple[float, ...]
+    """Sine, offset and drift, in N."""
+    fitted_displacement: tuple[float, ...]
+    """Sine, offset and drift, in m."""
+    lag: float
+    """Of the displacement behind the load, in rad."""
+
+
 class DmaScene(Scene):
     """The fits, by method."""
 
@@ -43,3 +62,5 @@ class DmaScene(Scene):
     """In Hz."""
     fits: dict[str, KelvinFit]
     """By the name of the method."""
+    signals: tuple[ShownSignals, ...] = ()
+    """Of the lowest and the highest frequency, if signals were analysed."""

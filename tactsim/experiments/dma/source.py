@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -9,12 +11,45 @@ from pydantic import Field, model_validator
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.identification.dma_data import FEWEST_FREQUENCIES, THESIS_FREQUENCIES, DmaData, read_dma, synthetic_dma
-from tactsim.identification.dma_signals import dma_from_signals, read_dma_signals
+from tactsim.identification.dma_signals import (
+    DmaSignals,
+    ModulusEstimate,
+    complex_modulus,
+    dma_from_estimates,
+    read_dma_signals,
+    read_dma_tests,
+)
+from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.units import Area, Frequency, Length, check_increasing
+from tactsim.units import Area, Force, Frequency, Length, Time, check_increasing, format_quantity
 
 Seed = Annotated[int, Field(ge=0)]
+
+
+@dataclass(frozen=True, eq=False)
+class SignalsAnalysis:
+    """Signals of several tests and the modulus that each gives, in order of frequency."""
+
+    signals: tuple[DmaSignals, ...]
+    estimates: tuple[ModulusEstimate, ...]
+
+    @classmethod
+    def of(cls, signals: Sequence[DmaSignals], *, refine: bool = False) -> Self:
+        """The moduli of the signals.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a test gives no modulus.
+        """
+        ordered = tuple(sorted(signals, key=lambda one: one.frequency))
+        return cls(ordered, tuple(complex_modulus(one, refine=refine) for one in ordered))
+
+    @property
+    def data(self) -> DmaData:
+        """Compliances with their noise."""
+        return dma_from_estimates(self.estimates)
 
 
 class SyntheticDma(FrozenModel):
@@ -46,6 +81,10 @@ class SyntheticDma(FrozenModel):
         """The data."""
         return synthetic_dma(self.model, self.frequencies, self.noise, self.seed)
 
+    def analysis(self) -> None:
+        """There are no signals."""
+        return None
+
 
 class MeasuredDma(FrozenModel):
     """Data read from a file."""
@@ -66,6 +105,76 @@ class MeasuredDma(FrozenModel):
         """The data."""
         return read_dma(self.path, self.noise)
 
+    def analysis(self) -> None:
+        """There are no signals."""
+        return None
+
+
+class SyntheticSignals(FrozenModel):
+    """Load and displacement signals of the model of Table 4.1 under an oscillating load, with noise of the recording.
+
+    The compliances come from the signals, as those of a measurement do; the thesis prints neither specimen nor loads.
+    """
+
+    kind: Literal["synthetic_signals"] = "synthetic_signals"
+    times: Literal["retardation_times", "viscosities"] = "retardation_times"
+    """The column of times of Table 4.1: in s, as eq. 4.3.8 uses it, or viscosities, as eq. 4.6.4 uses it."""
+    frequencies: Annotated[tuple[Annotated[Frequency, Field(gt=0)], ...], Field(min_length=FEWEST_FREQUENCIES)] = (
+        THESIS_FREQUENCIES
+    )
+    """Test frequencies, increasing; by default the eight of thesis section 4.4."""
+    area: Annotated[Area, Field(gt=0)] = 100e-6
+    """Rest area of the specimen's cross-section."""
+    height: Annotated[Length, Field(gt=0)] = 5e-3
+    """Rest height of the specimen."""
+    mean_load: Annotated[Force, Field(gt=0)] = 5e-3
+    """Mean of the load."""
+    amplitude: Annotated[Force, Field(gt=0)] = 2.5e-3
+    """Amplitude of the load."""
+    cycles: Annotated[float, Field(ge=1, le=10_000)] = 20.0
+    """Cycles that are recorded at each frequency, whole or not."""
+    samples_per_cycle: Annotated[int, Field(ge=4, le=10_000)] = 50
+    """Samples of a cycle."""
+    hold: Annotated[Time, Field(ge=0)] | None = None
+    """Time for which the mean load is held from rest before it oscillates; null records the steady state, free of transients."""
+    precycles: Annotated[float, Field(ge=0, le=100_000)] = 10.0
+    """Cycles before the record, in which the specimen settles; only with ``hold``."""
+    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.02
+    """Standard deviation of the noise of each sample of load and of displacement over the amplitude of its oscillation."""
+    seed: Seed = 1
+    """Seed of the noise."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        check_increasing(frequencies=self.frequencies)
+        if self.mean_load < self.amplitude:
+            mean, swing = format_quantity(self.mean_load, "N"), format_quantity(self.amplitude, "N")
+            raise ValueError(f"mean_load {mean} must be at least the amplitude {swing}, or the specimen is let go")
+        return self
+
+    @property
+    def model(self) -> GeneralizedKelvin:
+        """The true model."""
+        return table_4_1(self.times)
+
+    def analysis(self) -> SignalsAnalysis:
+        """The signals and what they give."""
+        machine = DmaMachine(
+            area=self.area,
+            height=self.height,
+            mean_load=self.mean_load,
+            amplitude=self.amplitude,
+            cycles=self.cycles,
+            samples_per_cycle=self.samples_per_cycle,
+            settling=None if self.hold is None else (self.hold, self.precycles),
+            noise=(self.noise, self.noise),
+        )
+        return SignalsAnalysis.of(synthetic_signals(self.model, self.frequencies, machine, seed=self.seed))
+
+    def measured(self) -> DmaData:
+        """The data."""
+        return self.analysis().data
+
 
 class SignalsTest(FrozenModel):
     """The signals of one test at one frequency."""
@@ -80,8 +189,11 @@ class SignalsDma(FrozenModel):
     """Load and displacement signals; amplitude and phase by least squares, the noise from what the sines leave."""
 
     kind: Literal["signals"] = "signals"
-    tests: Annotated[tuple[SignalsTest, ...], Field(min_length=FEWEST_FREQUENCIES)]
-    """One file for each frequency."""
+    tests: Annotated[tuple[SignalsTest, ...], Field(min_length=FEWEST_FREQUENCIES)] | None = None
+    """One file for each frequency; or give ``path``."""
+    path: InputPath | None = None
+    """One CSV file of all tests, beside the case or in the working folder; header such as
+    ``frequency [Hz], time [s], load [N], displacement [mm]``."""
     area: Annotated[Area, Field(gt=0)]
     """Rest area of the specimen's cross-section."""
     height: Annotated[Length, Field(gt=0)]
@@ -89,12 +201,28 @@ class SignalsDma(FrozenModel):
     refine: bool = False
     """Whether each frequency is first made to fit its signals best."""
 
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        if (self.tests is None) == (self.path is None):
+            raise ValueError("give either tests, one file for each frequency, or path, one file of all of them")
+        return self
+
     @property
     def model(self) -> None:
         """No true model is known."""
         return None
 
+    def analysis(self) -> SignalsAnalysis:
+        """The signals and what they give."""
+        if self.path is not None:
+            signals = read_dma_tests(self.path, area=self.area, height=self.height)
+        else:
+            signals = [
+                read_dma_signals(test.path, frequency=test.frequency, area=self.area, height=self.height)
+                for test in self.tests or ()
+            ]
+        return SignalsAnalysis.of(signals, refine=self.refine)
+
     def measured(self) -> DmaData:
         """The data."""
-        signals = (read_dma_signals(t.path, frequency=t.frequency, area=self.area, height=self.height) for t in self.tests)
-        return dma_from_signals(list(signals), refine=self.refine)
+        return self.analysis().data

@@ -47,3 +47,22 @@ class CalibrationScene(Scene):
     """In N."""
     confidence: float
     """Of the band of the line."""
+
+
+class DensityReading(FrozenModel):
+    """A density that the filler was taken to have."""
+
+    name: str
+    """Its name."""
+    contributions: dict[str, float]
+    """Standard uncertainties of the fraction by volume: due to ``masses``, ``filler_density`` and ``matrix_density``."""
+
+
+class ThermogravimetryScene(Scene):
+    """Readings of a thermogravimetric analysis."""
+
+    kind: Literal["thermogravimetry"] = "thermogravimetry"
+    readings: tuple[DensityReading, ...]
+    """In the order of the steps."""
+    matrix_density: float
+    """In kg/m^3."""

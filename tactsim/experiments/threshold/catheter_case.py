@@ -7,6 +7,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.experiments.threshold.tip_model import ClosedFormTip, TipModel
 from tactsim.experiments.threshold.valve_tissue import ValveSurface
 from tactsim.model import FrozenModel
 from tactsim.sensors.sensor_ring import SensorRing
@@ -26,6 +27,8 @@ class CatheterCase(FrozenModel):
     """The tissues."""
     ring: SensorRing = SensorRing()
     """The sensors."""
+    model: TipModel = ClosedFormTip()
+    """How the forces of the tissue are computed."""
     place: tuple[Length, Length]
     """Where the middle of the tip stands, x and y from the middle of the valve."""
     tilt: Annotated[Angle, Field(ge=0, le=STEEPEST)] = 0.0
@@ -45,6 +48,10 @@ class CatheterCase(FrozenModel):
     seed: Annotated[int, Field(ge=0)] = 1
     """Seed of the noise."""
 
+    def _scalable(self) -> bool:
+        """Whether a given threshold can take the place of the computed one."""
+        return self.model.kind == "closed_form" and all(one.relaxation is None for one in self.surface.tissues)
+
     @model_validator(mode="after")
     def _deep_enough(self) -> Self:
         for tissue in self.surface.tissues:
@@ -52,6 +59,11 @@ class CatheterCase(FrozenModel):
                 raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
             if self.ring.recess >= tissue.thickness:
                 raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
+            if tissue.threshold_pressure is not None and not self._scalable():
+                raise ValueError(
+                    f"the {tissue.name} has a threshold_pressure, which needs model: {{kind: closed_form}} and elastic tissues; "
+                    "leave it out"
+                )
         needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
         if needed > MOST_SAMPLES:
             raise ValueError(

@@ -13,7 +13,7 @@ from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
-from tactsim.experiments.threshold.valve_tissue import SensorContact
+from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import format_quantity
@@ -26,6 +26,8 @@ SENSOR_UNITS = {
     "lag": "m",
     "threshold_force": "N",
     "threshold_pressure": "Pa",
+    "threshold_lowest": "Pa",
+    "threshold_highest": "Pa",
     "reported_force": "N",
     "reported_pressure": "Pa",
     "reported_deviation": "Pa",
@@ -33,6 +35,8 @@ SENSOR_UNITS = {
 }
 SAME = 1e-9
 """Relative difference below which two tissues are equally hard."""
+ASKED = 4
+"""Sensors that the thesis asks for at least."""
 SMALL_DISPLACEMENT = 0.1
 """Displacement over the outer radius up to which linear theory is meant."""
 
@@ -82,11 +86,13 @@ class CatheterReport:
         self._shares = experiment.surface.shares(ring, experiment.place)
         self._readings: list[Reading] = []
         self._contacts: list[SensorContact] = []
+        self._errors: list[TipContact] = []
         self._steps: list[StepRecord] = []
 
-    def add(self, reading: Reading, contact: SensorContact) -> StepRecord:
+    def add(self, reading: Reading, met: TipContact) -> StepRecord:
         """The next sensor, with what it would measure without errors."""
-        index = len(self._readings)
+        index, contact = len(self._readings), met.contact
+        self._errors.append(met)
         self._readings.append(reading)
         self._contacts.append(contact)
         ring, mean, deviation = self._experiment.ring, reading.mean, reading.deviation
@@ -99,6 +105,8 @@ class CatheterReport:
             "lag": reading.lag,
             "threshold_force": contact.force,
             "threshold_pressure": contact.force / self._area,
+            "threshold_lowest": contact.force / self._area * (1 + met.low),
+            "threshold_highest": contact.force / self._area * (1 + met.high),
             "valid_rate": float(reading.valid.mean()),
         }
         if mean is not None:
@@ -116,7 +124,7 @@ class CatheterReport:
             self._steps,
             quantities={**self._sensors(), **(self._hardest() if complete else {})},
             assumptions=self._assumptions(),
-            warnings=self._warnings(),
+            warnings=(*self._warnings(), *(self._undecided() if complete else ())),
             scene=self._scene(),
         )
 
@@ -125,6 +133,8 @@ class CatheterReport:
         columns = {
             "threshold_force": ("N", "true threshold force of the tissue below [sensor]"),
             "threshold_pressure": ("Pa", "true threshold pressure of the tissue below [sensor]"),
+            "threshold_lowest": ("Pa", "least threshold pressure within the error of the model [sensor]"),
+            "threshold_highest": ("Pa", "largest threshold pressure within the error of the model [sensor]"),
             "reported_force": ("N", "mean reported threshold force [sensor]; null where none"),
             "reported_pressure": ("Pa", "mean reported threshold pressure [sensor]; null where none"),
             "reported_deviation": ("Pa", "standard deviation of the reported threshold pressure [sensor]"),
@@ -157,11 +167,32 @@ class CatheterReport:
         angle = float(self._experiment.ring.angles[best])
         quantities["hardest_sensor"] = Quantity(best + 1, "1", "sensor with the highest mean reported threshold, counted from 1")
         quantities["hardest_angle"] = Quantity(angle, "rad", "its angle around the tip")
+        candidates = self._candidates(means, best)
+        quantities["possible_hardest"] = Quantity(
+            candidates, "1", "sensors that may be the hardest within the noise and the errors that they do not share"
+        )
         if np.isfinite(second):
             margin = float(means[best]) - second
             quantities["margin"] = Quantity(margin, "Pa", "its threshold pressure above that of the second")
             quantities["margin_relative"] = Quantity(margin / float(means[best]), "1", "margin over its threshold pressure")
         return quantities
+
+    def _candidates(self, means: Array, best: int) -> list[int]:
+        """Numbers of the sensors whose mean report may be the highest: within the model's own errors and twice the noise's."""
+        own = np.array([met.own for met in self._errors])
+        deviations = np.array([reading.deviation or 0.0 for reading in self._readings]) / self._area
+        width = own * np.where(np.isfinite(means), means, 0.0) + 2 * deviations
+        return [k + 1 for k in range(len(means)) if means[k] + width[k] >= means[best] - width[best]]
+
+    def _undecided(self) -> Iterator[str]:
+        """A warning if more than one sensor may be the hardest."""
+        means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+        if np.isfinite(means).any() and len(candidates := self._candidates(means, int(means.argmax()))) > 1:
+            finer = ", or set model: {kind: fem}" if self._experiment.model.kind == "closed_form" else ""
+            yield (
+                f"within noise and the errors that they do not share any of the sensors {', '.join(map(str, candidates))} may be "
+                f"the hardest; move the tip or lower the noise{finer}"
+            )
 
     def _chances(self) -> tuple[float, float, float]:
         """Part of the trials with a wrong sensor, with one mostly on a wrong tissue, and with no answer."""
@@ -193,9 +224,9 @@ class CatheterReport:
         )
         yield f"tissues declared in the case, not in the thesis: {'; '.join(tissues)}"
         yield "sizes of tip and sensors declared; 7.3 prints none"
-        yield "linear, elastic, incompressible tissue; sensors do not feel each other"
+        experiment = self._experiment
+        yield from experiment.model.assumptions(experiment.ring.recess / experiment.ring.outer_radius)
         yield "the face of a tilted sensor is taken as flat on the tissue: the tilt only delays its touch"
-        yield "over two tissues a sensor meets their mean weighted by area"
 
     def _warnings(self) -> Iterator[str]:
         for index, reading in enumerate(self._readings, 1):
@@ -214,6 +245,10 @@ class CatheterReport:
         if low:
             least, resolved = format_quantity(min(low), "N"), format_quantity(RESOLUTION, "N")
             yield f"{len(low)} thresholds, {least} at least, are below the resolution of {resolved} of 3.1.2 (erratum E27)"
+        if self._experiment.ring.count < ASKED:
+            yield f"{self._experiment.ring.count} sensors around the tip; the thesis asks for at least {ASKED} (7.3)"
+        if self._experiment.model.kind != "closed_form":
+            return
         deepest = max((c.displacement for c in self._contacts), default=0.0) / self._experiment.ring.outer_radius
         if deepest > SMALL_DISPLACEMENT:
             limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"

@@ -10,7 +10,8 @@ import numpy as np
 from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.catheter_report import SENSOR_UNITS, CatheterReport, Reading
 from tactsim.experiments.threshold.sampling import ApproachSampling
-from tactsim.experiments.threshold.valve_tissue import BandTissue, SensorContact, ValveSurface
+from tactsim.experiments.threshold.tip_contact import SensorContact
+from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.results.result import StepRecord
@@ -51,9 +52,9 @@ class CatheterTip(CatheterCase, Experiment):
         low_pass, noise = self.sensor.chain.low_pass, self.sensor.chain.noise
         trigger = self.sensor.armed(low_pass, noise=noise, seed=[self.seed, 0])
         lags = self.ring.lag(self.tilt, self.tilt_direction)
-        contacts = self.surface.mixed(self.ring, self.place)
-        for index, (contact, lag) in enumerate(zip(contacts, lags, strict=True)):
-            yield report.add(self._reading(index, contact, float(lag), trigger), contact)
+        contacts = self.model.contacts(self.surface, self.ring, self.place, self.speed)
+        for index, (met, lag) in enumerate(zip(contacts, lags, strict=True)):
+            yield report.add(self._reading(index, met.contact, float(lag), trigger), met)
 
     def _reading(self, index: int, contact: SensorContact, lag: float, trigger: ThresholdTrigger) -> Reading:
         """What a sensor reports that touches after a displacement ``lag`` in m; nothing if the tip ends before."""

@@ -134,7 +134,7 @@ class ContactCurve:
         touch = int(np.argmin(np.abs(rows[:, 0] - reached.value)))
         rows[: touch + 1, 3] = 0.0
         if touch == len(rows) - 1:
-            rows = np.vstack([rows, _continued(rows, shape, beyond)])
+            rows = np.vstack([rows, continued(rows, shape, beyond)])
         displacement, plate, rise, small = np.maximum(rows.T, 0.0)
         return cls(shape, displacement, plate, rise, small, touch)
 
@@ -158,8 +158,10 @@ class ContactCurve:
         return Approach(speed, float(d[-1]) / speed, touch / speed, float(self.plate[self.touch]), forces)
 
 
-def _continued(rows: Array, shape: SensorShape, beyond: float) -> Array:
-    r"""A row past the touch: the last slopes go on, and the small sensor is a solid punch on the tissue.
+def continued(rows: Array, shape: SensorShape, beyond: float) -> Array:
+    r"""A row (4,) past the last of ``rows`` (n, 4), by ``beyond`` in m: the last slopes go on, the small sensor is a solid punch.
+
+    The columns are displacement in m, force on the plate in N, rise in m and force on the small sensor in N.
 
     .. math:: k_s = \frac{b}{a \kappa} \frac{dP}{d\epsilon}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -10,8 +9,9 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.array import Array
-from tactsim.experiments.threshold.contact_curve import Approach
+from tactsim.experiments.threshold.tip_contact import SensorContact
 from tactsim.model import FrozenModel
+from tactsim.relaxation import Relaxation
 from tactsim.sensors.sensor_ring import SensorRing
 from tactsim.units import Length, Pressure, check_increasing
 
@@ -29,34 +29,10 @@ class BandTissue(FrozenModel):
     """Thickness."""
     base: Literal["bonded", "slipping"] = "bonded"
     """How it rests on what lies below."""
+    relaxation: Relaxation | None = None
+    """Prony series of its stress; null is elastic tissue."""
     threshold_pressure: Annotated[Pressure, Field(gt=0)] | None = None
     """Threshold pressure of the sensor on this tissue, from a simulation; null takes the closed form."""
-
-
-@dataclass(frozen=True)
-class SensorContact:
-    r"""A sensor on tissue in which forces grow with displacement: lengths in m, forces in N.
-
-    .. math:: P = P^* d / d^*, \qquad P_s = k_s \frac{L}{d^*} (d - d^*)_+
-
-    with the threshold at force P* and displacement d*, and k_s of a solid punch of the hole's radius.
-    """
-
-    force: float
-    displacement: float
-    small_stiffness: float
-    recess: float
-
-    def approach(self, speed: float, depth: float) -> Approach:
-        """The forces over time at a speed in m/s down to a depth in m after the face has touched."""
-        rise_rate = speed * self.recess / self.displacement
-        touch = self.displacement / speed
-
-        def forces(times: Array) -> tuple[Array, Array]:
-            return self.force * times / touch, self.small_stiffness * rise_rate * np.maximum(times - touch, 0.0)
-
-        reached = touch if depth > self.displacement else np.inf
-        return Approach(speed, max(depth, 0.0) / speed, reached, self.force, forces)
 
 
 class ValveSurface(FrozenModel):

@@ -18,7 +18,8 @@ from tactsim.sensors.film_equations import Reading, creep_strain, varying_coeffi
 from tactsim.sensors.film_equations import film_resistance as resistance_of
 from tactsim.sensors.low_pass import LowPass
 from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.tunnelling import particle_separation, tunnelling_decay, volume_fraction
+from tactsim.sensors.thermogravimetry import Thermogravimetry
+from tactsim.sensors.tunnelling import tunnelling_decay, volume_fraction
 from tactsim.units import Density, Force, Frequency, Length, Mass, NonNegative, Positive, Time
 
 FilmComposite = Annotated[AnyComposite, Field(description="Name of a shipped composite, or its numbers.")]
@@ -64,6 +65,37 @@ def filler_fraction(
     }[by]
 
 
+@quantity(unit="1")
+def filler_fraction_deviation(
+    *,
+    sample_mass: Mass = 21.158e-6,
+    filler_mass: Mass = 4.2083e-6,
+    mass_resolution: Mass = 1e-10,
+    filler_density: Density = 560.0,
+    filler_density_deviation: Density = 0.0,
+    matrix_density: Density = 910.0,
+    matrix_density_deviation: Density = 0.0,
+) -> float:
+    """Standard uncertainty of the filler's fraction by volume, dimensionless, from those of masses and densities.
+
+    Parameters
+    ----------
+    sample_mass, filler_mass : before the analysis, and what remained
+    mass_resolution : last digit of the balance
+    filler_density, matrix_density : of carbon black and of polyethylene
+    filler_density_deviation, matrix_density_deviation : their standard uncertainties
+    """
+    return Thermogravimetry(
+        sample_mass=sample_mass,
+        filler_mass=filler_mass,
+        mass_resolution=mass_resolution,
+        filler_density=filler_density,
+        filler_density_deviation=filler_density_deviation,
+        matrix_density=matrix_density,
+        matrix_density_deviation=matrix_density_deviation,
+    ).volume_fraction_deviation
+
+
 @quantity(unit=lambda number: CONSTANT_UNITS[number])
 def film_constant(
     number: Literal["separation", "decay", "exponent", "initial_resistance", "contact_resistance", "creep_rate"],
@@ -78,7 +110,7 @@ def film_constant(
     force : force on the reference area, where the number depends on it
     """
     numbers: dict[str, Callable[[], float]] = {
-        "separation": lambda: particle_separation(composite.particle_diameter, composite.volume_fraction),
+        "separation": lambda: composite.separation,
         "decay": lambda: tunnelling_decay(composite.barrier),
         "exponent": lambda: composite.exponent,
         "initial_resistance": lambda: composite.initial_resistance,

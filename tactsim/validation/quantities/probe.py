@@ -7,13 +7,15 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import InputError
-from tactsim.interfaces import quantity
+from tactsim.interfaces import drawing, quantity
 from tactsim.model import FrozenModel
 from tactsim.sensors.switch_array import Formula, SwitchArray
 from tactsim.sensors.switch_reading import read_switches
 from tactsim.units import Frequency, Length, Positive, Speed, format_quantity
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 
@@ -102,6 +104,119 @@ def probe_force_ratio(
     if not outcome.converged:
         raise InputError(f"{study}, {run} has no forces: {outcome.reason}")
     return _force_at(depth, press, outcome, study) / _force_at(depth, over, outcome, study)
+
+
+class ProbeRun(FrozenModel):
+    """A run of a study of the probe."""
+
+    study: StudyName
+    run: RunName
+
+
+Tissues = Annotated[int, Field(ge=2, le=20, description="Number of tissues of both runs.")]
+Rates = Annotated[tuple[Positive[Speed], ...], Field(min_length=1, description="Rates that are compared.")]
+Depths = Annotated[tuple[Positive[Length], ...], Field(min_length=1, description="Depths that are compared.")]
+EACH_MM = (1e-3, 2e-3, 3e-3, 4e-3, 5e-3)
+
+
+@quantity(unit="1")
+def probe_model_difference(
+    inputs: Inputs, of: ProbeRun, beside: ProbeRun, *, tissues: Tissues, rates: Rates, depths: Depths = EACH_MM
+) -> float:
+    """Largest relative difference of the force on the probe between two models, over tissues, rates and depths; dimensionless.
+
+    Parameters
+    ----------
+    of : the run that is judged, such as one of the fast model
+    beside : the run whose forces it is related to, such as one by finite elements
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge, or has no touch of a tissue and rate down to a depth.
+    """
+    judged, reference = (_forces(inputs, which, tissues, rates, depths) for which in (of, beside))
+    return float(np.abs(judged / reference - 1).max())
+
+
+@quantity(unit="1")
+def probe_order_kept(
+    inputs: Inputs, of: ProbeRun, beside: ProbeRun, *, tissues: Tissues, rates: Rates, depths: Depths = EACH_MM
+) -> float:
+    """Part of the pairs of tissues, over rates and depths, that two models order alike by their force; dimensionless, 1 for all.
+
+    Parameters
+    ----------
+    of, beside : the runs
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge, or has no touch of a tissue and rate down to a depth.
+    """
+    first, second = (_forces(inputs, which, tissues, rates, depths) for which in (of, beside))
+    pairs = np.triu_indices(tissues, 1)
+    signs = [np.sign(forces[pairs[0]] - forces[pairs[1]]) for forces in (first, second)]
+    return float(np.mean(signs[0] == signs[1]))
+
+
+@quantity(unit="1")
+def probe_rank(inputs: Inputs, run: ProbeRun, press: Press, *, tissues: Tissues, depth: Positive[Length] = 5e-3) -> float:
+    """Place of a tissue among all at its rate and a depth, 1 for the hardest; dimensionless.
+
+    Parameters
+    ----------
+    run : where the forces come from
+    press : the tissue, and the rate at which all are pressed
+    depth : depth of the probe in the tissues
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge, or has no touch of a tissue and rate down to the depth.
+    """
+    forces = _forces(inputs, run, tissues, (press.rate,), (depth,))[:, 0, 0]
+    if press.tissue > tissues:
+        raise InputError(f"tissue {press.tissue} of {tissues}; allowed: up to their number")
+    return float(1 + np.count_nonzero(forces > forces[press.tissue - 1]))
+
+
+@drawing
+def probe_tissues_by_rate(
+    inputs: Inputs, title: Title, runs: Annotated[dict[str, ProbeRun], Field(min_length=1)], *, tissues: Tissues, rates: Rates
+) -> Data:
+    """Force in N over depth in m of every tissue, one panel per rate, by one or several models: thesis Fig. 5.8.
+
+    Parameters
+    ----------
+    runs : runs by the name of the model; the first is drawn with lines, others with points
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge.
+    """
+    panels = []
+    for rate in rates:
+        curves: list[Data] = []
+        for name, which in runs.items():
+            style = "points" if curves and len(curves) >= tissues else "line"
+            depths = np.array(EACH_MM) if style == "points" else np.linspace(0.1e-3, EACH_MM[-1], 50)
+            forces = _forces(inputs, which, tissues, (rate,), tuple(depths.tolist()))
+            curves += [series(f"tissue {k + 1}, {name}", depths, forces[k, 0], style) for k in range(tissues)]
+        panels.append(panel(f"force at {format_quantity(rate, 'm/s')}", "N", curves))
+    return curves_figure(title, "depth", "m", panels, even_panels=True)
+
+
+def _forces(inputs: Inputs, which: ProbeRun, tissues: int, rates: tuple[float, ...], depths: tuple[float, ...]) -> Array:
+    """Forces in N (tissue, rate, depth) on the way in."""
+    outcome = inputs.converged(which.study, which.run)
+    return np.array(
+        [
+            [[_force_at(depth, Press(tissue=k, rate=rate), outcome, which.study) for depth in depths] for rate in rates]
+            for k in range(1, tissues + 1)
+        ]
+    )
 
 
 def _force_at(asked: float, press: Press, outcome: RunOutcome, study: str) -> float:

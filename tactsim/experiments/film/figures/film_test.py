@@ -103,7 +103,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     label = f"C = {slope * 1e3:.4g} mS/N · F {sign} {abs(intercept) * 1e3:.3g} mS\n{_inverse(slope, intercept)}"
     ends = np.array([0.0, forces[-1]])
     conductance.plot(ends, 1e3 * (slope * ends + intercept), "--", color=LINE, label=label)
-    conductance.set(xlabel="force in N", ylabel="conductance in mS", ylim=(0, None))
+    conductance.set(xlabel="force in N", ylabel="conductance in mS", ylim=(0, 1.35e3 * float((1 / read).max())))
     conductance.set_title("conductance and its line", loc="left")
     conductance.legend(loc="upper left")
 

@@ -65,6 +65,9 @@ def _answer(result: Result) -> str:
     words = f"hardest at sensor {quantities['hardest_sensor'].value}, {angle:.0f}°"
     if "margin_relative" in quantities:
         words += f", {100 * quantities['margin_relative'].value:.2g} % above the second"
+    candidates = quantities["possible_hardest"].value
+    if len(candidates) > 1:
+        words += f"; sensors {', '.join(map(str, candidates))} may be the hardest"
     return f"{words}; wrong in {100 * quantities['chance_of_wrong'].value:.2g} % of the touches"
 
 
@@ -130,6 +133,8 @@ def _draw_thresholds(axis: Axes, result: Result, pressures: Array) -> None:
     true = KILOPASCALS * result.history_values("threshold_pressure")
     bars = np.nan_to_num(deviation)
     axis.errorbar(angle, pressures, yerr=bars, fmt="o", color="#1f4e79", capsize=3, label="reported, ± standard deviation")
+    lowest, highest = (KILOPASCALS * result.history_values(f"threshold_{end}") for end in ("lowest", "highest"))
+    axis.vlines(angle, lowest, highest, color="0.75", linewidth=7, zorder=0, label="within the error of the model")
     axis.plot(angle, true, "_", color=TRUE_COLOUR, markersize=16, markeredgewidth=1.8, label="true threshold")
     straddling = np.array(result.scene_as(CatheterTipScene).straddles)[: len(angle)]
     if straddling.any():
@@ -142,6 +147,6 @@ def _draw_thresholds(axis: Axes, result: Result, pressures: Array) -> None:
     axis.set_title("reported as the trigger fires, which is after the touch", loc="left")
     axis.set_xticks(angle)
     axis.set_xticklabels([f"{value:.0f}" for value in angle], rotation=45 if len(angle) > 12 else 0)
-    axis.set_ylim(0, 1.3 * float(np.nanmax(np.append(true, pressures + bars))))
+    axis.set_ylim(0, 1.45 * float(np.nanmax(np.append(highest, pressures + bars))))
     axis.legend(fontsize=8, loc="upper right", ncols=2)
     despined(axis)

@@ -11,8 +11,9 @@ from tactsim.case import load_case
 from tactsim.errors import CaseError, ConvergenceError, StorageError
 from tactsim.experiments.dma import dma_identification
 from tactsim.experiments.dma.dma_identification import DmaIdentification
-from tactsim.experiments.dma.figures import dma_identification_figure
-from tactsim.experiments.dma.source import MeasuredDma, SignalsDma, SignalsTest, SyntheticDma
+from tactsim.experiments.dma.figures.dma_identification import dma_identification_figure
+from tactsim.experiments.dma.figures.signals import signals_figure
+from tactsim.experiments.dma.source import MeasuredDma, SignalsDma, SignalsTest, SyntheticDma, SyntheticSignals
 from tactsim.identification.dma_data import synthetic_dma
 from tactsim.plotting import figures_for
 from tactsim.results import Status
@@ -142,3 +143,41 @@ def test_raw_signals_give_the_same_fit_as_their_moduli(tmp_path):
     expected = table_4_1().complex_compliance(2 * np.pi * measured.frequencies)
     np.testing.assert_allclose(measured.compliance, expected, rtol=1e-9, err_msg="exact sines, offset and drift")
     assert not np.allclose(SignalsDma(tests=tuple(tests), area=2 * area, height=height).measured().compliance, expected, rtol=0.1)
+
+
+def test_a_case_of_signals(request):
+    experiment = load_case(request.config.rootpath / "cases/dma_signals.yaml").experiment
+    outcome = experiment.model_copy(update={"replicates": 100}).run()
+    assert outcome.status is Status.CONVERGED
+    modulus = 1 / table_4_1().complex_compliance(2 * np.pi * np.array(outcome.scene.data_frequencies))
+    for name, true in (("storage", modulus.real), ("loss", modulus.imag)):
+        error, value = (outcome.quantities[f"{name}_modulus{end}"].numbers for end in ("_error", ""))
+        assert np.abs((value - true) / error).max() < 3.5  # of eight numbers with a fixed seed
+        assert (error < 0.03 * true).all()
+    assert outcome.quantities["loss_tangent"].numbers == pytest.approx(modulus.imag / modulus.real, rel=0.03)
+    assert any("signals of Table 4.1" in words for words in outcome.assumptions)
+    assert not any("correlated residuals" in words for words in outcome.warnings)
+    drawings = figures_for(outcome)
+    assert list(drawings) == ["dma_identification.png", "dma_signals.png"]
+    words = " ".join(text.get_text() for text in signals_figure(outcome).findobj(Text))
+    for label in ("1 Hz: the displacement lags by 73", "36 Hz", "loss tangent"):
+        assert label in words
+
+
+def test_signals_of_a_specimen_that_still_creeps_carry_a_warning():
+    data = SyntheticSignals(hold=2.0, precycles=0.0, noise=0.002)
+    outcome = DmaIdentification(data=data, methods=("least_squares",), replicates=50).run()
+    assert any("correlated residuals at" in words for words in outcome.warnings)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        ({"kind": "signals", "area": 1e-4, "height": 1e-3}, "give either tests"),
+        ({"kind": "synthetic_signals", "amplitude": 1.0}, "let go"),
+        ({"kind": "synthetic_signals", "frequencies": (3.0, 2.0, 1.0)}, "frequencies"),
+    ],
+)
+def test_bad_signals_are_refused(data, words):
+    with pytest.raises(CaseError, match=words):
+        DmaIdentification(data=data)

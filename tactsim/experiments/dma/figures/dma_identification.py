@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from tactsim.array import Array
+from tactsim.experiments.dma.figures.signals import signals_figure
 from tactsim.experiments.dma.scene import DmaScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
@@ -25,13 +26,18 @@ TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
 
 
 class DmaIdentificationFigures(ResultFigures):
-    """One figure: elastic on the left, viscous on the right."""
+    """Curves with their bands, and the signals where there are some."""
 
     kind: Literal["dma_identification"] = "dma_identification"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``dma_identification.png``, unless no fit was made."""
-        return {"dma_identification.png": Plot(lambda: dma_identification_figure(result))} if result.steps else {}
+        """``dma_identification.png``, unless no fit was made; ``dma_signals.png`` if signals were analysed."""
+        drawn: dict[str, Drawing] = {}
+        if result.steps:
+            drawn["dma_identification.png"] = Plot(lambda: dma_identification_figure(result))
+            if result.scene_as(DmaScene).signals:
+                drawn["dma_signals.png"] = Plot(lambda: signals_figure(result))
+        return drawn
 
 
 def dma_identification_figure(result: Result) -> Figure:

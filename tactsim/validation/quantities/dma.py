@@ -1,0 +1,88 @@
+"""Dynamic mechanical analysis from signals: thesis section 4.4, Fig. 4.8 to 4.10."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tactsim.analytic.atrial import table_4_1
+from tactsim.identification.dma_signals import DmaSignals, complex_modulus
+from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
+from tactsim.interfaces import drawing, quantity
+from tactsim.units import Frequency, NonNegative, Positive, Time
+from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+
+AREA, HEIGHT, MEAN_LOAD, AMPLITUDE = 100e-6, 5e-3, 5e-3, 2.5e-3
+"""Specimen and loads, in SI, which the thesis does not print; they cancel in a modulus."""
+SHOWN_CYCLES = 3.0
+
+Cycles = Annotated[float, Field(ge=1, le=1000, description="Recorded cycles, whole or not.")]
+NoisePart = Annotated[float, Field(ge=0, le=0.5, description="Noise of each sample over the amplitude of its oscillation.")]
+Hold = Annotated[
+    NonNegative[Time] | None,
+    Field(description="Time of the mean load from rest before the oscillation; null is the steady state."),
+]
+
+
+def _signals(frequency: float, cycles: float, noise: float, hold: float | None, seed: int) -> DmaSignals:
+    settling = None if hold is None else (hold, 0.0)
+    machine = DmaMachine(AREA, HEIGHT, MEAN_LOAD, AMPLITUDE, cycles=cycles, settling=settling, noise=(noise, noise))
+    (signals,) = synthetic_signals(table_4_1(), [frequency], machine, seed=seed)
+    return signals
+
+
+@quantity(unit="1")
+def dma_signal_error(
+    number: Literal["difference", "standard_error", "difference_over_error"],
+    frequency: Positive[Frequency],
+    *,
+    cycles: Cycles = 20.0,
+    noise: NoisePart = 0.0,
+    hold: Hold = None,
+    seed: Annotated[int, Field(ge=0)] = 1,
+) -> float:
+    """Modulus from load and displacement signals of Table 4.1 against its own E*, dimensionless.
+
+    ``difference`` is |E - E*| / |E*|; ``standard_error`` that of storage and loss modulus, summed in squares, over |E*|;
+    ``difference_over_error`` their ratio.
+
+    Parameters
+    ----------
+    number : which of them
+    frequency : of the test
+    seed : of the noise
+    """
+    estimate = complex_modulus(_signals(frequency, cycles, noise, hold, seed))
+    true = complex(1 / table_4_1().complex_compliance(np.array([2 * np.pi * frequency]))[0])
+    difference = abs(estimate.modulus - true) / abs(true)
+    error = float(np.hypot(*estimate.modulus_errors)) / abs(true)
+    return {"difference": difference, "standard_error": error, "difference_over_error": difference / error}[number]
+
+
+@quantity(unit="rad")
+def dma_signal_lag(frequency: Positive[Frequency], *, cycles: Cycles = 20.0, noise: NoisePart = 0.0) -> float:
+    """Angle in rad by which the displacement lags behind the load in the signals of Table 4.1.
+
+    Parameters
+    ----------
+    frequency : of the test
+    """
+    return float(np.angle(complex_modulus(_signals(frequency, cycles, noise, None, 1)).modulus))
+
+
+@drawing
+def dma_signals_over_time(title: Title, frequency: Positive[Frequency], *, noise: NoisePart = 0.02, hold: Hold = None) -> Data:
+    """Load in N and displacement in m over the first cycles of a test, as in Fig. 4.8 and 4.9.
+
+    Parameters
+    ----------
+    frequency : of the test
+    """
+    signals = _signals(frequency, SHOWN_CYCLES, noise, hold, 1)
+    panels = [
+        panel("load", "N", [series("load", signals.time, signals.load)]),
+        panel("displacement", "m", [series("displacement", signals.time, signals.displacement)]),
+    ]
+    return curves_figure(title, "time", "s", panels, even_panels=True)
