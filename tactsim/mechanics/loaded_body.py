@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ from tactsim.fem.regularising_springs import RegularisingSprings
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import TaylorHood
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.point_values import cauchy_stress, von_mises
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.section_fields import section_frame
@@ -26,6 +27,8 @@ from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
+VON_MISES = "von_mises [Pa]"
+"""Name of that field."""
 ACCURACY = 1e-6
 """Error of the first guess of a step, over its size: Newton mends it."""
 
@@ -116,9 +119,9 @@ class LoadedBody:
         acting = [*self._springs, *self._forces(forces)]
         unknowns = self._lifted(now, guess[:-1], self.conditions.motions.values(motions), acting, relaxation)
         if not now.contacts:
-            found = self.problem.solve(unknowns, loads=acting, relaxation=relaxation)
+            reached = self.problem.solve(unknowns, loads=acting, relaxation=relaxation)
             return ContactEquilibrium(
-                now.load, found.unknowns, found.iterations, found.history[-1], (), now.regularisation, found.kinematics
+                now.load, reached.unknowns, reached.iterations, reached.history[-1], (), now.regularisation, reached.kinematics
             )
         steps = [
             one.posed.place + factor * one.displacement - contact.place
@@ -131,9 +134,11 @@ class LoadedBody:
         )
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView."""
+        """Fields of a state for ParaView, with von Mises's stress, the mean of each element."""
         draw = section_frame if self.space.dim == 2 else solid_frame
-        return draw(self.mesh, self.body, state, time=time, isochoric=isochoric)
+        frame = draw(self.mesh, self.body, state, time=time, isochoric=isochoric)
+        stress = cauchy_stress(self.body, state.unknowns, state.kinematics, isochoric)
+        return replace(frame, cell_data={**frame.cell_data, VON_MISES: von_mises(stress).mean(axis=1)})
 
     def internal_forces(self, unknowns: Array, relaxation: RelaxationStep | None = None) -> Array:
         """Internal nodal forces (n, d) in N: what acts on each node from outside."""

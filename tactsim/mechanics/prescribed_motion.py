@@ -18,8 +18,9 @@ SAME = 1e-12
 class PrescribedMotion(Protocol):
     """Displacements of some unknowns that follow from one factor."""
 
-    name: str
-    """How messages call it."""
+    @property
+    def name(self) -> str:
+        """How messages call it."""
 
     @property
     def unknowns(self) -> Array:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from tactsim.array import Array
-from tactsim.model import FrozenModel
 from tactsim.mesh.mapped import Domain, grid_domain, polar, quarter_disc, spaced
 from tactsim.mesh.revolved import SweepSymmetry, swept
+from tactsim.model import FrozenModel
 from tactsim.units import Length
 
 Dimension = Literal["3d", "plane_strain", "axisymmetric"]
@@ -83,7 +83,13 @@ class BlockGeometry(Geometry):
         return self.kind
 
     def domain(self, dimension: Dimension) -> Domain:
-        """A grid of cells."""
+        """A grid of cells.
+
+        Raises
+        ------
+        ValueError
+            If it has none in this dimension, or lacks the cells that it needs there.
+        """
         if dimension == "axisymmetric":
             raise ValueError("a block has no axis; allowed dimensions: 3d, plane_strain; take geometry.kind: cylinder")
         if (self.z is None) != (dimension == "plane_strain"):
@@ -102,7 +108,7 @@ class RoundGeometry(Geometry):
     inner_radius: Annotated[Length, Field(ge=0)] = 0.0
     """Radius of the hole; 0 without one."""
     around: Annotated[int, Field(ge=2, le=1000)] = 8
-    """Cells around a quarter of a circle, where the mesh goes around; without a hole a circle has twice the cells of its radius."""
+    """Cells around a quarter of a circle, of a ring or a sweep; a section without a hole has twice those of its radius."""
     part: Part = "quarter"
     """What is computed in 3D: planes of symmetry through the axis bound a half (y = 0) or a quarter (x = 0, y = 0)."""
 
@@ -138,8 +144,8 @@ class RoundGeometry(Geometry):
 class CylinderGeometry(RoundGeometry):
     """A cylinder or a tube about z, its bottom at z = 0; faces outer, inner, bottom, top.
 
-    In plane strain it is long along z, and a quarter of its section is computed: x_plane (x = 0) and y_plane (y = 0) are planes of
-    symmetry.
+    In plane strain it is long along z, and a quarter of its section is computed: its faces x_plane (x = 0) and y_plane (y = 0)
+    are planes of symmetry.
     """
 
     kind: Literal["cylinder"] = "cylinder"
@@ -152,7 +158,13 @@ class CylinderGeometry(RoundGeometry):
         return self.kind
 
     def domain(self, dimension: Dimension) -> Domain:
-        """A section, or that section swept."""
+        """A section, or that section swept.
+
+        Raises
+        ------
+        ValueError
+            If it has none in this dimension, or lacks the cells that it needs there.
+        """
         if (self.axial is None) != (dimension == "plane_strain"):
             raise ValueError(
                 "geometry.axial belongs to a cylinder in 3d or axisymmetric, which needs it, and to none in plane_strain"
@@ -165,7 +177,10 @@ class CylinderGeometry(RoundGeometry):
 
 
 class BallGeometry(RoundGeometry):
-    """The upper half of a ball or a hollow sphere about the origin; faces outer, inner; the equator (z = 0) is a plane of symmetry."""
+    """The upper half of a ball or a hollow sphere about the origin; faces outer and inner.
+
+    The equator (z = 0) is a plane of symmetry.
+    """
 
     kind: Literal["ball"] = "ball"
 
@@ -175,7 +190,13 @@ class BallGeometry(RoundGeometry):
         return self.kind
 
     def domain(self, dimension: Dimension) -> Domain:
-        """A quarter of the meridian, or that swept."""
+        """A quarter of the meridian, or that swept.
+
+        Raises
+        ------
+        ValueError
+            If it has none in this dimension, or lacks the cells that it needs there.
+        """
         if dimension == "plane_strain":
             raise ValueError("a ball has no section in plane_strain; allowed dimensions: 3d, axisymmetric")
         section = self._rounded(("axis", "equator"), {"equator": 1})

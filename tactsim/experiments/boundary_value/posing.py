@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from tactsim.experiments.boundary_value.conditions import (
     TractionCondition,
 )
 from tactsim.experiments.boundary_value.geometry import AXES
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.body import Body
 from tactsim.fem.dead_load import DeadTraction
 from tactsim.fem.newton_options import NewtonOptions
@@ -40,16 +40,13 @@ from tactsim.mechanics.prescribed_motion import PrescribedMotion, PrescribedMoti
 from tactsim.mesh.mapped import Domain
 from tactsim.units import format_quantity
 
-if TYPE_CHECKING:
-    from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
-
 MEASURES: dict[str, Measure] = {"3d": "solid", "plane_strain": "plane_strain", "axisymmetric": "axisymmetric"}
 AT_NODE = 1e-9
 """Distance from a corner of the mesh, over the body's size, that is round-off."""
 SWITCH_SHARE = 0.03
 """Length over which a violated contact counts as much as the largest pressure, as a part of the body's size."""
 SOFTNESS = 2.5e-3
-"""Penetration that friction's penalty would leave without multipliers, as a part of the body's size: some way across a small cell."""
+"""Penetration that the penalty of friction would leave without multipliers, over the body's size: a part of a small cell."""
 FAR = 2.0
 """Distance from which a rigid body approaches, over the body's size."""
 PATIENCE = NewtonOptions(max_iterations=40, patience=12)
@@ -69,7 +66,7 @@ class PosedProblem:
     followed: tuple[FaceCondition | PointCondition | None, ...]
 
 
-def posed(problem: BoundaryValueProblem) -> PosedProblem:
+def posed(problem: BoundaryValueSetup) -> PosedProblem:
     """The model of a problem.
 
     Raises
@@ -83,7 +80,7 @@ def posed(problem: BoundaryValueProblem) -> PosedProblem:
 class _Posing:
     """Looks up what the conditions of a problem name."""
 
-    def __init__(self, problem: BoundaryValueProblem):
+    def __init__(self, problem: BoundaryValueSetup):
         self._problem, self._axes = problem, AXES[problem.dimension]
         self._domain = problem.geometry.domain(problem.dimension)
         mesh = self._domain.mesh

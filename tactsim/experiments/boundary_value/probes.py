@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,12 +20,10 @@ from tactsim.experiments.boundary_value.asked import (
 )
 from tactsim.experiments.boundary_value.geometry import AXES
 from tactsim.experiments.boundary_value.posing import PosedProblem, check_place, face_of
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.history_variables import HistoryVariables
 from tactsim.mechanics.history_path import TimedState
 from tactsim.mechanics.point_values import BodyPoint, cauchy_stress, von_mises
-
-if TYPE_CHECKING:
-    from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 
 CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}
@@ -48,7 +45,7 @@ Evaluation = Callable[[Present], float]
 class Probes:
     """All that is asked of one problem."""
 
-    def __init__(self, problem: BoundaryValueProblem, posed: PosedProblem):
+    def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem):
         self._problem, self._posed, self._model = problem, posed, posed.model
         self._axes = AXES[problem.dimension]
         self._evaluations = {name: self._evaluation(one) for name, one in problem.asked.items()}

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.material_forms import interpreted_warnings
 from tactsim.fem.time_steps import TimeControl
 from tactsim.interfaces.run import Course
@@ -21,11 +21,8 @@ from tactsim.mechanics.step_policy import StepPolicy, shortest_relaxation_time
 from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 
-if TYPE_CHECKING:
-    from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
-
 SAME_TIME = 1e-9
-"""Difference of two times over the duration that is round-off."""
+"""Relative difference of two times that is round-off."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +42,13 @@ class AskedTimes(TimeStepPolicy):
 
     def stops(self, interval: TimeInterval) -> list[float]:
         """Those of the policy and the further times within the interval, one for times that only round-off parts."""
-        slack = SAME_TIME * interval.end
-        within = [time for time in self.times if interval.start + slack < time < interval.end - slack]
+        start, end = interval.start * (1 + SAME_TIME), interval.end * (1 - SAME_TIME)
+        within = sorted({time for time in self.times if start < time < end})
         stops = self.policy.stops(interval)
-        return sorted([*within, *(stop for stop in stops if all(abs(stop - time) > slack for time in within))])
+        return sorted([*within, *(stop for stop in stops if all(abs(stop - time) > SAME_TIME * time for time in within))])
 
 
-def boundary_value_course(problem: BoundaryValueProblem) -> Course:
+def boundary_value_course(problem: BoundaryValueSetup) -> Course:
     """The run of a problem.
 
     Raises
@@ -82,7 +79,7 @@ def boundary_value_course(problem: BoundaryValueProblem) -> Course:
 class BoundaryValueRecord(ContactRecord[LoadedBody]):
     """Collects the accepted states of a problem."""
 
-    def __init__(self, problem: BoundaryValueProblem, posed: PosedProblem, probes: Probes, path: FollowedPath):
+    def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
         material, size = problem.material, posed.size
         super().__init__(
             posed.model, path, tolerance=problem.largest_penetration(size), stiffest=3 * material.shear_modulus / size
@@ -128,8 +125,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
 
     def _step_at(self, time: float) -> StepRecord | None:
         """The last step at a time in s."""
-        slack = SAME_TIME * self.problem.duration
-        return next((step for step in reversed(self.steps) if abs(step.values["time"] - time) <= slack), None)
+        return next((step for step in reversed(self.steps) if abs(step.values["time"] - time) <= SAME_TIME * time), None)
 
     def assumptions(self) -> list[str]:
         """Which part of the body is computed, and what contact and time allow."""
@@ -154,8 +150,8 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
         at = format_quantity(first.values["time"], "s")
         return [
-            f"{share:.1%} of the volume left strong ellipticity, first at {at}: there the answer depends on the mesh; take a stable "
-            "material set"
+            f"{share:.1%} of the volume left strong ellipticity, first at {at}: there the answer depends on the mesh; "
+            "take a stable material set"
         ]
 
     def scene(self) -> BoundaryValueScene:
