@@ -25,12 +25,14 @@ class Span(FrozenModel):
 
     length: Annotated[Length, Field(gt=0)]
     """Length of all of them together."""
-    cells: Annotated[int, Field(ge=1, le=1000)]
+    cells: Count
     """Their number."""
     ratio: Annotated[float, Field(ge=1e-6, le=1e6)] = 1.0
     """Length of the last one over that of the first; they grow evenly."""
 
 
+Count = Annotated[int, Field(ge=1, le=1000)]
+Corner = tuple[Length, Length]
 Spans = Annotated[tuple[Span, ...], Field(min_length=1)]
 
 
@@ -44,11 +46,6 @@ def line_of(spans: tuple[Span, ...], start: float = 0.0) -> Array:
 
 class Geometry(FrozenModel):
     """A body that can be meshed in some dimensions."""
-
-    @property
-    @abstractmethod
-    def kind_name(self) -> str:
-        """How messages call it."""
 
     @abstractmethod
     def domain(self, dimension: Dimension) -> Domain:
@@ -77,11 +74,6 @@ class BlockGeometry(Geometry):
     z: Spans | None = None
     """Cells along z, in 3D only."""
 
-    @property
-    def kind_name(self) -> str:
-        """Its kind."""
-        return self.kind
-
     def domain(self, dimension: Dimension) -> Domain:
         """A grid of cells.
 
@@ -98,6 +90,43 @@ class BlockGeometry(Geometry):
         if self.z is None:
             return grid_domain((x, y), (("left", "right"), ("bottom", "top")))
         return grid_domain((x, y, line_of(self.z)), (("left", "right"), ("front", "back"), ("bottom", "top")))
+
+
+class QuadrilateralGeometry(Geometry):
+    """A quadrilateral in plane strain; faces left, bottom, right and top, as its corners follow one another.
+
+    The cells are those of a square, carried over linearly from side to side, such as those of Cook's membrane.
+    """
+
+    kind: Literal["quadrilateral"] = "quadrilateral"
+    corners: tuple[Corner, Corner, Corner, Corner]
+    """Corners (x, y), counterclockwise from that between left and bottom."""
+    cells: tuple[Count, Count]
+    """Numbers of cells along bottom and top, and along left and right."""
+
+    def domain(self, dimension: Dimension) -> Domain:
+        """A grid of cells between the corners.
+
+        Raises
+        ------
+        ValueError
+            If the dimension is not plane strain, or the corners make no convex quadrilateral in this order.
+        """
+        if dimension != "plane_strain":
+            raise ValueError("a quadrilateral is meshed in plane_strain only")
+        corners = np.array(self.corners)
+        before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+        if not (before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] > 0).all():
+            raise ValueError("the corners must make a convex quadrilateral, counterclockwise")
+        lines = [np.linspace(0.0, 1.0, count + 1) for count in self.cells]
+        square = grid_domain(lines, (("left", "right"), ("bottom", "top")))
+
+        def place(nodes: Array) -> Array:
+            s, t = nodes.T
+            weights = np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t], axis=1)
+            return np.asarray(weights @ corners)
+
+        return square.mapped(place)
 
 
 class RoundGeometry(Geometry):
@@ -152,11 +181,6 @@ class CylinderGeometry(RoundGeometry):
     axial: Spans | None = None
     """Cells along z; none in plane strain."""
 
-    @property
-    def kind_name(self) -> str:
-        """Its kind."""
-        return self.kind
-
     def domain(self, dimension: Dimension) -> Domain:
         """A section, or that section swept.
 
@@ -184,11 +208,6 @@ class BallGeometry(RoundGeometry):
 
     kind: Literal["ball"] = "ball"
 
-    @property
-    def kind_name(self) -> str:
-        """Its kind."""
-        return self.kind
-
     def domain(self, dimension: Dimension) -> Domain:
         """A quarter of the meridian, or that swept.
 
@@ -203,4 +222,4 @@ class BallGeometry(RoundGeometry):
         return section if dimension == "axisymmetric" else self._revolved(section)
 
 
-AnyGeometry = Annotated[BlockGeometry | CylinderGeometry | BallGeometry, Field(discriminator="kind")]
+AnyGeometry = Annotated[BlockGeometry | QuadrilateralGeometry | CylinderGeometry | BallGeometry, Field(discriminator="kind")]

@@ -20,7 +20,7 @@ from tactsim.mechanics.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 
-AskedName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+AskedName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$")]
 RECORDED = {
     "time": "s",
     "min_volume_ratio": "1",
