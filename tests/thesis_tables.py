@@ -5,13 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 MANIFEST = """\
-schema: tactsim/thesis-manifest/1
+schema: tactsim/thesis-manifest/2
 chapters:
   "3":
     small: 3
+numbers:
+  T053: sensitivity
+errata:
+  E4: a missing term
 """
 TABLE = """\
-schema: tactsim/thesis-table/1
+schema: tactsim/thesis-table/2
 title: A small table
 chapter: 3
 source: nowhere
@@ -19,20 +23,23 @@ rows:
   - id: stiffness
     quantity: force over displacement
     place: line 1
-    printed: 125 N/m
+    numbers: [T053]
+    expected: 125 N/m
+    from: thesis
     evaluate: {kind: stiffness_resolution, force: 0.1 N, displacement: 0.8 mm}
-    tolerance: {relative: 0.001, reason: a quotient}
-    state: {reproduced: true}
+    ends: {kind: reproduced, within: {relative: 0.001, reason: a quotient}}
   - id: known
     quantity: force over displacement
     place: line 2
-    printed: 250 N/m
+    expected: 250 N/m
+    from: thesis
     evaluate: {kind: stiffness_resolution, force: 0.1 N, displacement: 0.8 mm}
-    state: {outside_by: 0.5, tolerance: 0.01, reason: half the displacement was meant}
+    ends: {kind: outside, by: 0.5, within: 0.01, why: half the displacement was meant}
   - id: supply
     quantity: supply voltage
     place: line 3
-    state: {assumption: not printed}
+    from: thesis
+    ends: {kind: not_testable, why: not printed}
 """
 
 

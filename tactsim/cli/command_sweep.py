@@ -113,7 +113,8 @@ def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:
         from tactsim.dataset.running.executors import Cluster
 
         return Cluster(sweep.text, arguments.scheduler, folder=sweep.folder)
-    from tactsim.dataset.running.executors import LocalWorkers, usable_cores
+    from tactsim.dataset.running.executors import LocalWorkers
+    from tactsim.outside.environment import usable_cores
 
     return LocalWorkers(sweep.text, arguments.workers or usable_cores(), folder=sweep.folder)
 

@@ -12,32 +12,36 @@ from tactsim.errors import NOT_AS_RECORDED, InputError
 from tactsim.shipped import PROGRAM
 
 if TYPE_CHECKING:
-    from tactsim.validation import TableOutcome
+    from tactsim.validation import LoadedTables, Validation
 
 NAME = "validate"
-SUMMARY = "compare with the tables of the thesis"
+SUMMARY = "compare with the tables of the thesis and with published problems"
 DESCRIPTION = """\
-Computes every number of the thesis that its tables (cases/thesis/*.yaml) record, and states for
-each row whether it is reproduced, reproduced after an erratum, outside by a factor, a finding
-above or below a limit, or an assumption. A known deviation does not fail; a row that leaves its
-recorded state, or is absent, does. Simulations are taken from a cache unless --fresh is given.
+Computes every number that the tables (cases/thesis, cases/published) record, and states for each
+row how it ends: reproduced (after an erratum), confirmed, inside a range, outside by a factor,
+contradicted, transcribed, regression, not testable. A known deviation does not fail; a row that
+leaves its class, or is absent, does. Simulations are taken from a cache unless --fresh is given.
+The report is one HTML file that opens from disk, with the same as Markdown and JSON beside it.
 """
 EXAMPLES = """\
 examples:
   tactsim validate
+  tactsim validate published
   tactsim validate table_3_1 table_3_3 --out results/chapter_3
   tactsim validate table_3_2 --fresh --workers 4
 """
-TABLES = Path("cases", "thesis")
+GROUPS = (Path("cases", "thesis"), Path("cases", "published"))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("tables", metavar="TABLE", nargs="*", help="names of tables; all by default")
+    parser.add_argument("tables", metavar="TABLE", nargs="*", help="names of tables, or thesis or published; all by default")
     parser.add_argument("--out", metavar="DIR", type=Path, default=Path("results", "validation"), help="default: %(default)s")
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier validations computed")
-    parser.add_argument("--workers", metavar="N", type=int, default=2, help="processes for simulations; default: %(default)s")
-    parser.add_argument("--from", dest="folder", metavar="DIR", type=Path, help=f"folder of the tables; default: {TABLES}")
+    parser.add_argument("--workers", metavar="N", type=int, help="processes for simulations; default: one a core")
+    parser.add_argument(
+        "--from", dest="folder", metavar="DIR", type=Path, help="folder of the tables; default: those that come with tactsim"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,28 +53,43 @@ def run(arguments: argparse.Namespace) -> int:
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
     from tactsim.results.writing import write_files
-    from tactsim.validation import StudyRunner, compare, json_report, load_tables, markdown_report, terminal_report
+    from tactsim.validation import html_report, json_report, load_groups, markdown_report, summary_text
 
-    if arguments.workers < 1:
+    if arguments.workers is not None and arguments.workers < 1:
         raise InputError(f"--workers {arguments.workers} is out of range; must be at least 1")
-    loaded = load_tables(arguments.folder or tables_folder(), arguments.tables)
-    runner = StudyRunner(workers=arguments.workers, fresh=arguments.fresh)
-    wanted = {name: table.studies for name, table in loaded.tables.items()}
-    studies = runner.outcomes(wanted, loaded.folder, _progress)
-    outcomes = [compare(name, table, loaded.folder, studies[name]) for name, table in loaded.tables.items()]
-    figures, troubles = _figures(outcomes)
-    console.out(terminal_report(loaded, outcomes))
+    folders = [arguments.folder] if arguments.folder else shipped_folders()
+    validations = [_validated(loaded, arguments) for loaded in load_groups(folders, arguments.tables)]
+    for validation in validations:
+        console.out(summary_text(validation))
+    figures, troubles = _figures(validations)
+    names = {table: list(drawn) for table, drawn in figures.items()}
     reports = {
-        "validation.json": json_report(loaded, outcomes).encode(),
-        "validation.md": markdown_report(loaded, outcomes, tuple(figures)).encode(),
+        "validation.html": html_report(validations, figures).encode(),
+        "validation.json": json_report(validations).encode(),
+        "validation.md": markdown_report(validations, names).encode(),
     }
-    write_files(reports | {f"figures/{name}": content for name, content in figures.items()}, arguments.out)
+    drawings = {f"figures/{name}": content for drawn in figures.values() for name, content in drawn.items()}
+    write_files(reports | drawings, arguments.out)
     for trouble in troubles:
         console.note(f"warning: {trouble}")
-    left = [f"{outcome.name}.{row.row.id}" for outcome in outcomes for row in outcome.rows if not row.held]
-    wrong = [*left, *(fault.partition(":")[0] for fault in loaded.faults)]
-    console.out(f"{'left their recorded state: ' + ', '.join(wrong) if wrong else 'every row holds'}; report {arguments.out}")
+    wrong = [name for validation in validations for name in validation.wrong]
+    state = f"left their class: {', '.join(wrong)}" if wrong else "every row ended as recorded"
+    console.out(f"{state}; report {arguments.out / 'validation.html'}")
     return NOT_AS_RECORDED if wrong else 0
+
+
+def _validated(loaded: LoadedTables, arguments: argparse.Namespace) -> Validation:
+    """The tables of a group computed and compared; each is printed when it is complete."""
+    from tactsim.outside.environment import usable_cores
+    from tactsim.validation import StudyRunner, Validation, compare, table_text
+
+    runner = StudyRunner(workers=arguments.workers or usable_cores(), fresh=arguments.fresh)
+    wanted = {name: table.studies for name, table in loaded.tables.items()}
+    ended = {}
+    for name, studies in runner.outcomes(wanted, loaded.folder, _progress):
+        ended[name] = compare(name, loaded.tables[name], loaded.folder, studies)
+        console.out(table_text(ended[name]))
+    return Validation(loaded, tuple(ended[name] for name in loaded.tables))
 
 
 def _progress(line: str) -> None:
@@ -78,7 +97,7 @@ def _progress(line: str) -> None:
         console.note(f"  {line}")
 
 
-def tables_folder() -> Path:
+def shipped_folders() -> list[Path]:
     """The tables of the folder one works in, else those that come with tactsim.
 
     Raises
@@ -87,21 +106,26 @@ def tables_folder() -> Path:
         If there are none.
     """
     for root in (Path(), PROGRAM):
-        if (root / TABLES).is_dir():
-            return root / TABLES
-    raise InputError(f"there is no folder {TABLES} here; name one with --from DIR")
+        if folders := [root / group for group in GROUPS if (root / group).is_dir()]:
+            return folders
+    raise InputError(f"there is no folder {GROUPS[0]} here; name one with --from DIR")
 
 
-def _figures(outcomes: Sequence[TableOutcome]) -> tuple[dict[str, bytes], list[str]]:
-    """File name -> PNG, and a warning for each figure that could not be drawn."""
-    drawn: dict[str, bytes] = {}
+def _figures(validations: Sequence[Validation]) -> tuple[dict[str, dict[str, bytes]], list[str]]:
+    """Table -> file name -> PNG, with an overview of all, and a warning for each figure that could not be drawn."""
+    from tactsim.validation.figures import overview, validation_figure
+    from tactsim.validation.html import COLOURS
+
+    rows = [(row, str(outcome.table.chapter)) for each in validations for outcome in each.outcomes for row in outcome.rows]
+    drawn: dict[str, dict[str, bytes]] = {}
+    if rows:
+        drawn["overview"] = {"overview.png": overview([row for row, _ in rows], [chapter for _, chapter in rows], COLOURS)}
     troubles: list[str] = []
-    for outcome in outcomes:
+    for outcome in (outcome for validation in validations for outcome in validation.outcomes):
         for name, drawing in outcome.table.figures.items():
             try:
-                from tactsim.validation.figures import validation_figure
-
-                drawn[f"{outcome.name}_{name}.png"] = validation_figure(drawing(outcome.inputs))
+                picture = validation_figure(drawing(outcome.inputs))
+                drawn.setdefault(outcome.name, {})[f"{outcome.name}_{name}.png"] = picture
             except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
                 troubles.append(f"figure {name} of {outcome.name}: {type(error).__name__}: {error}")
     return drawn, troubles

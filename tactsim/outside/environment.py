@@ -40,3 +40,8 @@ def check_environment(variables: Mapping[str, str], folder: Path) -> None:
             raise InputError(
                 f"the environment variable {name} is {one_line(value, 80)!r}; allowed: 1 to {MOST_THREADS}, or unset"
             )
+
+
+def usable_cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,16 +1,22 @@
-"""Holds each row against what is computed: it keeps its recorded state, or has left it."""
+"""Holds each row against what is computed: it ends as recorded, or has left its class."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tactsim.errors import TactsimError
+from tactsim.validation.endings import Computed, Interval, NotTestable, Regression, Reproduced, label_of
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.study import RunOutcome
-from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter, Row, Table
+from tactsim.validation.table import Row, Table
+
+LEFT = "left"
+FIGURE = re.compile(r"\{([a-z0-9_.]+)\}")
+"""A figure of a reason that the run fills in: ``{computed}`` and ``{ratio}`` of the row itself, ``{ID}`` of another one."""
 
 
 @dataclass(frozen=True)
@@ -18,20 +24,35 @@ class RowOutcome:
     """How a row ended."""
 
     row: Row
-    computed: float | None
-    """In SI; None if nothing was evaluated."""
+    computed: Computed | None
+    """A number or an interval in SI; None if nothing was evaluated."""
     held: bool
-    """Whether the row kept its recorded state."""
-    state: str
-    """The state in words, or how it was left."""
+    """Whether the row stayed in its class."""
+    ended: str
+    """How it ended in words, or how it left."""
     reason: str
-    """Why the tolerance, the deviation or the assumption is what it is."""
+    """Why the tolerance, the limit or the deviation is what it is, with the figures of this run."""
+
+    @property
+    def label(self) -> str:
+        """The class that it ended in."""
+        return label_of(self.row.ends) if self.held else LEFT
+
+    @property
+    def shown(self) -> float | tuple[float, float] | None:
+        """What was computed, in the unit of what is expected."""
+        if isinstance(self.computed, Interval):
+            return self.row.shown(self.computed.low), self.row.shown(self.computed.high)
+        return None if self.computed is None else self.row.shown(self.computed)
 
     @property
     def ratio(self) -> float | None:
-        """Computed over printed."""
-        expected = self.row.expected if self.row.evaluate else None
-        return None if self.computed is None or not expected else self.computed / expected
+        """Computed over expected; of an interval its nearer end."""
+        expected = self.row.expected_si
+        if self.computed is None or not expected:
+            return None
+        value = self.computed.nearest(expected) if isinstance(self.computed, Interval) else self.computed
+        return value / expected
 
 
 @dataclass(frozen=True)
@@ -45,53 +66,59 @@ class TableOutcome:
 
     @property
     def held(self) -> bool:
-        """Whether every row kept its recorded state."""
+        """Whether every row stayed in its class."""
         return all(row.held for row in self.rows)
 
 
 def compare(name: str, table: Table, folder: Path, studies: Mapping[str, tuple[RunOutcome, ...]]) -> TableOutcome:
     """Every row of a table, evaluated and compared."""
     inputs = Inputs(folder=folder, studies=studies)
-    return TableOutcome(name, table, tuple(compare_row(row, inputs) for row in table.rows), inputs)
+    rows = [compare_row(row, inputs) for row in table.rows]
+    computed = {row.row.id: row for row in rows}
+    return TableOutcome(name, table, tuple(replace(row, reason=_filled(row, computed)) for row in rows), inputs)
 
 
 def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
-    """One row, evaluated and compared."""
-    computed: float | None = None
-    if row.evaluate is not None:
-        try:
-            computed = float(row.evaluate(replace(inputs, expected=row.expected)))
-        except TactsimError as error:
-            return RowOutcome(row, None, False, "LEFT: cannot be evaluated", str(error))
-        if not math.isfinite(computed):
-            return RowOutcome(row, None, False, "LEFT: not a finite number", f"{computed}")
-    if isinstance(row.state, Assumption):
-        return RowOutcome(row, computed, True, "assumption", row.state.assumption)
-    if computed is None:  # the validation of a row lets only an assumption lack it
-        return RowOutcome(row, None, False, "LEFT: nothing to evaluate", "")
-    if isinstance(row.state, Bound):
-        return _finding(row, row.state, computed)
-    return _deviation(row, row.state, computed) if isinstance(row.state, OutsideBy) else _reproduction(row, computed)
+    """One row, evaluated and compared; its reason as the table writes it."""
+    if isinstance(row.ends, NotTestable) or row.evaluate is None:
+        return RowOutcome(row, None, True, label_of(row.ends), _reason(row))
+    try:
+        computed = row.evaluate(inputs)
+    except TactsimError as error:
+        return RowOutcome(row, None, False, "LEFT: cannot be evaluated", str(error))
+    value = computed if isinstance(computed, Interval) else float(computed)
+    ends = (value.low, value.high) if isinstance(value, Interval) else (value,)
+    if not all(math.isfinite(end) for end in ends):
+        return RowOutcome(row, None, False, "LEFT: not a finite number", f"{computed}")
+    judgement = row.ends.judge(value, row.expected_si, row.unit)
+    words = judgement.ended if judgement.held else f"LEFT: {judgement.ended}"
+    return RowOutcome(row, value, judgement.held, words, _reason(row))
 
 
-def _reproduction(row: Row, computed: float) -> RowOutcome:
-    expected, allowed = row.expected or 0.0, row.allowed or 0.0
-    # Computed and expected may be the same number by two roundings.
-    held = abs(computed - expected) <= allowed + 1e-12 * abs(expected)
-    after = f" after {row.state.reproduced_after}" if isinstance(row.state, ReproducedAfter) else ""
-    text = f"reproduced{after}"
-    return RowOutcome(row, computed, held, text if held else f"LEFT: was {text}", row.tolerance.reason if row.tolerance else "")
+def figures_of(row: Row) -> set[str]:
+    """What the reason of a row lets the run fill in."""
+    return set(FIGURE.findall(_reason(row)))
 
 
-def _deviation(row: Row, state: OutsideBy, computed: float) -> RowOutcome:
-    factor = computed / row.expected if row.expected else math.inf
-    held = abs(factor - state.outside_by) <= state.tolerance * state.outside_by
-    text = f"outside by {factor:.4g}"
-    return RowOutcome(row, computed, held, text if held else f"LEFT: {text}, was {state.outside_by:.4g}", state.reason)
+def _reason(row: Row) -> str:
+    if isinstance(row.ends, Reproduced):
+        return row.ends.within.reason
+    return f"{row.ends.why}; {row.ends.within.reason}" if isinstance(row.ends, Regression) else row.ends.why
 
 
-def _finding(row: Row, state: Bound, computed: float) -> RowOutcome:
-    side, limit = ("above", state.above) if state.above is not None else ("below", state.below)
-    held = state.margin(computed, row.unit) > 0
-    text = f"{side} {limit}"
-    return RowOutcome(row, computed, held, text if held else f"LEFT: was {text}", state.finding)
+def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
+    def figure(match: re.Match[str]) -> str:
+        if match[1] == "ratio":
+            return "?" if outcome.ratio is None else f"{outcome.ratio:.3g}"
+        return figure_text(outcome if match[1] == "computed" else computed[match[1]], 3)
+
+    return FIGURE.sub(figure, outcome.reason) if outcome.computed is not None else outcome.reason
+
+
+def figure_text(outcome: RowOutcome, digits: int = 5) -> str:
+    """What was computed in words, in the unit of what is expected: ``1.4 mm`` or ``0.55 to 2.2 mm``."""
+    shown, unit = outcome.shown, "" if outcome.row.unit == "1" else f" {outcome.row.shown_unit}"
+    if shown is None:
+        return "-"
+    ends = shown if isinstance(shown, tuple) else (shown,)
+    return " to ".join(f"{end:.{digits}g}" for end in ends) + unit

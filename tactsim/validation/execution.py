@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from time import monotonic
 
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
@@ -43,8 +44,8 @@ class StudyRunner:
     cache: Path | None = None
     """Where results are kept; by default the user's cache folder."""
 
-    def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> dict[str, Studies]:
-        """The outcome of every run of every study, by table and study; equal cases are run once.
+    def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> Iterator[tuple[str, Studies]]:
+        """Each table, as soon as it is complete, with the outcome of every run of its studies; equal cases are run once.
 
         Raises
         ------
@@ -68,15 +69,20 @@ class StudyRunner:
         if not self.fresh:
             stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
             outcomes = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
+        pending = dict(tables)
+
+        def complete() -> Iterator[tuple[str, Studies]]:
+            for table in [name for name in pending if all(identities[key] in outcomes for key in tasks if key[0] == name)]:
+                named = {key: outcomes[identities[key]].model_copy(update={"id": key[-1]}) for key in tasks if key[0] == table}
+                studies = pending.pop(table)
+                yield table, {study.name: tuple(named[table, study.name, run.id] for run in study.runs) for study in studies}
+
+        yield from complete()
         waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in outcomes}
         for case_id, outcome in self._computed(dict(reversed(waiting.items())), progress):
             outcomes[case_id] = outcome
             self._store(outcome)
-        named = {key: outcomes[case_id].model_copy(update={"id": key[-1]}) for key, case_id in identities.items()}
-        return {
-            table: {study.name: tuple(named[table, study.name, run.id] for run in study.runs) for study in studies}
-            for table, studies in tables.items()
-        }
+            yield from complete()
 
     def _computed(self, waiting: dict[str, Task], progress: Progress) -> Iterator[tuple[str, RunOutcome]]:
         if not waiting:
@@ -85,11 +91,13 @@ class StudyRunner:
         with closing(WorkerPool[str](MODULE, (), self.workers)) as pool:
             for case_id, task in waiting.items():
                 pool.submit(case_id, json.dumps(task).encode())
-            count = 0
+            count, begun = 0, monotonic()
             while count < len(waiting):
                 for answer in pool.wait():
                     count, outcome = count + 1, _outcome_of(answer)
-                    progress(f"{count}/{len(waiting)}  {outcome.id}: {outcome.status}, {outcome.seconds:.0f} s")
+                    left = (monotonic() - begun) / count * (len(waiting) - count)
+                    ended = f"{outcome.id}: {outcome.status}, {outcome.seconds:.0f} s"
+                    progress(f"{count}/{len(waiting)}  {ended}; about {max(1, round(left / 60))} min left")
                     yield answer.key, outcome
 
     def _place(self, case_id: str) -> Path:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tactsim.errors import UnknownName
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.units import format_quantity
+from tactsim.validation.comparison import RowOutcome
 
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
@@ -26,11 +31,60 @@ def validation_figure(data: dict[str, Any]) -> bytes:
     UnknownName
         If no figure has this form.
     """
-    forms = {"ranges": ranges_figure, "curves": curves_figure}
+    forms = {"ranges": ranges_figure, "curves": curves_figure, "maps": maps_figure, "images": images_figure}
     if data["form"] not in forms:
         raise UnknownName("form of a figure", str(data["form"]), forms)
     with styled():
         return png(forms[data["form"]](data))
+
+
+def overview(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> bytes:
+    """PNG with every row as a point: computed over expected by chapter, coloured by class; below, rows without such a ratio.
+
+    ``chapters`` holds the chapter of each row.
+    """
+    with styled():
+        return png(overview_figure(rows, chapters, colours))
+
+
+def overview_figure(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> Figure:
+    """The figure of `overview`."""
+    names = list(dict.fromkeys(chapters))
+    figure = new_figure(9.5, 5.2)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3.2, 1.0))
+    labels = [label for label in colours if any(row.label == label for row in rows)]
+    for height, label in enumerate(labels):
+        for axis, with_ratio in ((upper, True), (lower, False)):
+            chosen = [k for k, row in enumerate(rows) if row.label == label and _has_ratio(row) == with_ratio]
+            x = [names.index(chapters[k]) + _spread(k, chapters) for k in chosen]
+            y = [rows[k].ratio if with_ratio else len(labels) - height for k in chosen]
+            axis.plot(x, y, "o", markersize=4.5, markeredgewidth=0.4, markeredgecolor="white", color=colours[label])
+    upper.set_yscale("log")
+    upper.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
+    upper.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    upper.set_ylabel("computed over expected")
+    lower.set_ylabel("no ratio")
+    lower.set_yticks([])
+    lower.set_xticks(range(len(names)), [f"chapter {name}" if name.isdigit() else name for name in names])
+    counts = {label: sum(row.label == label for row in rows) for label in labels}
+    handles = [
+        Line2D([], [], marker="o", linestyle="", color=colours[label], label=f"{label} ({counts[label]})") for label in labels
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=8, frameon=False)
+    for axis in (upper, lower):
+        despined(axis)
+    entitle(figure, f"{len(rows)} rows: what is computed over what is expected")
+    return figure
+
+
+def _has_ratio(row: RowOutcome) -> bool:
+    return row.ratio is not None and row.ratio > 0
+
+
+def _spread(place: int, chapters: Sequence[str]) -> float:
+    """Offset of a point within its chapter, so that the rows stand side by side in their order."""
+    own = [k for k, chapter in enumerate(chapters) if chapter == chapters[place]]
+    return 0.8 * ((own.index(place) + 0.5) / len(own) - 0.5)
 
 
 def ranges_figure(data: dict[str, Any]) -> Figure:
@@ -106,3 +160,46 @@ def _draw_curves(axis: Axes, panel: dict[str, Any]) -> None:
         axis.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}") if high < 10 * low else NullFormatter())
     axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
     despined(axis)
+
+
+def maps_figure(data: dict[str, Any]) -> Figure:
+    """Two rows of matrices with the force on each taxel, upper jaw above; each column has colours of its own from zero on."""
+    columns = data["columns"]
+    figure = new_figure(1.0 + 1.75 * len(columns), 4.4)
+    axes = figure.subplots(len(JAWS), len(columns), squeeze=False)
+    for place, column in enumerate(columns):
+        largest = max(float(np.max(column[side])) for side in JAWS)
+        for axis, side in zip(axes[:, place], JAWS, strict=True):
+            forces = np.array(column[side])
+            rows, width = forces.shape
+            axis.imshow(
+                forces, origin="lower", cmap=PRESSURE_COLOURS, vmin=0.0, vmax=largest, extent=(0.5, width + 0.5, 0.5, rows + 0.5)
+            )
+            for (row, number), force in np.ndenumerate(forces):
+                colour = "white" if force < 0.6 * largest else "black"
+                axis.text(number + 1, row + 1, f"{force:.3g}", ha="center", va="center", fontsize=7, color=colour)
+            axis.set_xticks(range(1, width + 1))
+            axis.set_yticks(range(1, rows + 1))
+        axes[0, place].set_title(column["title"], fontsize=9)
+    for axis, side in zip(axes[:, 0], JAWS, strict=True):
+        axis.set_ylabel(f"{side} jaw, row")
+    entitle(figure, f"{data['title']} in {data['unit']}")
+    return figure
+
+
+def images_figure(data: dict[str, Any]) -> Figure:
+    """Grey pictures one above the other, as Appendix A draws them: black without signal, white at the normalising one."""
+    panels = data["panels"]
+    heights = [1.0 if np.ndim(panel["grey"]) == 1 else 2.4 for panel in panels]
+    figure = new_figure(7.0, 0.8 + sum(heights))
+    axes = figure.subplots(len(panels), 1, squeeze=False, height_ratios=heights)[:, 0]
+    for axis, panel in zip(axes, panels, strict=True):
+        grey = np.atleast_2d(np.array(panel["grey"], dtype=float))
+        axis.imshow(
+            grey, cmap="gray", vmin=0, vmax=255, aspect="auto", interpolation="nearest", extent=(0.5, grey.shape[1] + 0.5, 0, 1)
+        )
+        axis.set_yticks([])
+        axis.set_title(panel["title"], fontsize=9, loc="left")
+    axes[-1].set_xlabel(data["axis"])
+    entitle(figure, data["title"])
+    return figure

@@ -18,14 +18,12 @@ RunName = Annotated[str, Field(description="Run of the study.")]
 
 @dataclass(frozen=True)
 class Inputs:
-    """Where a table stands, the outcomes of its studies, and the number that a row prints."""
+    """Where a table stands and the outcomes of its studies; never what a row expects."""
 
     folder: Path = Path()
     """Where the table stands; the paths in it are relative to it."""
     studies: Mapping[str, tuple[RunOutcome, ...]] = field(default_factory=dict)
     """Outcomes of the table's studies by name."""
-    expected: float | None = None
-    """The number of the row in SI, None if the thesis prints none; only for `bracket`."""
 
     def study(self, name: str) -> tuple[RunOutcome, ...]:
         """The outcomes of a study.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -14,6 +14,7 @@ from tactsim.case.explaining import problems_of
 from tactsim.case.loading import read_case_text
 from tactsim.case.yaml_reading import Problem, YamlProblems, read_yaml
 from tactsim.errors import CaseError, UnknownName
+from tactsim.validation.comparison import figures_of
 from tactsim.validation.table import Manifest, Table, table_class
 
 MANIFEST = "manifest.yaml"
@@ -22,13 +23,43 @@ Model = TypeVar("Model", bound=BaseModel)
 
 @dataclass(frozen=True)
 class LoadedTables:
-    """The tables that were asked for, and what the manifest promises of them."""
+    """The tables of a folder that were asked for, and what its manifest promises of them."""
 
     folder: Path
+    """Its name is that of the group: ``thesis``, ``published``."""
     tables: dict[str, Table]
     manifest: Manifest
     faults: tuple[str, ...]
     """What is absent or not counted; each lets the validation fail."""
+
+
+def load_groups(folders: Sequence[Path], names: Sequence[str] = ()) -> tuple[LoadedTables, ...]:
+    """The named tables of several folders; the name of a folder stands for all its tables, and no name for all of all.
+
+    Raises
+    ------
+    UnknownName
+        If a name is neither a folder nor a table of one.
+    CaseError, InputError, StorageError
+        As `load_tables`.
+    """
+    known = {folder.name: _names(folder) for folder in folders}
+    for name in names:
+        if name not in known and not any(name in tables for tables in known.values()):
+            raise UnknownName("table", name, [*known, *(table for tables in known.values() for table in tables)])
+    groups = []
+    for folder in folders:
+        whole = not names or folder.name in names
+        chosen = () if whole else tuple(name for name in dict.fromkeys(names) if name in known[folder.name])
+        if whole or chosen:
+            groups.append(load_tables(folder, chosen))
+    return tuple(groups)
+
+
+def _names(folder: Path) -> list[str]:
+    """Tables that the manifest of a folder counts, and those that stand there."""
+    files = [path.stem for path in sorted(folder.glob("*.yaml")) if path.name != MANIFEST]
+    return list(dict.fromkeys([*read_model(folder / MANIFEST, Manifest).tables, *files]))
 
 
 def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
@@ -50,11 +81,12 @@ def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
     known = list(dict.fromkeys([*manifest.tables, *files]))
     for name in names:
         if name not in known:
-            raise UnknownName("thesis table", name, known)
+            raise UnknownName("table", name, known)
     chosen = list(dict.fromkeys(names)) or known
     model = table_class()
     tables = {name: read_model(files[name], model) for name in chosen if name in files}
     faults = [fault for name in chosen for fault in _faults(name, tables.get(name), manifest)]
+    faults += _number_faults(tables, manifest, whole=not names)
     return LoadedTables(folder, tables, manifest, tuple(faults))
 
 
@@ -90,9 +122,23 @@ def _faults(name: str, table: Table | None, manifest: Manifest) -> list[str]:
     faults = []
     if len(table.rows) != rows:
         faults.append(f"{name}: {len(table.rows)} rows where the manifest counts {rows}")
-    if table.chapter != chapter:
+    if str(table.chapter) != chapter:
         faults.append(f"{name}: the table names chapter {table.chapter}, the manifest chapter {chapter}")
+    identifiers = {row.id for row in table.rows} | {"computed", "ratio"}
+    faults += [
+        f"{name}: the reason of {row.id} has a figure {{{figure}}}, which is no row of the table"
+        for row in table.rows
+        for figure in sorted(figures_of(row) - identifiers)
+    ]
     return faults
+
+
+def _number_faults(tables: Mapping[str, Table], manifest: Manifest, *, whole: bool) -> list[str]:
+    """Numbers that a row names but the manifest does not know, and, if all tables are there, those that no row names."""
+    named = {number: name for name, table in tables.items() for row in table.rows for number in row.numbers}
+    unknown = [f"{named[number]}: {number} is no number of the manifest" for number in sorted(set(named) - set(manifest.numbers))]
+    without = sorted(set(manifest.numbers) - set(named)) if whole else []
+    return unknown + [f"{number}: no row names it: {manifest.numbers[number]}" for number in without]
 
 
 def _error(path: Path, problems: Sequence[Problem]) -> CaseError:

@@ -3,153 +3,236 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from typing import Any
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
 
 from tactsim.units import format_quantity
-from tactsim.validation.comparison import RowOutcome, TableOutcome
+from tactsim.validation.comparison import LEFT, RowOutcome, TableOutcome, figure_text
+from tactsim.validation.endings import AFTER, LABELS, Bound, Origin, Outside, Regression, Reproduced, Tolerance
 from tactsim.validation.loading import LoadedTables
-from tactsim.validation.table import Assumption, Bound, OutsideBy, ReproducedAfter
 from tactsim.version import __version__
 
-HEADER = ("row", "printed", "found", "ratio", "tolerance", "state")
-STATES = ("reproduced", "after an erratum", "outside", "finding", "assumption", "left")
+HEADER = ("row", "from", "expected", "computed", "ratio", "allowed", "ended as")
+CLASSES = (*LABELS, LEFT)
+SHORT = {AFTER: "after erratum", "inside a range": "in range"}
+"""Classes whose names are too long for a column."""
+ORIGINS = get_args(Origin)
+MEANINGS = {
+    "reproduced": "the expected number comes out within a tolerance whose reason is given",
+    AFTER: "it comes out once an error of the thesis is corrected",
+    "confirmed": "a claim that is no number holds",
+    "inside a range": "the expected number lies inside an interval that was computed without it",
+    "outside": "it does not come out; by what factor, and the presumed cause",
+    "contradicted": "a claim does not hold",
+    "transcribed": "an input read back: it shows that it was copied well, and nothing else",
+    "regression": "a number of this program: it shows that the program moved, never that it is right",
+    "not testable": "nothing to compare, and why",
+    LEFT: "it did not end as recorded: the validation fails",
+}
 
 
-def terminal_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> str:
-    """Aligned text: every row, the runs that did not converge, the counts, and what is wrong."""
-    lines: list[str] = []
-    for outcome in outcomes:
-        cells = [HEADER, *(_cells(row) for row in outcome.rows)]
-        widths = [max(len(line[k]) for line in cells) for k in range(len(HEADER))]
-        lines += [f"{outcome.name}: {outcome.table.title} ({outcome.table.source})"]
-        lines += [
-            "  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in cells
-        ]
-        lines += [f"    {row.row.id}: {row.reason}" for row in outcome.rows if not row.held]
-        lines += [f"  did not converge: {line}" for line in _failures(outcome)] + [""]
-    counts = [("chapter", "table", "rows", *STATES), *(tuple(map(str, row)) for row in count_rows(loaded, outcomes))]
-    widths = [max(len(line[k]) for line in counts) for k in range(len(counts[0]))]
-    lines += ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in counts]
-    lines += [f"fault: {fault}" for fault in loaded.faults]
-    return "\n".join(lines)
+@dataclass(frozen=True)
+class Validation:
+    """A group of tables and how they ended."""
+
+    loaded: LoadedTables
+    outcomes: tuple[TableOutcome, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the group: ``thesis``, ``published``."""
+        return self.loaded.folder.name
+
+    @property
+    def rows(self) -> list[RowOutcome]:
+        """Every row of every table."""
+        return [row for outcome in self.outcomes for row in outcome.rows]
+
+    @property
+    def wrong(self) -> list[str]:
+        """Rows that left their class and faults of the tables; empty if everything holds."""
+        left = [f"{outcome.name}.{row.row.id}" for outcome in self.outcomes for row in outcome.rows if not row.held]
+        return [*left, *(fault.partition(":")[0] for fault in self.loaded.faults)]
 
 
-def count_rows(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> list[tuple[Any, ...]]:
-    """Per table: chapter, name, rows there of rows that must be, and rows by how they ended; last the totals."""
-    ended = {outcome.name: outcome for outcome in outcomes}
-    promised = loaded.manifest.tables
-    names = [name for name in promised if name in ended or any(fault.startswith(f"{name}:") for fault in loaded.faults)]
+def short(label: str) -> str:
+    """The class as a column names it."""
+    return SHORT.get(label, label)
+
+
+def table_text(outcome: TableOutcome) -> str:
+    """Aligned text of a table: every row, why rows left, and the runs that did not converge."""
+    lines = [f"{outcome.name}: {outcome.table.title} ({outcome.table.source})"]
+    lines += aligned([HEADER, *(cells(row) for row in outcome.rows)], indent="  ")
+    lines += [f"    {row.row.id}: {row.reason}" for row in outcome.rows if not row.held]
+    lines += [f"  did not converge: {line}" for line in _failures(outcome)]
+    return "\n".join([*lines, ""])
+
+
+def summary_text(validation: Validation) -> str:
+    """Aligned text of a group: the classes of each table and in sum, where what is expected comes from, and the faults."""
+    head = ("chapter", "table", "rows", *map(short, CLASSES))
+    lines = aligned([head, *(tuple(map(str, row)) for row in count_rows(validation))])
+    lines += ["", *aligned([("from", *map(short, CLASSES)), *(tuple(map(str, row)) for row in count_origins(validation.rows))])]
+    return "\n".join([*lines, *(f"fault: {fault}" for fault in validation.loaded.faults)])
+
+
+def aligned(table: Sequence[Sequence[str]], indent: str = "") -> list[str]:
+    """Lines of a table with columns of even width."""
+    widths = [max(len(line[k]) for line in table) for k in range(len(table[0]))]
+    return [indent + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in table]
+
+
+def count_rows(validation: Validation) -> list[tuple[Any, ...]]:
+    """Per table: chapter, name, rows there of rows that must be, and rows by class; last each chapter and all."""
+    ended = {outcome.name: outcome for outcome in validation.outcomes}
+    promised, faults = validation.loaded.manifest.tables, validation.loaded.faults
+    names = [name for name in promised if name in ended or any(fault.startswith(f"{name}:") for fault in faults)]
     lines: list[tuple[Any, ...]] = []
     totals: dict[str, list[int]] = {}
     for name in [*names, *(name for name in ended if name not in promised)]:
         rows = ended[name].rows if name in ended else ()
-        chapter, expected = promised.get(name, (ended[name].table.chapter if name in ended else 0, 0))
-        counts = [sum(_class_of(row) == state for row in rows) for state in STATES]
+        chapter, expected = promised.get(name, (str(ended[name].table.chapter) if name in ended else "", 0))
+        counts = [sum(row.label == label for row in rows) for label in CLASSES]
         lines.append((chapter, name, f"{len(rows)} of {expected}", *counts))
-        total = totals.setdefault(f"{chapter}", [0] * (2 + len(STATES)))
-        totals[f"{chapter}"] = [a + b for a, b in zip(total, [len(rows), expected, *counts], strict=True)]
+        for key in (chapter, "all"):
+            before = totals.get(key, [0] * (2 + len(CLASSES)))
+            totals[key] = [a + b for a, b in zip(before, [len(rows), expected, *counts], strict=True)]
+    whole = totals.pop("all", None)
     lines += [(chapter, "all", f"{total[0]} of {total[1]}", *total[2:]) for chapter, total in totals.items()]
-    return lines
+    return [*lines, ("all", "all", f"{whole[0]} of {whole[1]}", *whole[2:])] if whole else lines
 
 
-def json_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome]) -> str:
+def count_origins(rows: Sequence[RowOutcome]) -> list[tuple[Any, ...]]:
+    """Per origin of what is expected: rows by class."""
+    counts = Counter((row.row.origin, row.label) for row in rows)
+    return [
+        (origin.replace("_", " "), *(counts[origin, label] for label in CLASSES))
+        for origin in ORIGINS
+        if any(counts[origin, label] for label in CLASSES)
+    ]
+
+
+def json_report(validations: Sequence[Validation]) -> str:
     """The content of ``validation.json``."""
-    tables = {
-        outcome.name: {
-            "title": outcome.table.title,
-            "chapter": outcome.table.chapter,
-            "source": outcome.table.source,
-            "held": outcome.held,
-            "rows": [_row_values(row) for row in outcome.rows],
-            "studies": {name: [run.model_dump(mode="json") for run in runs] for name, runs in outcome.inputs.studies.items()},
+    names = ("chapter", "table", "rows", *CLASSES)
+    groups = {
+        validation.name: {
+            "passed": not validation.wrong,
+            "faults": validation.loaded.faults,
+            "counts": [dict(zip(names, line, strict=True)) for line in count_rows(validation)],
+            "origins": [dict(zip(("from", *CLASSES), line, strict=True)) for line in count_origins(validation.rows)],
+            "tables": {outcome.name: _table_values(outcome) for outcome in validation.outcomes},
         }
-        for outcome in outcomes
+        for validation in validations
     }
-    names = ("chapter", "table", "rows", *STATES)
-    counts = [dict(zip(names, line, strict=True)) for line in count_rows(loaded, outcomes)]
-    passed = not loaded.faults and all(outcome.held for outcome in outcomes)
-    content = {"tactsim": __version__, "passed": passed, "faults": loaded.faults, "counts": counts, "tables": tables}
+    content = {"tactsim": __version__, "passed": not any(validation.wrong for validation in validations), "groups": groups}
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def markdown_report(loaded: LoadedTables, outcomes: Sequence[TableOutcome], figures: Sequence[str] = ()) -> str:
-    """The content of ``validation.md``; ``figures`` are the names of the files beside it."""
-    lines = [
-        "# Validation against the thesis",
-        "",
-        *_markdown_table(("chapter", "table", "rows", *STATES), count_rows(loaded, outcomes)),
-    ]
-    lines += [f"- **fault**: {fault}" for fault in loaded.faults]
-    for outcome in outcomes:
-        lines += ["", f"## {outcome.table.title}", "", f"{outcome.name}, {outcome.table.source}", ""]
-        rows = [(*_cells(row)[:1], row.row.quantity, *_cells(row)[1:], row.row.place, row.reason) for row in outcome.rows]
-        lines += _markdown_table((HEADER[0], "quantity", *HEADER[1:], "place", "reason"), rows)
-        for name, runs in outcome.inputs.studies.items():
-            lines += ["", f"### Runs of {name}", ""]
-            lines += _markdown_table(
-                ("run", "status", "over the annulus", "over the disc", "displacement", "unstable volume", "end"), run_cells(runs)
-            )
-        lines += [f"\n![{figure}](figures/{figure})" for figure in figures if figure.startswith(f"{outcome.name}_")]
+def _table_values(outcome: TableOutcome) -> dict[str, Any]:
+    return {
+        "title": outcome.table.title,
+        "chapter": outcome.table.chapter,
+        "source": outcome.table.source,
+        "held": outcome.held,
+        "rows": [row_values(row) for row in outcome.rows],
+        "studies": {name: [run.model_dump(mode="json") for run in runs] for name, runs in outcome.inputs.studies.items()},
+    }
+
+
+def row_values(outcome: RowOutcome) -> dict[str, Any]:
+    """A row as plain data; ``expected`` and ``computed`` are in ``unit``."""
+    row = outcome.row
+    expected = row.expected_si
+    return {
+        "id": row.id,
+        "quantity": row.quantity,
+        "place": row.place,
+        "numbers": row.numbers,
+        "from": row.origin,
+        "unit": "1" if row.unit == "1" else row.shown_unit,
+        "expected": row.expected if expected is None else row.shown(expected),
+        "computed": outcome.shown,
+        "ratio": outcome.ratio,
+        "allowed": _allowed(row.ends),
+        "class": outcome.label,
+        "held": outcome.held,
+        "ended": outcome.ended,
+        "why": outcome.reason,
+        "evaluate": row.evaluate.model_dump(mode="json") if row.evaluate else None,
+    }
+
+
+def markdown_report(validations: Sequence[Validation], figures: Mapping[str, Sequence[str]]) -> str:
+    """The content of ``validation.md``; ``figures`` are the names of the files in ``figures/`` by table, and ``overview``."""
+    lines = ["# Validation", ""]
+    lines += [f"![every number as a point](figures/{name})\n" for name in figures.get("overview", ())]
+    lines += [*markdown_table(("class", "meaning"), [(label, MEANINGS[label]) for label in CLASSES]), ""]
+    for validation in validations:
+        lines += [f"## {validation.name.capitalize()}", ""]
+        lines += markdown_table(("chapter", "table", "rows", *map(short, CLASSES)), count_rows(validation))
+        lines += ["", *markdown_table(("from", *map(short, CLASSES)), count_origins(validation.rows))]
+        lines += [f"- **fault**: {fault}" for fault in validation.loaded.faults]
+        for outcome in validation.outcomes:
+            lines += _markdown_section(outcome, figures.get(outcome.name, ()))
+        if errata := validation.loaded.manifest.errata:
+            lines += ["", "### Errata", "", *markdown_table(("erratum", "what is wrong"), list(errata.items()))]
     return "\n".join(lines) + "\n"
+
+
+def _markdown_section(outcome: TableOutcome, figures: Sequence[str]) -> list[str]:
+    lines = ["", f"### {outcome.table.title}", "", f"{outcome.name}, {outcome.table.source}", ""]
+    rows = [(*cells(row)[:1], row.row.quantity, *cells(row)[1:], row.row.place, row.reason) for row in outcome.rows]
+    lines += markdown_table((HEADER[0], "quantity", *HEADER[1:], "place", "reason"), rows)
+    for name, runs in outcome.inputs.studies.items():
+        lines += ["", f"#### Runs of {name}", "", *markdown_table(RUN_HEADER, run_cells(runs))]
+    return lines + [f"\n![{figure}](figures/{figure})" for figure in figures]
+
+
+RUN_HEADER = ("run", "status", "over the annulus", "over the disc", "displacement", "unstable volume", "end")
 
 
 def run_cells(runs: Sequence[Any]) -> list[tuple[str, ...]]:
     """Cells of the table of a study's runs."""
-    cells = []
+    lines = []
     for run in runs:
         pressure = run.quantities.get("threshold_pressure") if run.converged else None
         over = ["-", "-"] if pressure is None else [format_quantity(p, "Pa") for p in (pressure, pressure * run.disc_share)]
         unstable = f"{run.quantities.get('unstable_volume_fraction', 0.0):.1%}"
-        cells.append(
+        lines.append(
             (run.id, run.status, *over, format_quantity(run.quantities.get("displacement", 0.0), "m"), unstable, run.reason)
         )
-    return cells
+    return lines
 
 
-def _cells(outcome: RowOutcome) -> tuple[str, ...]:
+def cells(outcome: RowOutcome) -> tuple[str, ...]:
+    """The row in words, as `HEADER` names the columns."""
     row = outcome.row
-    printed = "-" if row.printed is None else f"{row.printed}"
-    computed = "-" if outcome.computed is None else quantity_text(outcome.computed, row.unit)
+    expected = "-" if row.expected is None else f"{row.expected}"
     ratio = "-" if outcome.ratio is None else f"{outcome.ratio:.4g}"
-    return row.id, printed, computed, ratio, _tolerance(row), outcome.state
+    computed = figure_text(outcome, _digits(expected))
+    return row.id, row.origin.replace("_", " "), expected, computed, ratio, _allowed(row.ends), outcome.ended
 
 
-def _tolerance(row: Any) -> str:
-    if isinstance(row.state, OutsideBy):
-        return f"{row.state.outside_by:.4g} ± {100 * row.state.tolerance:.2g} %"
-    if isinstance(row.state, Bound):
-        return f"> {row.state.above}" if row.state.above is not None else f"< {row.state.below}"
-    if row.tolerance is None:
-        return "-"
-    relative = row.tolerance.relative
-    return f"± {relative * 100:.2g} %" if relative is not None else f"± {row.tolerance.absolute}"
+def _digits(expected: str) -> int:
+    """Digits in which a computed number can be compared with a printed one: one more than it has, four to nine."""
+    mantissa = expected.partition(" ")[0].lower().partition("e")[0]
+    return min(9, max(4, 1 + len("".join(c for c in mantissa if c.isdigit()).lstrip("0"))))
 
 
-def quantity_text(value: float, unit: str) -> str:
-    """A number with its unit; areas in mm^2, which have no prefix that reads well."""
-    return f"{value * 1e6:.4g} mm^2" if unit == "m^2" else f"{value:.5g} {unit}" if "/" in unit else format_quantity(value, unit)
+def _allowed(ending: Any) -> str:
+    if isinstance(ending, Reproduced | Regression):
+        return _width(ending.within)
+    if isinstance(ending, Outside):
+        return f"{ending.by:.4g} ± {100 * ending.within:.2g} %"
+    return ending.limit if isinstance(ending, Bound) else "-"
 
 
-def _class_of(outcome: RowOutcome) -> str:
-    if not outcome.held:
-        return "left"
-    kinds = ((ReproducedAfter, "after an erratum"), (OutsideBy, "outside"), (Bound, "finding"), (Assumption, "assumption"))
-    return next((name for kind, name in kinds if isinstance(outcome.row.state, kind)), "reproduced")
-
-
-def _row_values(outcome: RowOutcome) -> dict[str, Any]:
-    row = outcome.row
-    return {
-        **row.model_dump(mode="json", exclude_none=True),
-        "unit": row.unit,
-        "expected": row.expected if row.evaluate else None,
-        "found": outcome.computed,
-        "ratio": outcome.ratio,
-        "held": outcome.held,
-        "ended": outcome.state,
-        "why": outcome.reason,
-    }
+def _width(tolerance: Tolerance) -> str:
+    return f"± {tolerance.relative * 100:.2g} %" if tolerance.relative is not None else f"± {tolerance.absolute}"
 
 
 def _failures(outcome: TableOutcome) -> list[str]:
@@ -158,6 +241,7 @@ def _failures(outcome: TableOutcome) -> list[str]:
     ]
 
 
-def _markdown_table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> list[str]:
+def markdown_table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Lines of a Markdown table."""
     lines = [header, ["---"] * len(header), *rows]
     return ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines]

@@ -1,9 +1,9 @@
-"""A table of the thesis as data: rows with their place, number, tolerance and recorded state. Closed and frozen."""
+"""A table of the thesis, or of published problems, as data: rows with place, number and ending. Closed and frozen."""
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, SerializeAsAny, create_model, model_validator
 
@@ -11,88 +11,8 @@ from tactsim.model import FrozenModel
 from tactsim.registry import MarkedFunction
 from tactsim.units import parse_quantity
 from tactsim.validation.calls import Call, any_call, callable_now
+from tactsim.validation.endings import Bound, Ending, NotTestable, Origin, Regression, RegressionBound, Reproduced, in_si
 from tactsim.validation.study import Study
-
-
-class Tolerance(FrozenModel):
-    """How far the computed number may be from the expected one, and why."""
-
-    relative: float | None = Field(default=None, ge=0, lt=1)
-    """Part of the expected number."""
-    absolute: str | float | None = None
-    """In the unit of the number."""
-    reason: str = Field(min_length=1)
-    """Why this much and not less."""
-
-    @model_validator(mode="after")
-    def _one(self) -> Self:
-        if (self.relative is None) == (self.absolute is None):
-            raise ValueError("a tolerance is either relative or absolute")
-        return self
-
-
-class Reproduced(FrozenModel):
-    """The number comes out as printed."""
-
-    reproduced: Literal[True]
-    """Always true; a number that does not come out has another state."""
-
-
-class ReproducedAfter(FrozenModel):
-    """The number comes out once an erratum is corrected."""
-
-    reproduced_after: str = Field(pattern=r"^E[0-9]+(, E[0-9]+)*$")
-    """Number of the erratum, like E4."""
-
-
-class OutsideBy(FrozenModel):
-    """A known deviation: what is computed over what is printed, and the presumed cause."""
-
-    outside_by: float = Field(gt=0)
-    """Computed over printed."""
-    tolerance: float = Field(gt=0, lt=1)
-    """Part of the factor by which it may change before the row counts as left."""
-    reason: str = Field(min_length=1)
-    """Presumed cause."""
-
-    @model_validator(mode="after")
-    def _outside(self) -> Self:
-        if abs(self.outside_by - 1) <= self.tolerance * self.outside_by:
-            raise ValueError(f"a factor of {self.outside_by:g} within {self.tolerance:g} of itself is no deviation")
-        return self
-
-
-class Bound(FrozenModel):
-    """A finding that is no number: which side of a limit the computed number lies on."""
-
-    above: str | float | None = None
-    """What it exceeds, in its unit."""
-    below: str | float | None = None
-    """What it stays under, in its unit."""
-    finding: str = Field(min_length=1)
-    """What that means, and why the limit is where it is."""
-
-    @model_validator(mode="after")
-    def _one(self) -> Self:
-        if (self.above is None) == (self.below is None):
-            raise ValueError("a finding lies either above or below a limit")
-        return self
-
-    def margin(self, computed: float, unit: str) -> float:
-        """How far the computed number, in SI, lies on the right side; negative on the wrong one."""
-        if self.above is not None:
-            return computed - in_si(self.above, unit)
-        return in_si(self.below or 0.0, unit) - computed
-
-
-class Assumption(FrozenModel):
-    """Nothing to compare: the thesis leaves the number out or contradicts itself."""
-
-    assumption: str = Field(min_length=1)
-    """What is assumed and why."""
-
-
-State = Reproduced | ReproducedAfter | OutsideBy | Bound | Assumption
 
 
 class Row(FrozenModel):
@@ -104,29 +24,34 @@ class Row(FrozenModel):
     """What the number is."""
     place: str = Field(min_length=1)
     """Where it stands, or from which printed numbers the errata derive it."""
-    printed: str | float | None = None
-    """The number with its unit; a plain number is dimensionless. Only an assumption or a finding may do without."""
+    numbers: tuple[Annotated[str, Field(pattern=r"^T[0-9]{3}$")], ...] = ()
+    """Numbers of the manifest's list that it answers."""
+    expected: str | float | None = None
+    """The number with its unit, dimensionless without; a claim that is no number goes without."""
+    origin: Origin = Field(alias="from")
+    """Where the expected number or the claim comes from."""
     evaluate: SerializeAsAny[Call] | None = None
-    """How it is computed here. Only an assumption may do without."""
-    tolerance: Tolerance | None = None
-    """How near it must come; for a row that is reproduced."""
-    state: State
+    """How it is computed here; what is not testable goes without."""
+    ends: Ending
     """How the row is known to end."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if isinstance(self.state, Bound):
-            if self.evaluate is None:
-                raise ValueError("a finding needs to be evaluated")
-            self.state.margin(0.0, self.unit)
-        elif not isinstance(self.state, Assumption) and (self.printed is None or self.evaluate is None):
-            raise ValueError("only an assumption may lack what is printed or how it is evaluated")
-        if isinstance(self.state, Reproduced | ReproducedAfter) != (self.tolerance is not None):
-            raise ValueError("a row that is reproduced has a tolerance, any other has none")
-        if self.evaluate is not None:
-            _ = self.expected, self.allowed
-            if self.allowed == 0 and self.tolerance is not None and self.tolerance.relative:
-                raise ValueError("a relative tolerance of zero is none; give an absolute one")
+        if isinstance(self.ends, NotTestable):
+            if self.evaluate is not None:
+                raise ValueError("what is evaluated is testable; it ends otherwise")
+            return self
+        if self.evaluate is None:
+            raise ValueError("only what is not testable may lack how it is evaluated")
+        if isinstance(self.ends, Bound):
+            self.ends.margin(0.0, self.unit)
+        elif self.expected is None:
+            raise ValueError(f"a row that ends as {self.ends.label} needs what is expected")
+        _ = self.expected_si, self.allowed
+        if self.allowed == 0 and isinstance(self.ends, Reproduced | Regression) and self.ends.within.relative:
+            raise ValueError("a relative tolerance of zero is none; give an absolute one")
+        if (self.origin == "own") != isinstance(self.ends, Regression | RegressionBound):
+            raise ValueError("an own number is a regression, and a regression has no other origin")
         return self
 
     @property
@@ -135,29 +60,38 @@ class Row(FrozenModel):
         return self.evaluate.result_unit if self.evaluate else "1"
 
     @property
-    def expected(self) -> float | None:
-        """The printed number in SI."""
-        return None if self.printed is None else in_si(self.printed, self.unit)
+    def shown_unit(self) -> str:
+        """The unit in which the row is told: that of what is expected, else that of its limit, else SI."""
+        limit = (self.ends.above if self.ends.above is not None else self.ends.below) if isinstance(self.ends, Bound) else None
+        given = self.expected if isinstance(self.expected, str) else limit
+        return given.strip().partition(" ")[2].strip() if isinstance(given, str) else self.unit
+
+    @property
+    def expected_si(self) -> float | None:
+        """The expected number in SI."""
+        return None if self.expected is None or self.evaluate is None else in_si(self.expected, self.unit)
 
     @property
     def allowed(self) -> float | None:
-        """Largest difference in SI."""
-        if self.tolerance is None or self.expected is None:
+        """Largest difference in SI of a number that must come out."""
+        if not isinstance(self.ends, Reproduced | Regression) or self.expected_si is None:
             return None
-        if self.tolerance.relative is not None:
-            return self.tolerance.relative * abs(self.expected)
-        return in_si(self.tolerance.absolute or 0.0, self.unit)
+        return self.ends.within.allowed(self.expected_si, self.unit)
+
+    def shown(self, value: float) -> float:
+        """A number in SI in `shown_unit`."""
+        return value if self.unit == "1" else value / parse_quantity(f"1 {self.shown_unit}", self.unit)
 
 
 class Table(FrozenModel):
     """A table or figure of the thesis."""
 
-    schema_version: Literal["tactsim/thesis-table/1"] = Field(alias="schema")
+    schema_version: Literal["tactsim/thesis-table/2"] = Field(alias="schema")
     """Version of the format."""
     title: str = Field(min_length=1)
     """What the table shows."""
-    chapter: int = Field(ge=1)
-    """Chapter of the thesis."""
+    chapter: int | str
+    """Chapter of the thesis, or the group of tables that it belongs to."""
     source: str = Field(min_length=1)
     """Where the table stands."""
     studies: tuple[Study, ...] = ()
@@ -177,34 +111,21 @@ class Table(FrozenModel):
 
 
 class Manifest(FrozenModel):
-    """How many rows each table must have, so that none passes by being absent."""
+    """How many rows each table must have, so that none passes by being absent, and which numbers need one."""
 
-    schema_version: Literal["tactsim/thesis-manifest/1"] = Field(alias="schema")
+    schema_version: Literal["tactsim/thesis-manifest/2"] = Field(alias="schema")
     """Version of the format."""
     chapters: dict[str, dict[str, int]]
     """Chapter -> table -> number of rows."""
+    numbers: dict[str, str] = {}
+    """Number of the thesis, like T001 -> what it is; each needs a row that names it."""
+    errata: dict[str, str] = {}
+    """Erratum, like E1 -> what is printed and what it should be."""
 
     @property
-    def tables(self) -> dict[str, tuple[int, int]]:
+    def tables(self) -> dict[str, tuple[str, int]]:
         """Table -> its chapter and number of rows."""
-        return {name: (int(chapter), rows) for chapter, tables in self.chapters.items() for name, rows in tables.items()}
-
-
-def in_si(value: str | float, unit: str) -> float:
-    """A number as a table writes it in SI: text with a unit, or a plain number for what has none.
-
-    Raises
-    ------
-    ValueError
-        If a plain number stands for what has a unit.
-    InvalidQuantity
-        If the text is no quantity of this unit.
-    """
-    if isinstance(value, str):
-        return parse_quantity(value, unit)
-    if unit != "1":
-        raise ValueError(f"{value:g} has no unit; expected text such as '{value:g} {unit}'")
-    return float(value)
+        return {name: (chapter, rows) for chapter, tables in self.chapters.items() for name, rows in tables.items()}
 
 
 def table_class() -> type[Table]:

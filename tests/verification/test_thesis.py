@@ -1,4 +1,4 @@
-"""Every thesis table, the simulated ones included, holds its recorded state."""
+"""Every thesis table, the simulated ones included, ends as recorded."""
 
 from __future__ import annotations
 

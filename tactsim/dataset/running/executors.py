@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import sys
 import time
@@ -194,11 +193,6 @@ def main(descriptor: str) -> None:
             except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process
                 answer = BROKEN + f"{type(error).__name__}: {error}".encode()
             connection.send_bytes(answer)
-
-
-def usable_cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 if __name__ == "__main__":

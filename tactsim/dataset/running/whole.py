@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tactsim.case.overrides import set_value
 from tactsim.case.writing import case_document
 from tactsim.case.yaml_reading import Document, YamlProblems
-from tactsim.dataset.running.executors import Executor, LocalWorkers, usable_cores
+from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun, Tally
 from tactsim.dataset.sampling.settings import SCHEMA
@@ -20,6 +20,7 @@ from tactsim.dataset.store.files import FIGURES
 from tactsim.dataset.use.card import adopt_earlier_files, write_card
 from tactsim.errors import CaseError, InputError
 from tactsim.interfaces.variation import Variation
+from tactsim.outside.environment import usable_cores
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
 from tactsim.registry import registered_outside

@@ -100,6 +100,29 @@ def annulus_creep(
     return displacement if quantity == "displacement" else float(annulus.rise(displacement))
 
 
+@quantity(unit="1")
+def ratio_effect(
+    force: Positive[Force],
+    over: Positive[Force],
+    ratios: tuple[Ratio, Ratio] = (0.1, 0.5),
+    time: Positive[Time] = 0.5,
+) -> float:
+    """Difference of the displacements at two ratios of the radii under a force, over that under another one; dimensionless.
+
+    Parameters
+    ----------
+    force, over : forces
+    ratios : inner over outer radius, twice
+    time : time since the force began
+    """
+
+    def difference(load: float) -> float:
+        narrow, wide = (annulus_creep(quantity="displacement", radius_ratio=ratio, force=load, time=time) for ratio in ratios)
+        return wide - narrow
+
+    return difference(force) / difference(over)
+
+
 @drawing
 def force_factor_errors(
     title: Title, formulas: Annotated[tuple[Approximation, ...], Field(min_length=1)], largest_error: Positive[float] = 0.05

@@ -10,10 +10,13 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.array import Array
+from tactsim.case import load_case
 from tactsim.errors import InputError, InvalidQuantity
-from tactsim.interfaces import quantity
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces import drawing, quantity
 from tactsim.interfaces.taxel_layout import JAWS, JawName
 from tactsim.units import Length, NonNegative, Time, format_quantity
+from tactsim.validation.curves import Data, Title
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.study import RunOutcome
 
@@ -186,3 +189,47 @@ def taxel_pulse(inputs: Inputs, study: StudyName, run: RunName, start: NonNegati
     if beating.sum() < 2:
         raise InputError(f"{run} has {beating.sum()} steps from {start:g} s on; a change needs two")
     return max(float(np.ptp(taxel_history(outcome, side)[beating], axis=0).max()) for side in JAWS)
+
+
+@quantity(unit="1")
+def taxel_count(inputs: Inputs, case: str) -> float:
+    """Taxels of both jaws of a grasp.
+
+    Parameters
+    ----------
+    case : case file, relative to the table
+
+    Raises
+    ------
+    CaseError, StorageError
+        If the case is refused or cannot be read.
+    InputError
+        If it is no grasp.
+    """
+    grasp = load_case(inputs.folder / case).experiment
+    if not isinstance(grasp, Grasp):
+        raise InputError(f"{case} is no grasp")
+    return float(len(JAWS) * grasp.matrix.rows * grasp.matrix.columns)
+
+
+@drawing
+def taxel_maps(inputs: Inputs, title: Title, studies: Annotated[tuple[str, ...], Field(min_length=1)]) -> Data:
+    """Form ``maps``: the forces in N on the taxels of both jaws at the end of the first run of each study, row 1 below.
+
+    Parameters
+    ----------
+    studies : studies of the table from left to right
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such study, or its run did not converge or has no taxels.
+    """
+
+    def forces(study: str, side: str) -> list[list[float]]:
+        return _taxels_at(inputs, (study, inputs.study(study)[0].id), side).tolist()
+
+    columns = [
+        {"title": study.replace("figure_", "Fig. ").replace("_", "."), **{s: forces(study, s) for s in JAWS}} for study in studies
+    ]
+    return {"form": "maps", "title": title, "unit": "N", "columns": columns}

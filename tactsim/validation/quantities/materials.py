@@ -63,6 +63,31 @@ def library_constant(material: SetName, constant: str) -> float:
     return _constant(named_material(material).material, constant)
 
 
+@quantity(unit="1")
+def rotated_stress(material: SetName) -> float:
+    r"""Largest difference of :math:`\sigma(Q F)` and :math:`Q \sigma(F) Q^T` over the largest stress; zero if objective.
+
+    The Cauchy stress is :math:`P F^T / J`, at a general volume-preserving deformation and a turn about no axis of it. A stress of
+    the right Cauchy-Green tensor, as 3.1.1 to 3.1.3 read (E19), does not turn with the body.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such set.
+    """
+    law = named_material(material).material
+    F = np.array([[1.1, 0.3, -0.1], [0.05, 0.8, 0.2], [-0.15, 0.1, 1.2]])
+    F /= np.linalg.det(F) ** (1 / 3)
+    Q = scipy.spatial.transform.Rotation.from_rotvec([0.4, -0.7, 0.5]).as_matrix()
+
+    def cauchy_stress(gradient: Array) -> Array:
+        stress: Array = law.first_piola_kirchhoff(gradient[..., None], np.zeros(1))[..., 0] @ gradient.T
+        return stress
+
+    turned = Q @ cauchy_stress(F) @ Q.T
+    return float(np.abs(cauchy_stress(Q @ F) - turned).max() / np.abs(turned).max())
+
+
 @cache
 def compression_curve(name: str) -> UniaxialCurve:
     """The curve that stands for the unpublished data of Fig. 3.8: nominal stress of a material set by 3.1.9 with c11.

@@ -15,6 +15,7 @@ from tactsim.materials.any_material import AnyMaterial
 from tactsim.model import FrozenModel
 from tactsim.units import Length, Positive, parse_quantity
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
+from tactsim.validation.endings import Interval
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.quantities.annulus import OUTER_RADIUS
 from tactsim.validation.study import RunOutcome
@@ -98,29 +99,27 @@ def bracket(
     studies: Annotated[tuple[str, ...], Field(min_length=1)],
     quantity: Literal["threshold_pressure", "threshold_displacement"],
     area: Area = "both",
-) -> float:
-    """The printed number, in Pa or m, if it lies between the smallest and largest simulated one, else the nearer of the two.
+) -> Interval:
+    """The smallest and the largest simulated value, in Pa or m.
 
-    Only runs that converged count. For ``threshold_pressure`` the bracket spans the pressures over both areas of erratum E16.
+    Only runs that converged count. For ``threshold_pressure`` the interval spans the pressures over both areas of erratum E16.
 
     Parameters
     ----------
-    studies : studies of the table that make the bracket
+    studies : studies of the table that span the interval
     quantity : quantity of the runs
     area : which area a pressure refers to
 
     Raises
     ------
     UnknownName, InputError
-        If there is no such study, or the row prints no number or no run converged.
+        If there is no such study, or no run converged.
     """
-    if inputs.expected is None:
-        raise InputError("a bracket needs a printed number to compare")
     outcomes = [outcome for study in studies for outcome in inputs.study(study) if outcome.converged]
     if not outcomes:
         raise InputError(f"no run of {', '.join(studies)} converged")
     values = [value for outcome in outcomes for value in _readings(outcome, quantity, area)]
-    return min(max(inputs.expected, min(values)), max(values))
+    return Interval(min(values), max(values))
 
 
 class PrintedLine(FrozenModel):

@@ -8,11 +8,12 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.errors import InputError
-from tactsim.interfaces import quantity
+from tactsim.interfaces import drawing, quantity
 from tactsim.localization.bands import GREY_LEVELS, Form, band_image, band_intensities, element_positions, inserted_elements
 from tactsim.localization.section_image import lump_rows, section_image
 from tactsim.localization.views import SHAPE, Join, joined, pair_images, views
 from tactsim.units import NonNegative
+from tactsim.validation.curves import Data, Title
 
 Place = Annotated[int, Field(ge=1)]
 """Counted from 1."""
@@ -129,3 +130,58 @@ def view_output(
     upper = 10 * number[:, None] + number
     image = getattr(views(np.array([upper, upper + 100]), ODD_SHAPE), view)
     return float(image[BORDERS[row], BORDERS[column]])
+
+
+@drawing
+def band_pictures(
+    title: Title,
+    signals: Annotated[tuple[NonNegative[float], ...], Field(min_length=2)],
+    pixels: Annotated[tuple[int, ...], Field(min_length=1)] = (7, 60, 100),
+    normalising: Annotated[float, Field(gt=0)] = 1.0,
+) -> Data:
+    """Form ``images``: the one-dimensional pictures of Appendix .1, the grey levels 0 to 255 of eqs. .1.1 and .1.4.
+
+    Parameters
+    ----------
+    signals : outputs V of the elements, from left to right
+    pixels : numbers N of pixels, one picture each
+    normalising : alpha
+
+    Raises
+    ------
+    InvalidQuantity
+        If there are fewer pixels than elements.
+    """
+    grey = band_intensities(np.array(signals), normalising)
+    panels = [
+        {"title": f"{len(signals)} elements in {count} pixels", "grey": band_image(grey, count).tolist()} for count in pixels
+    ]
+    return {"form": "images", "title": title, "axis": "pixel", "panels": panels}
+
+
+@drawing
+def section_pictures(
+    title: Title,
+    upper: Annotated[tuple[NonNegative[float], ...], Field(min_length=2)],
+    lower: Annotated[tuple[NonNegative[float], ...], Field(min_length=2)],
+    shapes: tuple[tuple[Place, Place], ...] = ((7, 7), (60, 100)),
+) -> Data:
+    """Form ``images``: the section of Appendix .2 with the lump at its row, in several numbers of rows and columns.
+
+    Parameters
+    ----------
+    upper, lower : outputs of the elements of both arrays, from left to right
+    shapes : rows and columns of each picture
+
+    Raises
+    ------
+    InvalidQuantity
+        If a picture has fewer columns than the arrays have elements.
+    """
+    pictures = [section_image(np.array(upper), np.array(lower), shape) for shape in shapes]
+    brightest = max(float(picture.max()) for picture in pictures)
+    panels = [
+        {"title": f"{shape[0]} x {shape[1]} pixels", "grey": band_intensities(picture, brightest).tolist()}
+        for shape, picture in zip(shapes, pictures, strict=True)
+    ]
+    return {"form": "images", "title": title, "axis": "column", "panels": panels}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -20,19 +21,35 @@ def test_known_deviations_do_not_fail(tmp_path: Path, capsys: pytest.CaptureFixt
     assert validate(tmp_path, "small") == 0
     text = capsys.readouterr().out
     assert "outside by 0.5" in text
-    assert "every row holds" in text
+    assert "every row ended as recorded" in text
     report = json.loads((tmp_path / "out" / "validation.json").read_text(encoding="utf-8"))
     assert report["passed"] is True
-    assert report["counts"][0]["rows"] == "3 of 3"
-    assert [row["ended"] for row in report["tables"]["small"]["rows"]] == ["reproduced", "outside by 0.5", "assumption"]
-    assert "| small | 3 of 3 | 1 | 0 | 1 | 0 | 1 | 0 |" in (tmp_path / "out" / "validation.md").read_text(encoding="utf-8")
+    group = report["groups"]["tables"]
+    assert group["counts"][0]["rows"] == "3 of 3"
+    assert [row["ended"] for row in group["tables"]["small"]["rows"]] == ["reproduced", "outside by 0.5", "not testable"]
+    assert [(row["expected"], row["computed"], row["unit"]) for row in group["tables"]["small"]["rows"][:2]] == [
+        (125.0, pytest.approx(125.0, rel=1e-12), "N/m"),
+        (250.0, pytest.approx(125.0, rel=1e-12), "N/m"),
+    ]
+    assert "| small | 3 of 3 | 1 | 0 | 0 | 0 | 1 | 0 | 0 | 0 | 1 | 0 |" in (tmp_path / "out" / "validation.md").read_text("utf-8")
 
 
-@pytest.mark.parametrize(("old", "new"), [("125 N/m", "126 N/m"), ("outside_by: 0.5", "outside_by: 0.6")])
+def test_the_report_opens_from_disk(tmp_path: Path) -> None:
+    """One file: figures inside, nothing fetched, text of tables escaped, errata in words where they are used."""
+    text = TABLE.replace("half the displacement was meant", "'E4: <b>half</b> of it'")
+    write_tables(tmp_path / "tables", text)
+    assert validate(tmp_path) == 0
+    page = (tmp_path / "out" / "validation.html").read_text(encoding="utf-8")
+    assert '<abbr title="a missing term">E4</abbr>: &lt;b&gt;half&lt;/b&gt; of it' in page
+    assert page.count("data:image/png;base64,") == 1, "the overview"
+    assert not re.search(r'(src|href)="(?!data:|#)', page)
+
+
+@pytest.mark.parametrize(("old", "new"), [("125 N/m", "126 N/m"), ("by: 0.5", "by: 0.6")])
 def test_a_row_that_leaves_its_state_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str) -> None:
     write_tables(tmp_path / "tables", TABLE.replace(old, new))
     assert validate(tmp_path) == 4
-    assert "left their recorded state: small." in capsys.readouterr().out
+    assert "left their class: small." in capsys.readouterr().out
     assert json.loads((tmp_path / "out" / "validation.json").read_text(encoding="utf-8"))["passed"] is False
 
 
@@ -45,7 +62,7 @@ def test_an_absent_row_or_file_fails(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "0 of 3" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arguments", [["tabel"], ["small", "--workers", "0"]])
+@pytest.mark.parametrize("arguments", [["tabels"], ["small", "--workers", "0"]])
 def test_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
     write_tables(tmp_path / "tables")
     assert validate(tmp_path, *arguments) == 2

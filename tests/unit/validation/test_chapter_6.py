@@ -10,21 +10,22 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 from thesis_tables import MANIFEST, TABLE, write_tables
+from wrong_rows import left, unmoved
 
 from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
 from tactsim.validation import compare, load_tables
-from tactsim.validation.comparison import compare_row
+from tactsim.validation.endings import Confirmed
 from tactsim.validation.execution import StudyRunner
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.grasp import taxel_asymmetry, taxel_change, taxel_contrast, taxel_history, taxel_pulse
-from tactsim.validation.report import count_rows, terminal_report
+from tactsim.validation.report import CLASSES, Validation, count_rows, table_text
 from tactsim.validation.study import RunOutcome
-from tactsim.validation.table import Assumption, Bound, Row
+from tactsim.validation.table import Row
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
 LOADED = load_tables(SHIPPED, ["section_6_6"])
 TABLE_6_6 = LOADED.tables["section_6_6"]
-FINDING = "state: {above: 100 N/m, finding: a force that is felt}"
+CLAIM = "ends: {kind: confirmed, above: 100 N/m, why: a force that is felt}"
 
 
 def grasp(name: str, upper: np.ndarray, lower: np.ndarray | None = None, *, status: str = "converged") -> RunOutcome:
@@ -169,50 +170,46 @@ def test_the_change_of_a_pulse_leaves_out_what_came_before() -> None:
         taxel_pulse(inputs(a=steps), "s", "a", 3.0)
 
 
-def finding(folder: Path, state: str) -> list:
-    text = TABLE.split("  - id: known", maxsplit=1)[0].replace("    printed: 125 N/m\n", "")
-    tolerance = "    tolerance: {relative: 0.001, reason: a quotient}\n    state: {reproduced: true}"
-    folder = write_tables(folder, text.replace(tolerance, f"    {state}"), MANIFEST.replace("small: 3", "small: 1"))
+def claim(folder: Path, ends: str) -> list:
+    text = TABLE.split("  - id: known", maxsplit=1)[0].replace("    expected: 125 N/m\n", "")
+    recorded = "    ends: {kind: reproduced, within: {relative: 0.001, reason: a quotient}}"
+    folder = write_tables(folder, text.replace(recorded, f"    {ends}"), MANIFEST.replace("small: 3", "small: 1"))
     loaded = load_tables(folder)
     outcome = compare("small", loaded.tables["small"], folder, {})
-    assert [line[-4:] for line in count_rows(loaded, [outcome])[:1]] in ([(0, 1, 0, 0)], [(0, 0, 0, 1)])
-    assert "100 N/m" in terminal_report(loaded, [outcome])
+    counts = dict(zip(("chapter", "table", "rows", *CLASSES), count_rows(Validation(loaded, (outcome,)))[0], strict=True))
+    assert (counts["confirmed"], counts["left"]) in ((1, 0), (0, 1))
+    assert "100 N/m" in table_text(outcome)
     return list(outcome.rows)
 
 
-def test_a_finding_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
-    (row,) = finding(tmp_path, FINDING)  # 125 N/m are computed
-    assert (row.held, row.state, row.reason) == (True, "above 100 N/m", "a force that is felt")
-    (row,) = finding(tmp_path, FINDING.replace("above", "below"))
-    assert (row.held, row.state) == (False, "LEFT: was below 100 N/m")
+def test_a_claim_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
+    (row,) = claim(tmp_path, CLAIM)  # 125 N/m are computed
+    assert (row.held, row.ended, row.reason) == (True, "confirmed, above 100 N/m", "a force that is felt")
+    (row,) = claim(tmp_path, CLAIM.replace("above", "below"))
+    assert (row.held, row.ended) == (False, "LEFT: was confirmed, below 100 N/m")
 
 
 @pytest.mark.parametrize(
-    ("state", "message"),
+    ("ends", "message"),
     [
-        ("state: {above: 1 N/m, below: 2 N/m, finding: both}", "either above or below"),
-        ("state: {finding: neither}", "either above or below"),
-        ("state: {above: 100, finding: bare}", "has no unit"),
-        ("state: {above: 100 N, finding: wrong}", "wrong dimension"),
+        ("ends: {kind: confirmed, above: 1 N/m, below: 2 N/m, why: both}", "either above or below"),
+        ("ends: {kind: contradicted, why: neither}", "either above or below"),
+        ("ends: {kind: confirmed, above: 100, why: bare}", "has no unit"),
+        ("ends: {kind: confirmed, above: 100 N, why: wrong}", "wrong dimension"),
+        ("ends: {kind: not_testable, why: evaluated}", "what is evaluated is testable"),
+        ("ends: {kind: regression_bound, above: 1 N/m, why: not own}", "an own number is a regression"),
+        ("ends: {kind: transcribed, why: nothing to read}", "needs what is expected"),
     ],
 )
-def test_a_bad_limit_is_reported(tmp_path: Path, state: str, message: str) -> None:
+def test_a_bad_ending_is_reported(tmp_path: Path, ends: str, message: str) -> None:
     with pytest.raises(CaseError, match=message):
-        finding(tmp_path, state)
+        claim(tmp_path, ends)
 
 
-def test_a_finding_that_calls_nothing_is_refused() -> None:
-    row = next(row for row in TABLE_6_6.rows if isinstance(row.state, Bound))
-    with pytest.raises(ValidationError, match="needs to be evaluated"):
-        type(row).model_validate({**row.model_dump(), "evaluate": None})
-
-
-def wrong(row: Row) -> Row:
-    """The row with its limit on the other side, or with a number that is wrong by three tolerances."""
-    if isinstance(row.state, Bound):
-        above, below = row.state.above, row.state.below
-        return row.model_copy(update={"state": row.state.model_copy(update={"above": below, "below": above})})
-    return row.model_copy(update={"printed": (row.expected or 0.0) + 3 * (row.allowed or 0.0)})
+def test_a_claim_that_calls_nothing_is_refused() -> None:
+    row = next(row for row in TABLE_6_6.rows if isinstance(row.ends, Confirmed))
+    with pytest.raises(ValidationError, match="only what is not testable may lack how it is evaluated"):
+        type(row).model_validate({**row.model_dump(by_alias=True), "evaluate": None})
 
 
 def check(rows: Sequence[Row], runner: StudyRunner) -> None:
@@ -223,11 +220,10 @@ def check(rows: Sequence[Row], runner: StudyRunner) -> None:
         for study in TABLE_6_6.studies
         if (kept := tuple(run for run in study.runs if run.id in needed))
     ]
-    simulated = Inputs(
-        folder=SHIPPED, studies=runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)["section_6_6"]
-    )
-    assert [row.id for row in rows if not compare_row(row, simulated).held] == []
-    assert [row.id for row in rows if not isinstance(row.state, Assumption) and compare_row(wrong(row), simulated).held] == []
+    ((_, outcomes),) = runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)
+    simulated = Inputs(folder=SHIPPED, studies=outcomes)
+    assert left(rows, simulated) == []
+    assert unmoved(rows, simulated) == []
 
 
 def test_the_row_of_one_short_simulation_holds(tmp_path: Path) -> None:

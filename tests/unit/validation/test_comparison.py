@@ -8,6 +8,7 @@ import pytest
 from thesis_tables import TABLE, write_tables
 
 from tactsim.validation import RowOutcome, compare, load_tables
+from tactsim.validation.endings import Interval
 from tactsim.validation.study import RunOutcome
 
 
@@ -19,7 +20,7 @@ def outcomes(folder: Path, text: str = TABLE) -> tuple[RowOutcome, ...]:
 def test_recorded_states_hold(tmp_path: Path) -> None:
     rows = outcomes(tmp_path)
     assert [row.held for row in rows] == [True, True, True]
-    assert [row.state for row in rows] == ["reproduced", "outside by 0.5", "assumption"]
+    assert [row.ended for row in rows] == ["reproduced", "outside by 0.5", "not testable"]
     assert [row.ratio for row in rows[:2]] == pytest.approx([1.0, 0.5], rel=1e-12)  # a quotient of exact numbers
     assert rows[2].ratio is None
 
@@ -35,17 +36,17 @@ def test_recorded_states_hold(tmp_path: Path) -> None:
 def test_a_wrong_number_leaves(tmp_path: Path, old: str, new: str, left: int, message: str) -> None:
     rows = outcomes(tmp_path, TABLE.replace(old, new))
     assert [row.held for row in rows] == [k != left for k in range(3)]
-    assert rows[left].state == message
+    assert rows[left].ended == message
 
 
 def test_after_an_erratum(tmp_path: Path) -> None:
-    text = TABLE.replace("reproduced: true", "reproduced_after: E4")
-    assert outcomes(tmp_path, text)[0].state == "reproduced after E4"
-    assert outcomes(tmp_path, text.replace("125 N/m", "126 N/m"))[0].state == "LEFT: was reproduced after E4"
+    text = TABLE.replace("kind: reproduced,", "kind: reproduced, after: E4,")
+    assert outcomes(tmp_path, text)[0].ended == "reproduced after E4"
+    assert outcomes(tmp_path, text.replace("125 N/m", "126 N/m"))[0].ended == "LEFT: was reproduced after E4"
 
 
 BRACKET = """\
-schema: tactsim/thesis-table/1
+schema: tactsim/thesis-table/2
 title: A bracket
 chapter: 3
 source: nowhere
@@ -53,23 +54,25 @@ rows:
   - id: pressure
     quantity: threshold pressure
     place: line 1
-    printed: PRINTED
+    numbers: [T053]
+    expected: EXPECTED
+    from: thesis
     evaluate: {kind: bracket, studies: [icf], quantity: threshold_pressure}
-    state: {outside_by: 30.0, tolerance: 0.1, reason: known}
+    ends: {kind: outside, by: 30.0, within: 0.1, why: 'known: {computed}, {ratio} times, {runs} runs'}
   - id: runs
     quantity: runs
     place: line 2
-    printed: 2.0
+    expected: 2.0
+    from: own
     evaluate: {kind: converged_runs, study: icf}
-    tolerance: {absolute: 0.0, reason: a count}
-    state: {reproduced: true}
+    ends: {kind: regression, within: {absolute: 0.0, reason: a count}, why: as many as there are}
   - id: ratio
     quantity: second over first
     place: line 3
-    printed: 2.0
+    expected: 2.0
+    from: exact
     evaluate: {kind: run_ratio, run: [icf, b], over: [icf, a]}
-    tolerance: {relative: 0.001, reason: exact}
-    state: {reproduced: true}
+    ends: {kind: reproduced, within: {relative: 0.001, reason: exact}}
 """
 
 
@@ -82,11 +85,11 @@ def run(name: str, pressure: float | None) -> RunOutcome:
 
 
 @pytest.mark.parametrize(
-    ("printed", "ratio"),
+    ("expected", "ratio"),
     [("500 Pa", 30.0), ("16 kPa", 1.0), ("80 kPa", 0.5)],  # below, inside and above 0.75 * 20 kPa to 40 kPa
 )
-def test_a_bracket_spans_both_areas_of_the_runs_that_converged(tmp_path: Path, printed: str, ratio: float) -> None:
-    table = load_tables(write_tables(tmp_path, BRACKET.replace("PRINTED", printed))).tables["small"]
+def test_a_bracket_spans_both_areas_of_the_runs_that_converged(tmp_path: Path, expected: str, ratio: float) -> None:
+    table = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", expected))).tables["small"]
     studies = {"icf": (run("a", 20e3), run("b", 40e3), run("c", None))}
     rows = compare("small", table, tmp_path, studies).rows
     assert rows[0].ratio == pytest.approx(ratio, rel=1e-12)  # a quotient of exact numbers
@@ -94,8 +97,29 @@ def test_a_bracket_spans_both_areas_of_the_runs_that_converged(tmp_path: Path, p
 
 
 def test_a_run_that_fails_or_is_absent_lets_its_rows_leave(tmp_path: Path) -> None:
-    table = load_tables(write_tables(tmp_path, BRACKET.replace("PRINTED", "500 Pa"))).tables["small"]
+    table = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", "500 Pa"))).tables["small"]
     rows = compare("small", table, tmp_path, {"icf": (run("a", 20e3), run("b", None))}).rows
     assert [row.held for row in rows] == [True, False, False]
     assert "stopped" in rows[2].reason
     assert not any(row.held for row in compare("small", table, tmp_path, {}).rows)
+
+
+def test_an_interval_is_computed_without_what_it_is_compared_with(tmp_path: Path) -> None:
+    text = BRACKET.replace("kind: outside, by: 30.0, within: 0.1,", "kind: inside_range,")
+    studies = {"icf": (run("a", 20e3), run("b", 40e3))}
+    for expected, held in (("14.9 kPa", False), ("15.1 kPa", True), ("39.9 kPa", True), ("40.1 kPa", False)):
+        table = load_tables(write_tables(tmp_path, text.replace("EXPECTED", expected))).tables["small"]
+        row = compare("small", table, tmp_path, studies).rows[0]
+        assert (row.held, row.computed) == (held, Interval(15e3, 40e3))
+        assert row.shown == pytest.approx((15.0, 40.0), rel=1e-12)  # in kPa, as what is expected
+
+
+def test_the_run_fills_in_the_figures_of_a_reason(tmp_path: Path) -> None:
+    table = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", "500 Pa"))).tables["small"]
+    (row, *_) = compare("small", table, tmp_path, {"icf": (run("a", 20e3), run("b", 40e3))}).rows
+    assert row.reason == "known: 1.5e+04 to 4e+04 Pa, 30 times, 2 runs"
+
+
+def test_a_figure_that_no_row_has_is_a_fault(tmp_path: Path) -> None:
+    loaded = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", "500 Pa").replace("{runs} runs", "{rnus} runs")))
+    assert loaded.faults == ("small: the reason of pressure has a figure {rnus}, which is no row of the table",)

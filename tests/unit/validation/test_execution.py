@@ -39,7 +39,7 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def run(runner: StudyRunner) -> dict[str, dict[str, tuple[RunOutcome, ...]]]:
-    return runner.outcomes({"one": (STUDY,), "two": (STUDY,)}, CASES, lambda line: None)
+    return dict(runner.outcomes({"one": (STUDY,), "two": (STUDY,)}, CASES, lambda line: None))
 
 
 def test_equal_cases_run_once_and_what_ended_is_kept(tmp_path: Path, computed: list[str]) -> None:

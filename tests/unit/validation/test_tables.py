@@ -9,12 +9,12 @@ from pydantic import ValidationError
 from thesis_tables import MANIFEST, TABLE, write_tables
 
 from tactsim.errors import CaseError, StorageError, UnknownName
-from tactsim.validation import load_tables
+from tactsim.validation import load_groups, load_tables
 
 
 def test_a_table_is_read_in_si(tmp_path: Path) -> None:
     table = load_tables(write_tables(tmp_path)).tables["small"]
-    assert [row.expected for row in table.rows] == [125.0, 250.0, None]
+    assert [row.expected_si for row in table.rows] == [125.0, 250.0, None]
     assert table.rows[0].allowed == pytest.approx(0.125, rel=1e-12)  # round-off of one product
     with pytest.raises(ValidationError):
         table.rows[0].id = "other"
@@ -25,14 +25,17 @@ def test_a_table_is_read_in_si(tmp_path: Path) -> None:
     [
         ("125 N/m", "125 N", r"small.yaml:6: rows.0: '125 N' has the wrong dimension"),
         ("125 N/m", "125", r"small.yaml:6: rows.0: 125 has no unit"),
-        ("force: 0.1 N, displacement: 0.8 mm}\n    tol", "force: 0.1, displacement: 0.8 mm}\n    tol", "rows.0.evaluate.force"),
+        ("force: 0.1 N, displacement: 0.8 mm}\n    ends", "force: 0.1, displacement: 0.8 mm}\n    ends", "rows.0.evaluate.force"),
         ("kind: stiffness_resolution", "kind: stiffness_resolutoin", "did you mean 'stiffness_resolution'"),
         ("    place: line 1\n", "", "rows.0.place: missing"),
-        ("    tolerance: {relative: 0.001, reason: a quotient}\n", "", "a row that is reproduced has a tolerance"),
-        ("reason: a quotient", "raeson: a quotient", "rows.0.tolerance.raeson: unknown key"),
-        ("outside_by: 0.5", "outside_by: 1.001", "is no deviation"),
+        (", within: {relative: 0.001, reason: a quotient}", "", "rows.0.ends.within: missing"),
+        ("reason: a quotient", "raeson: a quotient", "rows.0.ends.within.raeson: unknown key"),
+        ("by: 0.5", "by: 1.001", "is no deviation"),
+        ("from: thesis", "from: own", "an own number is a regression"),
+        ("from: thesis", "from: hearsay", "rows.0.from"),
+        ("T053", "53", "rows.0.numbers.0"),
         ("id: known", "id: stiffness", "rows with the same name: stiffness"),
-        ("state: {assumption: not printed}", "state: {assumption: not printed, reproduced: true}", "rows.2.state"),
+        ("why: not printed", "why: not printed, by: 2", "rows.2.ends.by: unknown key"),
         ("title: A small table", "title: [", "not valid YAML"),
     ],
 )
@@ -73,3 +76,20 @@ def test_a_deleted_or_uncounted_file_is_a_fault(tmp_path: Path) -> None:
 def test_a_table_of_another_chapter_is_a_fault(tmp_path: Path) -> None:
     faults = load_tables(write_tables(tmp_path, manifest=MANIFEST.replace('"3"', '"4"'))).faults
     assert faults == ("small: the table names chapter 3, the manifest chapter 4",)
+
+
+def test_a_number_without_a_row_is_a_fault(tmp_path: Path) -> None:
+    loaded = load_tables(write_tables(tmp_path, TABLE.replace("    numbers: [T053]\n", "")))
+    assert loaded.faults == ("T053: no row names it: sensitivity",)
+    assert load_tables(tmp_path, ["small"]).faults == (), "only all tables together must have every number"
+    unknown = load_tables(write_tables(tmp_path, TABLE.replace("[T053]", "[T053, T054]")))
+    assert unknown.faults == ("small: T054 is no number of the manifest",)
+
+
+def test_groups_are_read_by_their_folder_or_by_table(tmp_path: Path) -> None:
+    folders = [write_tables(tmp_path / name) for name in ("thesis", "published")]
+    assert [group.folder.name for group in load_groups(folders)] == ["thesis", "published"]
+    assert [group.folder.name for group in load_groups(folders, ["published"])] == ["published"]
+    assert [list(group.tables) for group in load_groups(folders, ["small"])] == [["small"], ["small"]]
+    with pytest.raises(UnknownName, match="did you mean 'published'"):
+        load_groups(folders, ["publisht"])
