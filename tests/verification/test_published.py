@@ -280,7 +280,7 @@ def test_torsion_converges(verification_record):
     order = float(np.polyfit(np.log(cells), -np.log(errors), 1)[0])
     assert abs(order - 4) < 0.1  # the torque is a derivative of the energy, which converges twice as fast as the strain
     known = {"reference": "Rivlin 1949", "kind": "convergence", "mesh": "2, 3, 4 cells"}
-    verification_record("torsion, torque", order=order, theory=4.0, **known)
+    verification_record("torsion, torque", order=order, theory=4.0, tolerance=0.1, **known)
 
 
 def tube(pressure: float = 0.25e6, c10: float = 1e6, c01: float = 0.25e6, ratio: float = 1.25) -> tuple[float, float]:
@@ -328,7 +328,7 @@ def test_inflated_tube_converges(verification_record):
     order = float(np.polyfit(np.log(cells), -np.log(errors), 1)[0])
     assert abs(order - 3) < 0.1  # a displacement of quadratic elements
     known = {"reference": "closed form", "kind": "convergence", "mesh": "2, 4, 8 cells across the wall"}
-    verification_record("tube B/A 1.25, displacement of the bore", order=order, theory=3.0, **known)
+    verification_record("tube B/A 1.25, displacement of the bore", order=order, theory=3.0, tolerance=0.1, **known)
 
 
 # VM201, read off a curve.
