@@ -44,6 +44,7 @@ def _points(printed: Printed, x_unit: str, unit: str) -> tuple[Array, Array]:
 @drawing
 def printed_beside_quantities(
     inputs: Inputs,
+    *,
     title: Title,
     study: StudyName,
     run: RunName,
