@@ -1,7 +1,7 @@
 """GetFEM on the block in mixed form: python3 getfem_mixed_block.py PROBLEM.npz RESULT.npz.
 
-P2 displacement, continuous P1 pressure. The discrete problem is tactsim's: W(F) + p (J - 1) - p^2 / 2 K at the same four points of each tetrahedron. Run by the system's
-Python, as ``getfem_block.py``.
+P2 displacement, continuous P1 pressure. The discrete problem is tactsim's: W(F) + p (J - 1) - p^2 / 2 K at the same four points
+of each tetrahedron. Run by the system's Python, as ``getfem_block.py``.
 """
 
 from __future__ import annotations
