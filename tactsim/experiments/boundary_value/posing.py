@@ -99,15 +99,25 @@ class _Posing:
         prescribed = PrescribedMotions(motions, self._size)
         conditions = Conditions(prescribed, len(motions), loads, units, contacts)
         options = PATIENCE if contacts else NewtonOptions()
-        model = LoadedBody(self._mesh, self._body, conditions, self._regularisation(), options=options)
+        model = LoadedBody(self._mesh, self._body, conditions, self._regularisation(contacts), options=options)
         return PosedProblem(model, self._domain, self._size, (*moved, *forces, *self._problem.contacts))
 
-    def _regularisation(self) -> Regularisation:
-        """A penalty as stiff as the penetration asks; with friction a soft one, and multipliers."""
+    def _regularisation(self, contacts: Sequence[MovedContact]) -> Regularisation:
+        """A penalty as stiff as the penetration asks; a soft one and multipliers where a whole face is about to stick or slip.
+
+        Why: under faces that meet all at once every point chooses between stick and slip in the same step, and Newton cycles with
+        a stiff penalty; where a round body rolls on, points close one by one, and multipliers lag behind.
+        """
         tolerance, modulus = self._problem.largest_penetration(self._size), self._problem.material.shear_modulus
-        if any(ContactPair(one.body, one.law).has_friction for one in self._problem.contacts):
+        rubbing = [contact.posed for contact in contacts if contact.posed.pair.has_friction]
+        if rubbing and all(self._conforms(contact) for contact in rubbing):
             return Augmentation(tolerance, modulus, SWITCH_SHARE * self._size, softness=SOFTNESS * self._size)
         return Regularisation(tolerance, modulus, SWITCH_SHARE * self._size)
+
+    def _conforms(self, contact: PosedContact) -> bool:
+        """Whether all points of a face are as far from the rigid body."""
+        gap = contact.pair.body.signed_distance(contact.reference - contact.place[:, None])[0]
+        return float(np.ptp(gap)) <= AT_NODE * self._size
 
     def _motions(self) -> tuple[list[PrescribedMotion], list[FaceCondition | PointCondition | None]]:
         """Motions, and the condition that each comes from: the symmetry of the whole first."""

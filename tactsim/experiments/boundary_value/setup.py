@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
+import numpy as np
 from pydantic import Field, StringConstraints, model_validator
 
 from tactsim.experiments.boundary_value.asked import AnyAsked
@@ -30,8 +31,8 @@ RECORDED = {
     "max_penetration": "m",
 }
 """Units of what every step records beside what is asked for."""
-PENETRATION_SHARE = 1e-6
-"""Largest penetration over the body's size, if a case gives none."""
+PENETRATION_SHARE, WITH_FRICTION = 1e-6, 1e-5
+"""Largest penetration over the body's size, if a case gives none: of smooth contacts, and where any has friction."""
 
 
 def ramp() -> Amplitude:
@@ -62,7 +63,7 @@ class BoundaryValueSetup(FrozenModel):
     time: TimeSettings = TimeSettings()
     """Steps of time of a material that relaxes."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-12)] | None = None
-    """Largest penetration of a rigid body; by default a millionth of the body's size."""
+    """Largest penetration of a rigid body; by default a millionth of the body's size, with friction a hundred-thousandth."""
 
     @property
     def duration(self) -> float:
@@ -72,7 +73,8 @@ class BoundaryValueSetup(FrozenModel):
 
     def largest_penetration(self, size: float) -> float:
         """Largest penetration in m that is allowed, of a body of this size in m."""
-        return self.penetration_tolerance or PENETRATION_SHARE * size
+        rubs = any(one.law.traction_limit(np.ones(1)).any() for one in self.contacts)
+        return self.penetration_tolerance or (WITH_FRICTION if rubs else PENETRATION_SHARE) * size
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -234,3 +234,34 @@ def test_a_body_that_nothing_holds_fails_with_the_reason():
     ).run()
     assert result.status is Status.FAILED
     assert "held against moving as a whole" in result.reason
+
+
+def test_a_sphere_rubs_deep_into_a_bonded_layer():
+    layer = {"kind": "cylinder", "radial": [{"length": 12e-3, "cells": 20, "ratio": 4}], "axial": [{"length": 2e-3, "cells": 6}]}
+    held = [{"kind": "clamped", "face": "bottom"}]
+
+    def force(law):
+        sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 4e-3}, "law": law, "z": -0.8e-3}
+        question = asked("contact_force", component="z", factor=-1.0)
+        common = {"dimension": "axisymmetric", "geometry": layer, "conditions": held, "contacts": [sphere], "steps": 5}
+        result = result_of(**common, asked=question)
+        assert result.quantities["max_penetration"].value <= 12e-3 * 1e-5
+        return float(result.quantities["number"].value)
+
+    smooth, rough = force({"kind": "coulomb", "friction": 0.0}), force({"kind": "coulomb", "friction": 0.5})
+    assert 1.2 * smooth < rough < force({"kind": "stick"}) * (1 + 1e-3)
+
+
+def test_faces_that_meet_at_once_may_slip_and_stick():
+    sides = [{"kind": "displacement", "face": "left", "x": 0.0}, {"kind": "displacement", "face": "bottom", "y": 0.0}]
+
+    def force(friction):
+        law = {"kind": "coulomb", "friction": friction}
+        plane = {"face": "top", "side": "top", "body": {"kind": "plane"}, "law": law, "y": -0.1 * SIDE}
+        question = asked("contact_force", component="y", factor=-1.0)
+        common = {"dimension": "plane_strain", "geometry": SQUARE, "conditions": sides, "contacts": [plane]}
+        return number(**common, asked=question, steps=2)
+
+    forces = [force(friction) for friction in (0.0, 0.1, 0.5)]
+    assert forces[0] == pytest.approx(2 * (C10 + C01) * (0.9**-3 - 0.9) * SIDE, rel=1e-5)
+    assert forces[0] < forces[1] < forces[2]
