@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.array import Array
+from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
 from tactsim.mesh.mapped import Domain, grid_domain, polar, quarter_disc, spaced
 from tactsim.mesh.revolved import SweepSymmetry, swept
 from tactsim.model import FrozenModel
@@ -17,6 +18,7 @@ from tactsim.units import Length
 Dimension = Literal["3d", "plane_strain", "axisymmetric"]
 AXES: dict[str, tuple[str, ...]] = {"3d": ("x", "y", "z"), "plane_strain": ("x", "y"), "axisymmetric": ("r", "z")}
 """Names of the coordinates."""
+TETRAHEDRA_OF_PRISM = 3
 Part = Literal["whole", "half", "quarter"]
 
 
@@ -160,6 +162,8 @@ class RoundGeometry(Geometry):
     def _revolved(self, section: Domain) -> Domain:
         """The section turned about z."""
         symmetry = SweepSymmetry[self.part.upper()]
+        prisms = float(len(section.mesh.elements)) * self.around * symmetry.quarters
+        check_unknowns(PER_TETRAHEDRON * TETRAHEDRA_OF_PRISM * prisms, "geometry: cells along the radius, the axis and around it")
         turned = swept(section.mesh, self.around * symmetry.quarters, symmetry.quarters * np.pi / 2)
         faces = {name: turned.facets_from(edges) for name, edges in section.faces.items() if name != "axis"}
         boundary, _ = turned.mesh.boundary_facets()

@@ -95,6 +95,12 @@ def test_too_many_cells_are_refused():
         grid_domain((line, line, line), (("a", "b"), ("c", "d"), ("e", "f")))
 
 
+def test_too_many_sectors_are_refused():
+    rod = CylinderGeometry(radial=spans(1.0, 100), axial=spans(1.0, 100), around=100, part="whole")
+    with pytest.raises(InputError, match=r"around it: about 2\.1e"):
+        rod.domain("3d")
+
+
 @pytest.mark.parametrize(
     ("geometry", "dimension", "words"),
     [
