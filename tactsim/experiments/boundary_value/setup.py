@@ -79,6 +79,8 @@ class BoundaryValueSetup(FrozenModel):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         axes = AXES[self.dimension]
+        if not (self.conditions or self.contacts):
+            raise ValueError("nothing acts on the body; give conditions on its faces, or contacts")
         for condition in (*self.conditions, *self.contacts):
             if isinstance(condition, RotationCondition) and self.dimension != "3d":
                 raise ValueError("a face turns about z in 3d only")

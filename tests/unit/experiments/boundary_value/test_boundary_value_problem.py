@@ -190,7 +190,8 @@ def test_the_course_is_recorded_and_drawn():
     ],
 )
 def test_what_the_body_has_not_is_refused_with_what_it_has(fields, words):
-    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION} | fields
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
     with pytest.raises(InputError, match=words):
         BoundaryValueProblem.model_validate(fields).begin()
 
@@ -198,6 +199,7 @@ def test_what_the_body_has_not_is_refused_with_what_it_has(fields, words):
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
+        ({"conditions": []}, "nothing acts on the body"),
         ({"conditions": [{"kind": "displacement", "face": "top", "r": 0.0}]}, "there is no component r; allowed: x, y, z"),
         ({"conditions": [{"kind": "traction", "face": "top"}]}, "no component is given"),
         ({"asked": asked("displacement", at=TOP, component="r")}, "asked.number: there is no component r"),
@@ -219,7 +221,8 @@ def test_what_the_body_has_not_is_refused_with_what_it_has(fields, words):
     ],
 )
 def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
-    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION} | fields
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
     if fields["dimension"] == "plane_strain":
         fields = {"asked": asked("volume")} | {**fields, "geometry": SQUARE}
         fields["asked"] = fields["asked"] if "torque" in str(fields["asked"]) else asked("volume")
