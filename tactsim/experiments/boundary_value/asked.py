@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from tactsim.model import FrozenModel
-from tactsim.units import Length, Time
+from tactsim.units import Length, Time, format_quantity
 
 StressComponent = Literal["xx", "yy", "zz", "xy", "yz", "xz", "rr", "rz", "radial", "hoop", "von_mises", "mean"]
 
@@ -35,6 +36,11 @@ class AskedDisplacement(Asked):
         """Metres."""
         return "m"
 
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"displacement along {self.component} of the point {place_in_words(self.at)}"
+
 
 class AskedStress(Asked):
     """A component of the Cauchy stress at a point, tension positive.
@@ -53,6 +59,11 @@ class AskedStress(Asked):
         """Pascal."""
         return "Pa"
 
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"Cauchy stress ({self.component}) at the point {place_in_words(self.at)}"
+
 
 class AskedForce(Asked):
     """A component of what acts on a face from outside: reactions and loads, of the part that is computed."""
@@ -68,6 +79,11 @@ class AskedForce(Asked):
         """Newton; per metre of depth in plane strain."""
         return "N"
 
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"force along {self.component} that acts on the face {self.face}"
+
 
 class AskedTorque(Asked):
     """Moment about the z axis of what acts on a face from outside, in 3D."""
@@ -80,6 +96,11 @@ class AskedTorque(Asked):
     def unit(self) -> str:
         """Newton metre."""
         return "N*m"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"moment about z of what acts on the face {self.face}"
 
 
 class AskedContactForce(Asked):
@@ -96,6 +117,11 @@ class AskedContactForce(Asked):
         """Newton; per metre of depth in plane strain."""
         return "N"
 
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"force along {self.component} of the rigid body {self.contact}"
+
 
 class AskedEnergy(Asked):
     """Stored energy of the part that is computed, without what relaxes."""
@@ -106,6 +132,11 @@ class AskedEnergy(Asked):
     def unit(self) -> str:
         """Joule; per metre of depth in plane strain."""
         return "J"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return "stored energy of the part that is computed"
 
 
 class AskedVolume(Asked):
@@ -118,8 +149,18 @@ class AskedVolume(Asked):
         """Cubic metres; square metres in plane strain."""
         return "m^3"
 
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return "deformed volume of the part that is computed"
+
 
 AnyAsked = Annotated[
     AskedDisplacement | AskedStress | AskedForce | AskedTorque | AskedContactForce | AskedEnergy | AskedVolume,
     Field(discriminator="kind"),
 ]
+
+
+def place_in_words(place: Sequence[float]) -> str:
+    """Coordinates in m with units."""
+    return f"({', '.join(format_quantity(value, 'm') for value in place)})"

@@ -12,6 +12,7 @@ from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.contact.turned import Turned
 from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.asked import place_in_words
 from tactsim.experiments.boundary_value.conditions import (
     SIDES,
     AnyCondition,
@@ -242,8 +243,3 @@ def check_place(place: Sequence[float], axes: tuple[str, ...]) -> None:
     """
     if len(place) != len(axes):
         raise InputError(f"the point {place_in_words(place)} has {len(place)} coordinates; needed: {', '.join(axes)}")
-
-
-def place_in_words(place: Sequence[float]) -> str:
-    """Coordinates in m with units."""
-    return f"({', '.join(format_quantity(value, 'm') for value in place)})"

@@ -116,7 +116,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def _quantity(self, name: str) -> Quantity | None:
         """A number at its time; None if the run did not come so far."""
         one = self.problem.asked[name]
-        words = " ".join([one.kind.replace("_", " "), getattr(one, "component", ""), getattr(one, "face", "")]).strip()
+        words = one.words if one.factor == 1 else f"{one.words}, times {one.factor:g}"
         if one.time is None:
             return Quantity(self.steps[-1].values[name], one.unit, f"{words}, at the last accepted step")
         step = self._step_at(one.time)
