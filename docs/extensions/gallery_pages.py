@@ -27,6 +27,7 @@ ORDER = (
     "threshold_trial",
     "catheter_tip",
     "switch_probe",
+    "boundary_value_problem",
     "grasp",
     "matrix_readout",
     "localization",

@@ -74,7 +74,7 @@ def _tables() -> Lines:
     from tactsim.case.yaml_reading import read_yaml
     from tactsim.shipped import CASES
 
-    for path in sorted((CASES / "thesis").glob("*.yaml")):
+    for path in (path for group in ("thesis", "published") for path in sorted((CASES / group).glob("*.yaml"))):
         written = read_yaml(path.read_text(encoding="utf-8")).value
         if "rows" in written:
             yield path.stem, str(written.get("title", ""))

@@ -199,3 +199,8 @@ def tabulate(element: object, X: Array) -> tuple[Array, Array]:
     values = np.stack([np.broadcast_to(value, X.shape[1]) for value, _ in pairs], axis=1)
     gradients = np.stack([np.broadcast_to(gradient, X.shape).T for _, gradient in pairs], axis=1)
     return values, gradients
+
+
+def quadratic_values(X: Array) -> tuple[Array, Array]:
+    """Values (Q, A) and local gradients (Q, A, d) of the quadratic functions at points (d, Q) of the reference simplex."""
+    return tabulate(_ELEMENTS[len(X)][0], X)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from tactsim.fem.newton_options import NewtonOptions
 from tactsim.results.result import Status, StepRecord
@@ -16,6 +16,8 @@ LARGEST_RESIDUAL = NewtonOptions().tolerance
 """Largest relative residual of an equilibrium."""
 ROUND_OFF = 1e-9
 """Relative excess of a penetration over its tolerance that is round-off."""
+FINITE = ("displacement", "reaction_force", "max_penetration", "min_volume_ratio", "penetration_force_error")
+"""History values that must be finite wherever a run records them."""
 SATURATED = 0.99
 """Estimate beyond which nearly all of the force is missing and nothing more follows from it."""
 
@@ -29,15 +31,15 @@ def judged(status: Status, reason: str, reported: Iterable[StepRecord], toleranc
         return status, reason
     for step in reported:
         if fault := _fault(step, tolerance):
-            return Status.FAILED, f"{fault}, at a displacement of {format_quantity(step.values['displacement'], 'm')}"
+            return Status.FAILED, f"{fault}, {_where(step.values)}"
     return status, reason
 
 
 def _fault(step: StepRecord, tolerance: float) -> str | None:
     """What is wrong with a reported state, None if nothing is."""
     values = step.values
-    for name in ("displacement", "reaction_force", "max_penetration", "min_volume_ratio", "penetration_force_error"):
-        if not math.isfinite(values[name]):
+    for name in FINITE:
+        if name in values and not math.isfinite(values[name]):
             return f"the {name.replace('_', ' ')} is {values[name]}, not a finite number"
     if not step.residual <= LARGEST_RESIDUAL:
         return f"the residual is {step.residual:.1e}; allowed: {LARGEST_RESIDUAL:g}"
@@ -53,6 +55,12 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
             f"take penetration_tolerance: at most {format_quantity(sufficient_tolerance(values['max_penetration'], error), 'm')}"
         )
     return None
+
+
+def _where(values: Mapping[str, float]) -> str:
+    """At which displacement of the bodies a state is, or at which time."""
+    name, unit = ("displacement", "m") if "displacement" in values else ("time", "s")
+    return f"at a {name} of {format_quantity(values[name], unit)}"
 
 
 def sufficient_tolerance(penetration: float, error: float) -> float:

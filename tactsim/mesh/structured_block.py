@@ -103,7 +103,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     layers = [inner[shell] + share * (wall - inner[shell]) for share in np.arange(1, within + 1) / within]
     layers += [wall + share * (outer - wall) for share in beyond]
     corners, hexahedra, depth = stacked(inner, shell, quads, core, layers)
-    simplices, corners = _twelfths(hexahedra, corners, _mirrored_order(logical, shell, len(layers)))
+    simplices, corners = twelfths(hexahedra, corners, _mirrored_order(logical, shell, len(layers)))
     labels = np.repeat((depth < within).astype(np.int64), 12)
     key = f"morphed-{mesh_key(size, [inclusion], settings)}"
     return fitted(corners, simplices, labels, size=extent, inclusions=[inclusion], key=key, started=started, slide=False)
@@ -177,7 +177,7 @@ def ranks(keys: tuple[Array, ...]) -> Array:
     return places
 
 
-def _twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
+def twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
     """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its first place (n,)."""
     sides = cells[:, SIDES]
     first = places[sides].argmin(axis=2)

@@ -1,0 +1,166 @@
+"""What is asked of a boundary value problem: displacements and stresses at points, forces on faces, energy, volume."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from tactsim.model import FrozenModel
+from tactsim.units import Length, Time, format_quantity
+
+StressComponent = Literal["xx", "yy", "zz", "xy", "yz", "xz", "rr", "rz", "radial", "hoop", "von_mises", "mean"]
+
+
+class Asked(FrozenModel):
+    """A number that is asked for: recorded at every step, reported at one time."""
+
+    time: Annotated[Time, Field(ge=0)] | None = None
+    """When; by default at the end."""
+    factor: float = 1.0
+    """What the number is multiplied by, such as 4 for the force on a quarter of a body."""
+
+
+class AskedDisplacement(Asked):
+    """A component of the displacement of a point."""
+
+    kind: Literal["displacement"]
+    at: tuple[Length, ...]
+    """Undeformed coordinates of the point."""
+    component: Literal["x", "y", "z", "r"]
+    """Along which axis."""
+
+    @property
+    def unit(self) -> str:
+        """Metres."""
+        return "m"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"displacement along {self.component} of the point {place_in_words(self.at)}"
+
+
+class AskedStress(Asked):
+    """A component of the Cauchy stress at a point, tension positive.
+
+    ``radial`` and ``hoop`` are taken about the z axis; ``mean`` is a third of the trace.
+    """
+
+    kind: Literal["stress"]
+    at: tuple[Length, ...]
+    """Undeformed coordinates of the point."""
+    component: StressComponent
+    """Which one."""
+
+    @property
+    def unit(self) -> str:
+        """Pascal."""
+        return "Pa"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"Cauchy stress ({self.component}) at the point {place_in_words(self.at)}"
+
+
+class AskedForce(Asked):
+    """A component of what acts on a face from outside: reactions and loads, of the part that is computed."""
+
+    kind: Literal["force"]
+    face: str
+    """Name of the face."""
+    component: Literal["x", "y", "z", "r"]
+    """Along which axis."""
+
+    @property
+    def unit(self) -> str:
+        """Newton; per metre of depth in plane strain."""
+        return "N"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"force along {self.component} that acts on the face {self.face}"
+
+
+class AskedTorque(Asked):
+    """Moment about the z axis of what acts on a face from outside, in 3D."""
+
+    kind: Literal["torque"]
+    face: str
+    """Name of the face."""
+
+    @property
+    def unit(self) -> str:
+        """Newton metre."""
+        return "N*m"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"moment about z of what acts on the face {self.face}"
+
+
+class AskedContactForce(Asked):
+    """A component of the force of a rigid body on the part that is computed."""
+
+    kind: Literal["contact_force"]
+    contact: Annotated[int, Field(ge=1)] = 1
+    """Which of the contacts, counted from one."""
+    component: Literal["x", "y", "z", "r"]
+    """Along which axis."""
+
+    @property
+    def unit(self) -> str:
+        """Newton; per metre of depth in plane strain."""
+        return "N"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"force along {self.component} of the rigid body {self.contact}"
+
+
+class AskedEnergy(Asked):
+    """Stored energy of the part that is computed, without what relaxes."""
+
+    kind: Literal["energy"]
+
+    @property
+    def unit(self) -> str:
+        """Joule; per metre of depth in plane strain."""
+        return "J"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return "stored energy of the part that is computed"
+
+
+class AskedVolume(Asked):
+    """Deformed volume of the part that is computed."""
+
+    kind: Literal["volume"]
+
+    @property
+    def unit(self) -> str:
+        """Cubic metres; square metres in plane strain."""
+        return "m^3"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return "deformed volume of the part that is computed"
+
+
+AnyAsked = Annotated[
+    AskedDisplacement | AskedStress | AskedForce | AskedTorque | AskedContactForce | AskedEnergy | AskedVolume,
+    Field(discriminator="kind"),
+]
+
+
+def place_in_words(place: Sequence[float]) -> str:
+    """Coordinates in m with units."""
+    return f"({', '.join(format_quantity(value, 'm') for value in place)})"

@@ -1,0 +1,56 @@
+"""A boundary value problem of a body of one material."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal, Self
+
+from tactsim.experiments.boundary_value.asked import AskedForce, AskedStress
+from tactsim.experiments.boundary_value.conditions import ClampCondition, DisplacementCondition
+from tactsim.experiments.boundary_value.geometry import BlockGeometry, Span
+from tactsim.experiments.boundary_value.setup import RECORDED, BoundaryValueSetup
+from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import Course
+from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+
+
+def _history_units(problem: BoundaryValueProblem) -> dict[str, str]:
+    """Unit of every value that a step records."""
+    return RECORDED | {name: one.unit for name, one in problem.asked.items()}
+
+
+class BoundaryValueProblem(BoundaryValueSetup, Experiment):
+    """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it."""
+
+    kind: Literal["boundary_value_problem"] = "boundary_value_problem"
+
+    # The units follow from what is asked for, so that they replace the fixed ones of the interface.
+    history_units: ClassVar[Any] = property(_history_units)
+
+    @classmethod
+    def example(cls) -> Self:
+        """A block of rubber between glued plates, sheared by half its height in plane strain."""
+        span = (Span(length=10e-3, cells=4),)
+        return cls(
+            dimension="plane_strain",
+            geometry=BlockGeometry(x=span, y=span),
+            material=MooneyRivlin2(c10=1e5, c01=0.25e5),
+            conditions=(
+                ClampCondition(kind="clamped", face="bottom"),
+                DisplacementCondition(kind="displacement", face="top", x=5e-3, y=0.0),
+            ),
+            asked={
+                "shear_force": AskedForce(kind="force", face="top", component="x"),
+                "shear_stress": AskedStress(kind="stress", at=(5e-3, 5e-3), component="xy"),
+            },
+        )
+
+    def begin(self) -> Course:
+        """Follow the amplitudes to their end."""
+        from tactsim.experiments.boundary_value.record import boundary_value_course
+
+        return boundary_value_course(self)
+
+    @property
+    def extent(self) -> tuple[str, float]:
+        """The time."""
+        return "time", self.duration

@@ -1,0 +1,185 @@
+"""What is prescribed on the faces of a body: displacements, rotations, pressures, tractions and forces, and rigid bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from tactsim.contact.any_law import AnyLaw
+from tactsim.contact.coulomb import Coulomb
+from tactsim.interfaces import RigidBody
+from tactsim.mechanics.loading import Loading, pieces_of
+from tactsim.model import FrozenModel
+from tactsim.registry import Registered
+from tactsim.units import Angle, Force, Length, Pressure
+
+AnyBody: Any = Annotated[RigidBody, Registered(RigidBody)]
+
+
+class Amplitude(Loading):
+    """Factor over time by which a condition is multiplied, one piece after the other, from zero."""
+
+    pieces: pieces_of(float, "Factor")  # type: ignore[valid-type]
+    """Ramps, jumps, holds, sines or samples of the factor; 1 is the condition as it is written."""
+
+
+class Condition(FrozenModel):
+    """Something prescribed that follows a course in time."""
+
+    amplitude: Amplitude | None = None
+    """Course in time; by default that of the whole problem."""
+
+
+class FaceCondition(Condition):
+    """Something prescribed on a face or on a part of it."""
+
+    face: str
+    """Name of the face, as the geometry has it."""
+    within: dict[str, tuple[Length, Length]] | None = None
+    """The part of the face between two values of a coordinate, such as ``{r: [0 mm, 1 mm]}``; by default all of it."""
+
+
+class Components(FrozenModel):
+    """Components of a vector; those that are not given are left free, or are zero of a traction or a force."""
+
+    def along(self, axes: tuple[str, ...]) -> dict[int, float]:
+        """Number of the axis -> component in SI, of those that are given.
+
+        Raises
+        ------
+        ValueError
+            If one is given that the problem has not, or none.
+        """
+        given = {name: getattr(self, name) for name in ("x", "y", "z", "r") if getattr(self, name) is not None}
+        if unknown := [name for name in given if name not in axes]:
+            raise ValueError(f"there is no component {', '.join(unknown)}; allowed: {', '.join(axes)}")
+        if not given:
+            raise ValueError(f"no component is given; allowed: {', '.join(axes)}")
+        return {axes.index(name): value for name, value in given.items()}
+
+
+class Displacement(Components):
+    """Components of a displacement."""
+
+    x: Length | None = None
+    """Displacement along x; free if not given."""
+    y: Length | None = None
+    """Displacement along y; free if not given."""
+    z: Length | None = None
+    """Displacement along z; free if not given."""
+    r: Length | None = None
+    """Radial displacement of an axisymmetric body; free if not given."""
+
+
+class DisplacementCondition(FaceCondition, Displacement):
+    """Prescribed components of the displacement of a face."""
+
+    kind: Literal["displacement"]
+
+
+class ClampCondition(FaceCondition):
+    """No displacement of a face."""
+
+    kind: Literal["clamped"]
+
+
+class PointCondition(Condition, Displacement):
+    """Prescribed components of the displacement of the corner of the mesh at a point."""
+
+    kind: Literal["point"]
+    at: tuple[Length, ...]
+    """Undeformed coordinates of the point."""
+
+
+class RotationCondition(FaceCondition):
+    """A face that turns about the z axis as if glued to a rigid plate, in 3D; it stays at its height, or moves freely along z."""
+
+    kind: Literal["rotation"]
+    angle: Angle
+    """Angle, right-handed."""
+    axial: Literal["held", "free"] = "held"
+    """Whether the face keeps its height."""
+
+
+class PressureCondition(FaceCondition):
+    """A pressure on a face, pushing into the body."""
+
+    kind: Literal["pressure"]
+    pressure: Pressure
+    """Pressure; negative pulls."""
+    follows: bool = True
+    """Whether it follows the deformed face; a dead one keeps direction and size as on the undeformed face."""
+
+
+class TractionCondition(FaceCondition, Components):
+    """A dead traction: force per undeformed area of a face, in a fixed direction."""
+
+    kind: Literal["traction"]
+    x: Pressure | None = None
+    """Component along x."""
+    y: Pressure | None = None
+    """Component along y."""
+    z: Pressure | None = None
+    """Component along z."""
+    r: Pressure | None = None
+    """Radial component on an axisymmetric body."""
+
+
+class ForceCondition(FaceCondition, Components):
+    """A dead force spread evenly over the undeformed area of a face; per metre of depth in plane strain."""
+
+    kind: Literal["force"]
+    x: Force | None = None
+    """Component along x."""
+    y: Force | None = None
+    """Component along y."""
+    z: Force | None = None
+    """Component along z."""
+    r: Force | None = None
+    """Radial component on an axisymmetric body, the sum around the axis."""
+
+
+AnyCondition = Annotated[
+    DisplacementCondition
+    | ClampCondition
+    | PointCondition
+    | RotationCondition
+    | PressureCondition
+    | TractionCondition
+    | ForceCondition,
+    Field(discriminator="kind"),
+]
+Side = Literal["left", "right", "bottom", "top", "front", "back"]
+SIDES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    "3d": {
+        "left": (-1.0, 0.0, 0.0),
+        "right": (1.0, 0.0, 0.0),
+        "front": (0.0, -1.0, 0.0),
+        "back": (0.0, 1.0, 0.0),
+        "bottom": (0.0, 0.0, -1.0),
+        "top": (0.0, 0.0, 1.0),
+    },
+    "plane_strain": {"left": (-1.0, 0.0), "right": (1.0, 0.0), "bottom": (0.0, -1.0), "top": (0.0, 1.0)},
+    "axisymmetric": {"bottom": (0.0, -1.0), "top": (0.0, 1.0)},
+}
+"""Unit vector from the tissue to a body that comes from a side, by the dimension."""
+
+
+class ContactCondition(FaceCondition, Displacement):
+    """A rigid body that touches a face; it begins at first touch, and moves by the displacement whose components are given."""
+
+    body: AnyBody
+    """The body; its axis points away from the tissue."""
+    law: AnyLaw = Coulomb(friction=0.0)
+    """Friction."""
+    side: Side
+    """Side from which it comes."""
+    at: tuple[Length, ...] | None = None
+    """Where its axis meets the body, in undeformed coordinates; by default the origin."""
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is given any displacement."""
+        return any(component is not None for component in (self.x, self.y, self.z, self.r))

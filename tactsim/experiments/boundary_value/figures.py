@@ -1,0 +1,126 @@
+"""A boundary value problem: the deformed body with its von Mises stress, and what was asked of it over time."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from tactsim.array import Array
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene
+from tactsim.interfaces import Drawing, ResultFigures
+from tactsim.plotting.canvas import Plot, despined, entitle, extension, new_figure, scale_of, styled, weighted_percentiles
+from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.plane_cut import QUARTERS
+from tactsim.results import FieldFrame, Result
+from tactsim.units import format_quantity
+
+VON_MISES = "von_mises [Pa]"
+VIEW = np.array([0.55, -0.75, 0.40])
+"""Direction from a body in space to the eye."""
+MOST_CURVES = 6
+"""Curves in the second panel."""
+LONGEST_LINEAR = 1e3
+"""Ratio of the last to the first positive time above which the time is drawn on a logarithmic axis."""
+_FACES = ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6))
+"""Nodes of the faces of a tetrahedron, outward: corners, then the middles of their edges."""
+
+
+class BoundaryValueFigures(ResultFigures):
+    """One figure: the body and the course side by side."""
+
+    kind: Literal["boundary_value_problem"] = "boundary_value_problem"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``boundary_value_problem.png``, unless no step was accepted."""
+        return {"boundary_value_problem.png": Plot(lambda: boundary_value_figure(result))} if result.steps else {}
+
+
+def boundary_value_figure(result: Result) -> Figure:
+    """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
+    scene = result.scene_as(BoundaryValueScene)
+    with styled():
+        figure = new_figure(10.0 if result.frames else 6.0, 4.2)
+        axes = figure.subplots(1, 2 if result.frames else 1, squeeze=False, width_ratios=(1.2, 1) if result.frames else None)[0]
+        if result.frames:
+            draw_body(axes[0], result.frames[-1], scene.dimension)
+        draw_course(axes[-1], result, scene)
+        entitle(figure, result.title or "Boundary value problem")
+        mark_failure(figure, result, f" at {format_quantity(result.steps[-1].values['time'], 's')}")
+        return figure
+
+
+def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
+    """The deformed body, each element in the colour of its von Mises stress, and its undeformed outline in 2D."""
+    places = 1e3 * (frame.points + frame.point_data["displacement [m]"])
+    polygons, owners = _section(frame) if "triangle6" in frame.cells else _surface(frame, places)
+    flat = places[:, :2] if "triangle6" in frame.cells else _projected(places)
+    stress = np.asarray(frame.cell_data[VON_MISES]).ravel()
+    factor, unit = scale_of(float(stress.max()), "Pa")
+    values, corners = factor * stress[owners], flat[polygons]
+    low, high = weighted_percentiles(values, np.ones(len(values)), (1, 99))
+    style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "edgecolors": "face", "linewidths": 0.2, "rasterized": True}
+    drawn = PolyCollection(list(corners), array=values, **style)
+    drawn.set_clim(low, high if high > low else low + 1.0)
+    axis.add_collection(drawn)
+    bar = axis.figure.colorbar(drawn, ax=axis, extend=extension(values, (low, high)), location="bottom", shrink=0.6, aspect=32)
+    bar.set_label(f"von Mises stress in {unit}")
+    bar.outline.set_linewidth(0.5)
+    axis.autoscale_view()
+    axis.set_aspect("equal")
+    axis.set_title(f"deformed, at {format_quantity(frame.time, 's')}", loc="left")
+    if dimension == "3d":
+        axis.set_axis_off()
+    else:
+        names = ("r", "z") if dimension == "axisymmetric" else ("x", "y")
+        axis.set(xlabel=f"{names[0]} in mm", ylabel=f"{names[1]} in mm")
+        despined(axis)
+
+
+def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
+    """What was asked for over time, each number over its largest size."""
+    time = np.asarray(result.history_values("time"))
+    for name in list(scene.asked)[:MOST_CURVES]:
+        values = np.asarray(result.history_values(name))
+        most = float(np.abs(values).max())
+        axis.plot(time, values / (most or 1.0), ".-", markersize=3, label=f"{name} / {format_quantity(most, scene.asked[name])}")
+    positive = time[time > 0]
+    if len(positive) and positive[-1] > LONGEST_LINEAR * positive[0]:
+        axis.set_xscale("log")
+    axis.axhline(0.0, color="k", linewidth=0.5)
+    axis.set(xlabel="time in s", ylabel="asked, over its largest size")
+    axis.legend(fontsize=7)
+    despined(axis)
+
+
+def _section(frame: FieldFrame) -> tuple[Array, Array]:
+    """Triangles (T, 3) of a section, four to an element, and their elements (T,)."""
+    elements = frame.cells["triangle6"]
+    return elements[:, QUARTERS].reshape(-1, 3), np.repeat(np.arange(len(elements)), len(QUARTERS))
+
+
+def _surface(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
+    """Triangles (T, 3) of the surface that face the eye, the farthest first, and their elements (T,)."""
+    elements = frame.cells["tetra10"]
+    faces = elements[:, np.array(_FACES)].reshape(-1, 6)
+    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    outside = first[count == 1]
+    triangles = faces[outside][:, QUARTERS].reshape(-1, 3)
+    owners = np.repeat(outside // len(_FACES), len(QUARTERS))
+    corners = places[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    seen = np.flatnonzero(normal @ VIEW > 0)
+    seen = seen[np.argsort(corners[seen].mean(axis=1) @ VIEW)]
+    return triangles[seen], owners[seen]
+
+
+def _projected(places: Array) -> Array:
+    """Places (n, 2) of points (n, 3) as the eye sees them, z upwards."""
+    back = VIEW / np.linalg.norm(VIEW)
+    right = np.cross([0.0, 0.0, 1.0], back)
+    right /= np.linalg.norm(right)
+    return np.column_stack([places @ right, places @ np.cross(back, right)])

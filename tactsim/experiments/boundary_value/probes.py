@@ -1,0 +1,125 @@
+"""Evaluates what is asked of a problem in a state of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.experiments.boundary_value.asked import (
+    AnyAsked,
+    AskedContactForce,
+    AskedDisplacement,
+    AskedEnergy,
+    AskedForce,
+    AskedStress,
+    AskedTorque,
+    AskedVolume,
+)
+from tactsim.experiments.boundary_value.geometry import AXES
+from tactsim.experiments.boundary_value.posing import PosedProblem, check_place, face_of
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
+from tactsim.fem.history_variables import HistoryVariables
+from tactsim.mechanics.history_path import TimedState
+from tactsim.mechanics.point_values import BodyPoint, cauchy_stress, von_mises
+
+CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}
+"""Entries of the stress by the component's name; on an axisymmetric body its rows are r, z and hoop."""
+
+
+@dataclass(frozen=True)
+class Present:
+    """A state with the stress (3, 3, E, Q) in Pa and the nodal forces (n, d) in N that belong to it."""
+
+    timed: TimedState
+    stress: Array
+    forces: Array
+
+
+Evaluation = Callable[[Present], float]
+
+
+class Probes:
+    """All that is asked of one problem."""
+
+    def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem):
+        self._problem, self._posed, self._model = problem, posed, posed.model
+        self._axes = AXES[problem.dimension]
+        self._evaluations = {name: self._evaluation(one) for name, one in problem.asked.items()}
+
+    def values(self, state: TimedState) -> dict[str, float]:
+        """Every number in SI, by its name."""
+        now, body = state.contact, self._model.body
+        stress = cauchy_stress(body, now.unknowns, now.kinematics, isochoric_of(state.history_variables))
+        present = Present(state, stress, self._model.internal_forces(now.unknowns, state.relaxation))
+        return {name: self._problem.asked[name].factor * evaluate(present) for name, evaluate in self._evaluations.items()}
+
+    def _evaluation(self, one: AnyAsked) -> Evaluation:
+        """How a number is evaluated; what it names is looked up once."""
+        if isinstance(one, AskedDisplacement):
+            point, axis = self._point(one.at), self._axes.index(one.component)
+            return lambda now: float(point.displacement(now.timed.contact.unknowns)[axis])
+        if isinstance(one, AskedStress):
+            return self._stress(one)
+        if isinstance(one, AskedForce):
+            nodes, axis = np.unique(face_of(self._posed.domain, one.face)), self._axes.index(one.component)
+            return lambda now: float(now.forces[nodes, axis].sum())
+        if isinstance(one, AskedTorque):
+            return self._torque(np.unique(face_of(self._posed.domain, one.face)))
+        if isinstance(one, AskedContactForce):
+            number, axis = one.contact - 1, self._axes.index(one.component)
+            return lambda now: self._contact_force(now, number, axis)
+        if isinstance(one, AskedEnergy):
+            return self._energy
+        assert isinstance(one, AskedVolume)
+        weights = self._model.body.points.weights
+        return lambda now: float((weights * now.timed.contact.kinematics.J).sum())
+
+    def _point(self, place: tuple[float, ...]) -> BodyPoint:
+        check_place(place, self._axes)
+        return BodyPoint.at(self._model.body, np.array(place))
+
+    def _stress(self, one: AskedStress) -> Evaluation:
+        point, component = self._point(one.at), one.component
+        if component == "von_mises":
+            return lambda now: float(von_mises(point.mean(now.stress)))
+        if component == "mean":
+            return lambda now: float(np.trace(point.mean(now.stress)) / 3)
+        entries = AXISYMMETRIC if self._problem.dimension == "axisymmetric" else CARTESIAN
+        if component in entries:
+            row, column = entries[component]
+            return lambda now: float(point.mean(now.stress)[row, column])
+        radius = float(np.hypot(one.at[0], one.at[1]))
+        if component not in ("radial", "hoop") or radius == 0:
+            raise ValueError(
+                f"there is no {component} stress at this point in {self._problem.dimension}; allowed: {', '.join(entries)}"
+            )
+        away = np.array([one.at[0], one.at[1], 0.0]) / radius
+        along = away if component == "radial" else np.array([-away[1], away[0], 0.0])
+        return lambda now: float(along @ point.mean(now.stress) @ along)
+
+    def _torque(self, nodes: Array) -> Evaluation:
+        def moment(now: Present) -> float:
+            u, _ = self._model.space.split(now.timed.contact.unknowns)
+            place, force = (self._model.mesh.nodes + u)[nodes], now.forces[nodes]
+            return float((place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0]).sum())
+
+        return moment
+
+    def _contact_force(self, now: Present, number: int, axis: int) -> float:
+        contact = now.timed.contact.contacts[number]
+        state = contact.state
+        return float(contact.surface.total(state.pressure * state.normals + state.tangential)[axis])
+
+    def _energy(self, now: Present) -> float:
+        F, weights = now.timed.contact.kinematics.F, self._model.body.points.weights
+        material = self._problem.material
+        return float((weights * material.stored_energy(F)).sum())  # type: ignore[attr-defined]
+
+
+def isochoric_of(variables: HistoryVariables | None) -> Array | None:
+    """The relaxed isochoric stress (6, E, Q) in Pa; None if nothing relaxes."""
+    return None if variables is None else variables.stress

@@ -1,0 +1,163 @@
+"""The run of a boundary value problem, and what it reports."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.posing import PosedProblem, posed
+from tactsim.experiments.boundary_value.probes import Probes
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
+from tactsim.fem.material_forms import interpreted_warnings
+from tactsim.fem.time_steps import TimeControl
+from tactsim.interfaces.run import Course
+from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
+from tactsim.mechanics.loaded_body import LoadedBody
+from tactsim.mechanics.step_policy import StepPolicy, shortest_relaxation_time
+from tactsim.results.result import Quantity, Status, StepRecord
+from tactsim.units import format_quantity
+
+SAME_TIME = 1e-9
+"""Relative difference of two times that is round-off."""
+
+
+@dataclass(frozen=True)
+class AskedTimes(TimeStepPolicy):
+    """A policy with steps that end at further ``times`` in s as well."""
+
+    policy: StepPolicy
+    times: tuple[float, ...]
+
+    def control(self, interval: TimeInterval) -> TimeControl:
+        """That of the policy."""
+        return self.policy.control(interval)
+
+    def largest(self, interval: TimeInterval) -> float:
+        """That of the policy."""
+        return self.policy.largest(interval)
+
+    def stops(self, interval: TimeInterval) -> list[float]:
+        """Those of the policy and the further times within the interval, one for times that only round-off parts."""
+        start, end = interval.start * (1 + SAME_TIME), interval.end * (1 - SAME_TIME)
+        within = sorted({time for time in self.times if start < time < end})
+        stops = self.policy.stops(interval)
+        return sorted([*within, *(stop for stop in stops if all(abs(stop - time) > SAME_TIME * time for time in within))])
+
+
+def boundary_value_course(problem: BoundaryValueSetup) -> Course:
+    """The run of a problem.
+
+    Raises
+    ------
+    InputError
+        If a condition names what the body has not.
+    """
+    try:
+        model = posed(problem)
+        probes = Probes(problem, model)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    histories = [(problem.amplitude if one is None else one.amplitude or problem.amplitude).history() for one in model.followed]
+    materials = [problem.material]
+    relaxes = problem.material.relaxation is not None
+    policy = StepPolicy(
+        problem.time, shortest_relaxation_time(materials), per_ramp=problem.steps, per_period=problem.steps, sparing=not relaxes
+    )
+    times = tuple(one.time for one in problem.asked.values() if one.time is not None)
+    course = smooth_intervals(histories, problem.duration)
+    start = TimedState.at_rest(model.model.body, model.model.at_rest(), len(histories))
+    path = TimedPath(model.model, AskedTimes(policy, times), course, start)
+    record = BoundaryValueRecord(problem, model, probes, path)
+    steps = (record.accept(state) for state, _ in path.states())
+    return Course(steps, record.findings, setup_is_timed=True)
+
+
+class BoundaryValueRecord(ContactRecord[LoadedBody]):
+    """Collects the accepted states of a problem."""
+
+    def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
+        material, size = problem.material, posed.size
+        super().__init__(
+            posed.model, path, tolerance=problem.largest_penetration(size), stiffest=3 * material.shear_modulus / size
+        )
+        self.problem, self._probes, self._mirrors = problem, probes, posed.domain.mirrors
+
+    def values(self, state: TimedState) -> dict[str, float]:
+        """What is asked for, and what every step records."""
+        contacts = state.contact.contacts
+        gaps = [float(-one.pair.body.signed_distance(one.state.points)[0].min()) for one in contacts]
+        return {
+            "time": state.time,
+            **self._probes.values(state),
+            "max_penetration": max([0.0, *gaps]),
+            **self.body_values(state.contact),
+        }
+
+    def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
+        """The last state."""
+        return ("last",)
+
+    def verdict(self) -> tuple[Status, str]:
+        """A path that came to its end has converged, unless a number that is asked for is none."""
+        last = self.steps[-1].values if self.steps else {}
+        if lost := [name for name in self.problem.asked if not math.isfinite(last.get(name, 0.0))]:
+            return Status.FAILED, f"{lost[0]} is {last[lost[0]]}, not a finite number"
+        return Status.CONVERGED, "end of the amplitudes"
+
+    def quantities(self) -> dict[str, Quantity]:
+        """What is asked for, each at its time, and the quality of the answer."""
+        described = {name: self._quantity(name) for name in self.problem.asked}
+        return {name: one for name, one in described.items() if one is not None} | super().quantities()
+
+    def _quantity(self, name: str) -> Quantity | None:
+        """A number at its time; None if the run did not come so far."""
+        one = self.problem.asked[name]
+        words = one.words if one.factor == 1 else f"{one.words}, times {one.factor:g}"
+        if one.time is None:
+            return Quantity(self.steps[-1].values[name], one.unit, f"{words}, at the last accepted step")
+        step = self._step_at(one.time)
+        when = format_quantity(one.time, "s")
+        return None if step is None else Quantity(step.values[name], one.unit, f"{words}, at {when}")
+
+    def _step_at(self, time: float) -> StepRecord | None:
+        """The last step at a time in s."""
+        return next((step for step in reversed(self.steps) if abs(step.values["time"] - time) <= SAME_TIME * time), None)
+
+    def assumptions(self) -> list[str]:
+        """Which part of the body is computed, and what contact and time allow."""
+        assumptions = ["forces are per metre of depth"] if self.problem.dimension == "plane_strain" else []
+        if mirrors := tuple(self._mirrors):
+            assumptions.append(f"symmetry about {', '.join(mirrors)}: forces, energy and volume are those of the part computed")
+        if self.problem.contacts:
+            assumptions.append(f"penetration below {format_quantity(self.tolerance, 'm')}, elastic slip below ten times that")
+        if self.problem.material.relaxation is not None:
+            assumptions.append(f"estimated error of the stress in time below {self.problem.time.tolerance:g} of its size")
+        return assumptions
+
+    def warnings(self) -> list[str]:
+        """Warnings about volumes and ellipticity."""
+        return [*self.quality.warnings(), *self.unstable(), *interpreted_warnings({"material": self.problem.material})]
+
+    def unstable(self, where: str = "time") -> list[str]:
+        """That material left strong ellipticity, if it did."""
+        share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
+        if share == 0:
+            return []
+        first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
+        at = format_quantity(first.values["time"], "s")
+        return [
+            f"{share:.1%} of the volume left strong ellipticity, first at {at}: there the answer depends on the mesh; "
+            "take a stable material set"
+        ]
+
+    def scene(self) -> BoundaryValueScene:
+        """What the figure reads."""
+        return BoundaryValueScene(
+            dimension=self.problem.dimension,
+            asked={name: one.unit for name, one in self.problem.asked.items()},
+            solver=self.solver_report(),
+        )

@@ -1,0 +1,124 @@
+"""What a boundary value problem is given: the fields of its case, and what follows from them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, StringConstraints, model_validator
+
+from tactsim.experiments.boundary_value.asked import AnyAsked
+from tactsim.experiments.boundary_value.conditions import (
+    SIDES,
+    Amplitude,
+    AnyCondition,
+    ContactCondition,
+    RotationCondition,
+)
+from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
+from tactsim.materials.any_material import AnyMaterial
+from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.model import FrozenModel
+from tactsim.units import Length, format_quantity
+
+AskedName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$")]
+RECORDED = {
+    "time": "s",
+    "min_volume_ratio": "1",
+    "unstable_volume_fraction": "1",
+    "poor_volume_fraction": "1",
+    "penetration_force_error": "1",
+    "max_penetration": "m",
+}
+"""Units of what every step records beside what is asked for."""
+PENETRATION_SHARE, WITH_FRICTION = 1e-6, 1e-5
+"""Largest penetration over the body's size, if a case gives none: of smooth contacts, and where any has friction."""
+
+
+def ramp() -> Amplitude:
+    """From zero to one within a second."""
+    return Amplitude.model_validate({"pieces": [{"kind": "ramp", "to": 1.0, "duration": 1.0}]})
+
+
+class BoundaryValueSetup(FrozenModel):
+    """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it."""
+
+    dimension: Dimension
+    """A body in space, a long one in plane strain, or one of revolution about z."""
+    geometry: AnyGeometry
+    """Shape and mesh of the body."""
+    material: AnyMaterial
+    """What it is made of; linear elastic, hyperelastic, compressible or not, relaxing or not."""
+    conditions: tuple[AnyCondition, ...] = ()
+    """What is prescribed on its faces; a face without a condition is free."""
+    contacts: tuple[ContactCondition, ...] = ()
+    """Rigid bodies that touch it."""
+    amplitude: Amplitude = Field(default_factory=ramp)
+    """Factor over time by which every condition without an amplitude of its own is multiplied; by default it rises evenly from
+    0 to 1 within a second."""
+    asked: Annotated[dict[AskedName, AnyAsked], Field(min_length=1)]
+    """Name -> number that is asked for."""
+    steps: Annotated[int, Field(ge=1, le=10_000)] = 10
+    """Least number of steps of a ramp, and per period of a sine."""
+    time: TimeSettings = TimeSettings()
+    """Steps of time of a material that relaxes."""
+    penetration_tolerance: Annotated[Length, Field(ge=1e-12)] | None = None
+    """Largest penetration of a rigid body; by default a millionth of the body's size, with friction a hundred-thousandth."""
+
+    @property
+    def duration(self) -> float:
+        """Time in s until the last amplitude ends."""
+        given = [one.amplitude for one in (*self.conditions, *self.contacts) if one.amplitude is not None]
+        return max(amplitude.duration for amplitude in (self.amplitude, *given))
+
+    def largest_penetration(self, size: float) -> float:
+        """Largest penetration in m that is allowed, of a body of this size in m."""
+        rubs = any(one.law.traction_limit(np.ones(1)).any() for one in self.contacts)
+        return self.penetration_tolerance or (WITH_FRICTION if rubs else PENETRATION_SHARE) * size
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        axes = AXES[self.dimension]
+        if not (self.conditions or self.contacts):
+            raise ValueError("nothing acts on the body; give conditions on its faces, or contacts")
+        for condition in (*self.conditions, *self.contacts):
+            if isinstance(condition, RotationCondition) and self.dimension != "3d":
+                raise ValueError("a face turns about z in 3d only")
+            if isinstance(condition, ContactCondition):
+                self._check_contact(condition, axes)
+            elif hasattr(condition, "along"):
+                condition.along(axes)
+        for name, one in self.asked.items():
+            if name in RECORDED:
+                raise ValueError(f"asked.{name}: every step records this already; take another name")
+            component = getattr(one, "component", None)
+            if component in ("x", "y", "z", "r") and component not in axes:
+                raise ValueError(f"asked.{name}: there is no component {component}; allowed: {', '.join(axes)}")
+            if one.kind == "torque" and self.dimension != "3d":
+                raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d only")
+            if one.kind == "contact_force" and one.contact > len(self.contacts):
+                raise ValueError(f"asked.{name}: there are {len(self.contacts)} contacts, none is number {one.contact}")
+            if one.time is not None:
+                self._check_time(name, one.time)
+        return self
+
+    def _check_time(self, name: str, time: float) -> None:
+        """Check that there is a state at a time in s."""
+        if time > self.duration * (1 + 1e-9):
+            given, end = format_quantity(time, "s"), format_quantity(self.duration, "s")
+            raise ValueError(f"asked.{name}: the time {given} lies after the end at {end}")
+        given_amplitudes = (one.amplitude or self.amplitude for one in (*self.conditions, *self.contacts))
+        if time == 0 and all(amplitude.history().segments[0].at(0.0) == 0 for amplitude in given_amplitudes):
+            raise ValueError(f"asked.{name}: nothing acts at the time 0, for no amplitude begins with a jump; take a later time")
+
+    def _check_contact(self, condition: ContactCondition, axes: tuple[str, ...]) -> None:
+        if len(axes) not in condition.body.dimensions:
+            raise ValueError(f"a {condition.body.kind} is not defined in {self.dimension}")
+        if condition.side not in SIDES[self.dimension]:
+            raise ValueError(
+                f"no body comes from the {condition.side} in {self.dimension}; allowed: {', '.join(SIDES[self.dimension])}"
+            )
+        if condition.at is not None and len(condition.at) != len(axes):
+            raise ValueError(f"at of a contact needs {len(axes)} coordinates: {', '.join(axes)}")
+        if condition.moves:
+            condition.along(axes)

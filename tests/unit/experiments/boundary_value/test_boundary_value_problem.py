@@ -1,0 +1,270 @@
+"""A boundary value problem in small: homogeneous states by every kind of load, moving rigid bodies, times, and refusals."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
+from tactsim.plotting import figures_for
+from tactsim.results.result import Status
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+C10, C01, SIDE = 1e3, 250.0, 0.01
+RUBBER = {"kind": "mooney_rivlin_2", "c10": C10, "c01": C01}
+CELLS = [{"length": SIDE, "cells": 2}]
+BRICK = {"kind": "block", "x": CELLS, "y": CELLS, "z": CELLS}
+SQUARE = {"kind": "block", "x": CELLS, "y": CELLS}
+ROD = {"kind": "cylinder", "radial": CELLS, "axial": CELLS}
+PLANES = [{"kind": "displacement", "face": face, axis: 0.0} for face, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))]
+STRETCH = 1.3
+NOMINAL = 2 * (STRETCH - STRETCH**-2) * (C10 + C01 / STRETCH)
+"""Of an incompressible bar in tension."""
+TOP = (SIDE, SIDE, SIDE)
+
+
+def result_of(**fields):
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "steps": 4} | fields
+    result = BoundaryValueProblem.model_validate(fields).run()
+    assert result.status is Status.CONVERGED, result.reason
+    return result
+
+
+def asked(kind, **fields):
+    return {"number": {"kind": kind, **fields}}
+
+
+def number(**fields):
+    return float(result_of(**fields).quantities["number"].value)
+
+
+EXTENSION = asked("displacement", at=TOP, component="z")
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"kind": "traction", "face": "top", "z": NOMINAL},
+        {"kind": "pressure", "face": "top", "pressure": -NOMINAL, "follows": False},
+        {"kind": "force", "face": "top", "z": NOMINAL * SIDE**2},
+        {"kind": "pressure", "face": "top", "pressure": -NOMINAL * STRETCH},
+    ],
+    ids=["traction", "dead pressure", "force", "pressure that follows"],
+)
+def test_every_kind_of_load_stretches_a_bar_as_it_should(load):
+    extension = number(conditions=[*PLANES, load], asked=EXTENSION)
+    assert extension == pytest.approx((STRETCH - 1) * SIDE, rel=1e-7)  # homogeneous: exact but for Newton's tolerance
+
+
+def test_a_dead_pressure_is_no_pressure_that_follows():
+    load = {"kind": "pressure", "face": "top", "pressure": -NOMINAL}
+    follows = number(conditions=[*PLANES, load], asked=EXTENSION)
+    assert follows < 0.9 * (STRETCH - 1) * SIDE
+
+
+@pytest.mark.parametrize(
+    ("question", "exact"),
+    [
+        (asked("force", face="top", component="z"), NOMINAL * SIDE**2),
+        (asked("force", face="top", component="z", factor=4.0), 4 * NOMINAL * SIDE**2),
+        (asked("stress", at=(SIDE / 3, SIDE / 2, SIDE / 5), component="zz"), NOMINAL * STRETCH),
+        (asked("stress", at=TOP, component="von_mises"), NOMINAL * STRETCH),
+        (asked("stress", at=TOP, component="mean"), NOMINAL * STRETCH / 3),
+        (asked("volume"), SIDE**3),
+        (
+            asked("energy"),
+            SIDE**3 * (C10 * (STRETCH**2 + 2 / STRETCH - 3) + C01 * (2 * STRETCH + STRETCH**-2 - 3)),
+        ),
+        (asked("displacement", at=(SIDE / 3, SIDE / 2, SIDE / 5), component="z"), (STRETCH - 1) * SIDE / 5),
+        (asked("displacement", at=TOP, component="x"), (STRETCH**-0.5 - 1) * SIDE),
+    ],
+)
+def test_what_is_asked_of_a_stretched_bar(question, exact):
+    pulled = {"kind": "displacement", "face": "top", "z": (STRETCH - 1) * SIDE}
+    assert number(conditions=[*PLANES, pulled], asked=question) == pytest.approx(exact, rel=1e-7)
+
+
+def test_an_axisymmetric_bar_is_the_same_bar():
+    pulled = [{"kind": "displacement", "face": "bottom", "z": 0.0}, {"kind": "traction", "face": "top", "z": NOMINAL}]
+    question = asked("displacement", at=(0.0, SIDE), component="z") | {
+        "force": {"kind": "force", "face": "bottom", "component": "z"},
+        "side": {"kind": "displacement", "at": (SIDE, SIDE), "component": "r"},
+        "hoop": {"kind": "stress", "at": (SIDE, SIDE), "component": "hoop"},
+    }
+    quantities = result_of(dimension="axisymmetric", geometry=ROD, conditions=pulled, asked=question).quantities
+    assert quantities["number"].value == pytest.approx((STRETCH - 1) * SIDE, rel=1e-7)
+    assert quantities["force"].value == pytest.approx(-NOMINAL * pi * SIDE**2, rel=1e-7)
+    assert quantities["side"].value == pytest.approx((STRETCH**-0.5 - 1) * SIDE, rel=1e-7)
+    assert abs(quantities["hoop"].value) < 1e-6 * NOMINAL
+
+
+def test_plane_strain_is_stiffer_than_a_free_bar():
+    sides = [{"kind": "displacement", "face": "left", "x": 0.0}, {"kind": "displacement", "face": "bottom", "y": 0.0}]
+    pulled = {"kind": "displacement", "face": "top", "y": (STRETCH - 1) * SIDE}
+    question = asked("force", face="top", component="y")
+    force = number(dimension="plane_strain", geometry=SQUARE, conditions=[*sides, pulled], asked=question)
+    assert force == pytest.approx(2 * (C10 + C01) * (STRETCH - STRETCH**-3) * SIDE, rel=1e-7)  # pure shear, per metre of depth
+
+
+@pytest.mark.parametrize("side", ["left", "right", "bottom", "top", "front", "back"])
+def test_a_plane_presses_from_every_side(side):
+    opposite = {"left": "right", "right": "left", "bottom": "top", "top": "bottom", "front": "back", "back": "front"}
+    axes = {"left": "x", "right": "x", "bottom": "z", "top": "z", "front": "y", "back": "y"}
+    away = -1.0 if side in ("left", "bottom", "front") else 1.0
+    others = {"x": "left", "y": "front", "z": "bottom"} | {axes[side]: opposite[side]}
+    held = [{"kind": "displacement", "face": face, axis: 0.0} for axis, face in others.items()]
+    plane = {"face": side, "side": side, "body": {"kind": "plane"}, axes[side]: -away * 0.2 * SIDE}
+    force = number(conditions=held, contacts=[plane], asked=asked("contact_force", component=axes[side]), steps=2)
+    squeezed = 2 * (0.8 - 0.8**-2) * (C10 + C01 / 0.8) * SIDE**2
+    assert force == pytest.approx(away * squeezed, rel=1e-5)  # the penetration is a millionth of the block
+
+
+def test_a_turned_face_stays_plane_and_its_torque_is_that_of_small_twists():
+    geometry = {**ROD, "part": "whole", "around": 4}
+    turned = [{"kind": "rotation", "face": face, "angle": angle} for face, angle in (("bottom", 0.0), ("top", 1e-3))]
+    torque = number(geometry=geometry, conditions=turned, asked=asked("torque", face="top"), steps=1)
+    assert torque == pytest.approx(pi / 2 * SIDE**4 * 2 * (C10 + C01) * 1e-3 / SIDE, rel=5e-3)  # two cells along the radius
+
+
+def test_amplitudes_of_their_own_and_times():
+    held = {"pieces": [{"kind": "hold", "duration": 1.0}, {"kind": "ramp", "to": 1.0, "duration": 1.0}]}
+    pulled = {"kind": "displacement", "face": "top", "z": 0.1 * SIDE, "amplitude": held}
+    pushed = {"kind": "displacement", "face": "right", "x": 0.1 * SIDE}
+    question = {
+        f"at_{time:g}".replace(".", "_"): {"kind": "displacement", "at": TOP, "component": axis, "time": time}
+        for axis, time in (("x", 0.25), ("x", 1.0), ("z", 1.5), ("z", 2.0))
+    }
+    found = result_of(conditions=[*PLANES, pulled, pushed], asked=question).quantities
+    computed = [found[name].value / SIDE for name in question]
+    np.testing.assert_allclose(computed, [0.025, 0.1, 0.05, 0.1], rtol=1e-9)
+
+
+def test_a_sudden_load_at_the_beginning_has_its_answer_at_time_zero():
+    load = {"kind": "traction", "face": "top", "z": NOMINAL}
+    jump = {"pieces": [{"kind": "jump", "to": 1.0, "duration": 1e3}]}
+    material = {"kind": "neo_hookean", "c10": C10, "relaxation": {"fractions": [0.5], "times": [10.0]}}
+    question = {
+        name: {"kind": "displacement", "at": TOP, "component": "z"} | when
+        for name, when in (("first", {"time": 0.0}), ("last", {}))
+    }
+    found = result_of(conditions=[*PLANES, load], material=material, amplitude=jump, asked=question).quantities
+    for name, modulus in (("first", C10), ("last", C10 / 2)):
+        stretch = 1 + found[name].value / SIDE
+        assert 2 * modulus * (stretch - stretch**-2) == pytest.approx(NOMINAL, rel=1e-4)  # the tolerance in time
+
+
+def test_the_course_is_recorded_and_drawn():
+    pulled = {"kind": "displacement", "face": "top", "z": 0.1 * SIDE}
+    result = result_of(conditions=[*PLANES, pulled], asked=EXTENSION)
+    np.testing.assert_allclose(result.history_values("number"), np.array([0.25, 0.5, 0.75, 1.0]) * 0.1 * SIDE, rtol=1e-9)
+    assert result.units["number"] == "m"
+    assert "von_mises [Pa]" in result.frames[-1].cell_data
+    (draw,) = figures_for(result).values()
+    assert draw()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"conditions": [{"kind": "clamped", "face": "roof"}]}, "no face 'roof'; it has left, right, front"),
+        ({"conditions": [{"kind": "clamped", "face": "top", "within": {"r": [0.0, 1.0]}}]}, "no coordinate r; allowed: x, y, z"),
+        ({"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [0.0, 1e-3]}}]}, "let cells end there"),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0, 0.0], "x": 0.0}]}, "no node of the mesh lies at"),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0], "x": 0.0}]}, "has 2 coordinates; needed: x, y, z"),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top"}, {"kind": "displacement", "face": "left", "x": 1e-3}]},
+            r"condition 2 \(displacement\) and condition 1 \(clamped\) prescribe different displacements",
+        ),
+        ({"asked": asked("displacement", at=(1.0, 0.0, 0.0), component="x")}, "lies outside the body"),
+        ({"asked": asked("force", face="roof", component="x")}, "no face 'roof'"),
+        ({"asked": asked("stress", at=TOP, component="rz")}, "no rz stress"),
+        ({"dimension": "axisymmetric", "asked": asked("volume")}, "a block has no axis"),
+        (
+            {"contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 1e-3}, "at": [1.0, 0.0, 0.0]}]},
+            "does not meet top",
+        ),
+    ],
+)
+def test_what_the_body_has_not_is_refused_with_what_it_has(fields, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    with pytest.raises(InputError, match=words):
+        BoundaryValueProblem.model_validate(fields).begin()
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"conditions": []}, "nothing acts on the body"),
+        ({"conditions": [{"kind": "displacement", "face": "top", "r": 0.0}]}, "there is no component r; allowed: x, y, z"),
+        ({"conditions": [{"kind": "traction", "face": "top"}]}, "no component is given"),
+        ({"asked": asked("displacement", at=TOP, component="r")}, "asked.number: there is no component r"),
+        ({"asked": {"time": {"kind": "volume"}}}, "asked.time: every step records this already"),
+        ({"asked": asked("contact_force", component="x")}, "there are 0 contacts"),
+        ({"asked": asked("volume", time=2.0)}, "after the end at 1 s"),
+        ({"asked": asked("volume", time=0.0), "conditions": PLANES}, "nothing acts at the time 0"),
+        ({"contacts": [{"face": "top", "side": "top", "body": {"kind": "plane"}, "at": [0.0]}]}, "at of a contact needs 3"),
+        (
+            {"dimension": "plane_strain", "contacts": [{"face": "top", "side": "front", "body": {"kind": "plane"}}]},
+            "no body comes from the front in plane_strain; allowed: left",
+        ),
+        (
+            {"dimension": "plane_strain", "contacts": [{"face": "top", "side": "top", "body": {"kind": "jaw"}}]},
+            "a jaw is not defined in plane_strain",
+        ),
+        ({"dimension": "plane_strain", "asked": asked("torque", face="top")}, "in 3d only"),
+        ({"dimension": "plane_strain", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0}]}, "in 3d only"),
+    ],
+)
+def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    if fields["dimension"] == "plane_strain":
+        fields = {"asked": asked("volume")} | {**fields, "geometry": SQUARE}
+        fields["asked"] = fields["asked"] if "torque" in str(fields["asked"]) else asked("volume")
+    with pytest.raises(ValidationError, match=words):
+        BoundaryValueProblem.model_validate(fields)
+
+
+def test_a_body_that_nothing_holds_fails_with_the_reason():
+    load = {"kind": "traction", "face": "top", "z": NOMINAL}
+    result = BoundaryValueProblem.model_validate(
+        {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "conditions": [load], "asked": EXTENSION}
+    ).run()
+    assert result.status is Status.FAILED
+    assert "held against moving as a whole" in result.reason
+
+
+def test_a_sphere_rubs_deep_into_a_bonded_layer():
+    layer = {"kind": "cylinder", "radial": [{"length": 12e-3, "cells": 20, "ratio": 4}], "axial": [{"length": 2e-3, "cells": 6}]}
+    held = [{"kind": "clamped", "face": "bottom"}]
+
+    def force(law):
+        sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 4e-3}, "law": law, "z": -0.8e-3}
+        question = asked("contact_force", component="z", factor=-1.0)
+        common = {"dimension": "axisymmetric", "geometry": layer, "conditions": held, "contacts": [sphere], "steps": 5}
+        result = result_of(**common, asked=question)
+        assert result.quantities["max_penetration"].value <= 12e-3 * 1e-5
+        return float(result.quantities["number"].value)
+
+    smooth, rough = force({"kind": "coulomb", "friction": 0.0}), force({"kind": "coulomb", "friction": 0.5})
+    assert 1.2 * smooth < rough < force({"kind": "stick"}) * (1 + 1e-3)
+
+
+def test_faces_that_meet_at_once_may_slip_and_stick():
+    sides = [{"kind": "displacement", "face": "left", "x": 0.0}, {"kind": "displacement", "face": "bottom", "y": 0.0}]
+
+    def force(friction):
+        law = {"kind": "coulomb", "friction": friction}
+        plane = {"face": "top", "side": "top", "body": {"kind": "plane"}, "law": law, "y": -0.1 * SIDE}
+        question = asked("contact_force", component="y", factor=-1.0)
+        common = {"dimension": "plane_strain", "geometry": SQUARE, "conditions": sides, "contacts": [plane]}
+        return number(**common, asked=question, steps=2)
+
+    forces = [force(friction) for friction in (0.0, 0.1, 0.5)]
+    assert forces[0] == pytest.approx(2 * (C10 + C01) * (0.9**-3 - 0.9) * SIDE, rel=1e-5)
+    assert forces[0] < forces[1] < forces[2]
