@@ -1,0 +1,125 @@
+"""One trial: a case as a command in a process of its own, and what may be said of how it ended."""
+
+from __future__ import annotations
+
+import json
+import math
+import multiprocessing
+import os
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from campaign.random_cases import random_case
+
+from tactsim.case.writing import yaml_text
+
+OUTCOMES = ("converged", "refused", "failed with reason", "stopped by time", "wrong", "hung")
+CODES = {0: "converged", 2: "refused", 3: "failed with reason"}
+PATIENCE = 30.0
+"""Seconds beyond its own limit after which a run counts as hung."""
+BALANCE = 1e-6
+"""Largest difference of a sum of forces from its parts over the larger: round-off of a hundred thousand terms."""
+LEAST_VOLUME = 0.0
+"""A volume ratio at or below it is a body turned inside out."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Which case, and for how long."""
+
+    kind: str
+    seed: int
+    number: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a trial ended."""
+
+    kind: str
+    number: int
+    outcome: str
+    reason: str
+    seconds: float
+
+
+def tried(trial: Trial, folder: Path) -> Ended:
+    """Runs a case; what did not converge, or is wrong, is kept as a case file in the folder."""
+    place = folder / f"{trial.kind}_{trial.number}"
+    place.mkdir(parents=True)
+    case = place / "case.yaml"
+    case.write_text(yaml_text(random_case(trial.kind, trial.seed, trial.number)), encoding="utf-8")
+    begun = time.monotonic()
+    process = multiprocessing.get_context("fork").Process(target=_command, args=(case, trial.seconds, place))
+    process.start()
+    process.join(trial.seconds + PATIENCE)
+    if process.is_alive():
+        process.kill()
+        process.join()
+        return Ended(trial.kind, trial.number, "hung", f"no end after {trial.seconds + PATIENCE:g} s", time.monotonic() - begun)
+    outcome, reason = judged(process.exitcode or 0, place)
+    return Ended(trial.kind, trial.number, outcome, reason, round(time.monotonic() - begun, 2))
+
+
+def _command(case: Path, seconds: float, place: Path) -> None:
+    """``tactsim run`` with its output in files; the life of a child."""
+    from tactsim.cli import main
+
+    os.chdir(place)
+    with open("stderr", "w", encoding="utf-8") as errors:
+        os.dup2(errors.fileno(), 2)
+        sys.stderr = errors
+        arguments = ["run", case.name, "--out", "result", "--time-limit", f"{seconds:g} s", "--figures", "none", "--quiet"]
+        code = main(arguments)
+        errors.flush()
+    os._exit(code)
+
+
+def judged(code: int, place: Path) -> tuple[str, str]:
+    """The outcome and its reason; wrong is what contradicts itself, however it ended."""
+    words = (place / "stderr").read_text(encoding="utf-8", errors="replace").strip()
+    if code not in CODES:
+        return "wrong", f"exit code {code}: {words[-300:]}"
+    if "Traceback" in words or "Warning:" in words:
+        return "wrong", f"raw output: {words[-300:]}"
+    if code == 2:
+        return ("refused", words[-300:]) if words else ("wrong", "refused without a word")
+    document = place / "result" / "result.json"
+    if not document.exists():
+        return ("failed with reason", words[-300:]) if code == 3 and words else ("wrong", "no result")
+    result = json.loads(document.read_text(encoding="utf-8"))
+    if (result["status"] == "converged") != (code == 0):
+        return "wrong", f"exit code {code} with the status {result['status']}"
+    if code == 0:
+        faults = contradictions({name: quantity["value"] for name, quantity in result["quantities"].items()})
+        return ("wrong", "; ".join(faults)) if faults else ("converged", result["reason"])
+    return ("stopped by time" if result["reason"].startswith("took longer than") else CODES[code]), result["reason"]
+
+
+def contradictions(quantities: dict[str, Any]) -> list[str]:
+    """What a converged result must not say: numbers that are not finite, forces that do not balance, volumes turned inside out."""
+    faults = [
+        f"{name} is not finite" for name, value in quantities.items() if isinstance(value, float) and not math.isfinite(value)
+    ]
+    for side in ("upper", "lower"):
+        if f"taxel_force_{side}" in quantities and f"reaction_force_{side}" in quantities:
+            taxels = sum(sum(row) for row in quantities[f"taxel_force_{side}"])
+            parts = taxels + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
+            whole = quantities[f"reaction_force_{side}"]
+            if abs(parts - whole) > BALANCE * max(abs(parts), abs(whole)):
+                faults.append(f"taxels, gaps and outside of the {side} jaw are {parts:g} N, the reaction {whole:g} N")
+    if quantities.get("min_volume_ratio", 1.0) <= LEAST_VOLUME:
+        faults.append(f"a volume ratio of {quantities['min_volume_ratio']:g}")
+    threshold = quantities.get("threshold_force")
+    if isinstance(threshold, float) and threshold <= 0:
+        faults.append("a threshold force that pulls")
+    return faults
+
+
+def as_line(ended: Ended) -> str:
+    """A line of the record."""
+    return json.dumps(asdict(ended))
