@@ -117,13 +117,11 @@ def _fit_lines(fit: UniaxialFit) -> str:
 
     errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
     stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
-    constants = {
-        name: format_quantity(value, "Pa")
-        for name, value in fit.material.model_dump(exclude={"kind", "bulk_modulus"}).items()
-        if isinstance(value, float)
-    }
-    entries = ", ".join(f"{name}: {value}" for name, value in {"kind": fit.material.kind, **constants}.items())
-    return f"{fit.form}: {errors}; {stable}\n  {{{entries}}}"
+    named = {f"c{i}{j}": value for (i, j), value in fit.material.terms.items()}
+    entries = ", ".join(f"{name}: {format_quantity(value, 'Pa')}" for name, value in named.items())
+    if "coefficients" in type(fit.material).model_fields:
+        entries = f"coefficients: {{{entries}}}"
+    return f"{fit.form}: {errors}; {stable}\n  {{kind: {fit.material.kind}, {entries}}}"
 
 
 def _materials(name: str) -> dict[str, Material]:
