@@ -29,6 +29,10 @@ examples:
   tactsim material cases/annulus_icf.yaml
   tactsim material --fit my_rubber.csv --form stable --save fit.png
 """
+BARELY_STRETCHED = 1.05
+"""A curve that ends below this stretch holds no tension to speak of."""
+IN_TENSION = 1.5
+"""Assumption: a moderate stretch at which fits are compared in tension."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -104,11 +108,27 @@ def _fit(arguments: argparse.Namespace) -> int:
         console.out(line)
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
+    if curve.stretch.max() < BARELY_STRETCHED:
+        console.note(_left_open(fits))
     if arguments.save is not None:
         from tactsim.cli.figures.material_curves import fit_figure, png
 
         _save(png(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
     return 0
+
+
+def _left_open(fits: list[UniaxialFit]) -> str:
+    """What a curve in compression alone does not say: by how much the stable fits differ in tension."""
+    import numpy as np
+
+    from tactsim.materials.homogeneous import nominal_stress
+
+    note = "note: this curve is compression alone, which says nothing of tension; a threshold pressure depends on it"
+    stable = [fit.material for fit in fits if fit.form.startswith("stable")]
+    if len(stable) < 2:
+        return note
+    stresses = [nominal_stress(material, "uniaxial", np.array(IN_TENSION)).item() for material in stable]
+    return f"{note}: at a stretch of {IN_TENSION:g} the stable fits differ by a factor of {max(stresses) / min(stresses):.2g}"
 
 
 def _fit_lines(fit: UniaxialFit) -> str:
