@@ -110,7 +110,7 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
             axis.plot(ends, [place, place], "-", color=RUN_COLOUR, linewidth=3, solid_capstyle="butt")
             axis.plot(ends, [place, place], "|", color=RUN_COLOUR, markersize=9)
         else:
-            axis.text(0.5, place, "no threshold", transform=axis.get_yaxis_transform(), ha="center", va="center", fontsize=8)
+            axis.text(0.5, place, "failed", transform=axis.get_yaxis_transform(), ha="center", va="center", fontsize=8)
     for place in np.cumsum(panel.get("groups", ()))[:-1]:
         axis.axhline(place - 0.5, color="0.7", linewidth=0.6)
     for line, colour in zip(panel["lines"], PRINTED_COLOURS, strict=False):
