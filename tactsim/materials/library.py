@@ -32,7 +32,20 @@ class MaterialSet:
     """Root mean square of the relative errors over that range, dimensionless."""
     threshold_spread: tuple[float, float] | None = None
     """Lowest and highest threshold pressure of other stable energies that fit the same curve in compression, over that of this
-    one, dimensionless, on the default specimen; None if not computed. Source: table_3_2, whose rows ``spread`` compute it."""
+    one, dimensionless, for the specimen and recess of the case ``annulus_icf``; None if not computed. Source: table_3_2, whose
+    rows ``spread`` compute it."""
+
+    @property
+    def left_open(self) -> str | None:
+        """What data in compression alone leave undecided, in words; None if the spread is not known."""
+        if self.fitted_stretch is None or self.threshold_spread is None:
+            return None
+        (shortest, longest), (low, high) = self.fitted_stretch, self.threshold_spread
+        return (
+            f"fitted in compression alone (stretch {shortest:g} to {longest:g}), which leaves its energy open: other stable "
+            f"energies that fit as well give {low:g} to {high:g} times its threshold pressure on a layer of 10 mm, recess 0.8 mm "
+            "(table_3_2)"
+        )
 
 
 def named_material(name: str) -> MaterialSet:

@@ -235,13 +235,4 @@ def contact_assumptions(setup: IndentationSetup) -> list[str]:
 def energy_assumptions(setup: IndentationSetup) -> list[str]:
     """What the threshold of a tissue owes to the choice of its energy, where the data are compression alone."""
     sets = {entry.name: entry for material in setup.specimen.materials if (entry := set_with_constants_of(material))}
-    lines = []
-    for name, entry in sorted(sets.items()):
-        if entry.fitted_stretch and entry.threshold_spread:
-            (shortest, longest), (low, high) = entry.fitted_stretch, entry.threshold_spread
-            lines.append(
-                f"{name} is fitted in compression alone (stretch {shortest:g} to {longest:g}), which leaves its energy open: "
-                f"other stable energies that fit as well give {low:g} to {high:g} times its threshold pressure on the default "
-                "specimen (table_3_2)"
-            )
-    return lines
+    return [f"{name} is {entry.left_open}" for name, entry in sorted(sets.items()) if entry.left_open]
