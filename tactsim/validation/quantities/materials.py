@@ -155,6 +155,10 @@ def fit_error(material: SetName, form: FitForm, measure: Measure = "max") -> flo
 def difference_of_fits(material: SetName, forms: Annotated[tuple[FitForm, ...], Field(min_length=2)]) -> float:
     """Largest relative difference of the nominal stress between any two fits to the uniaxial compression curve of a set.
 
+    Parameters
+    ----------
+    forms : forms of the fits
+
     Raises
     ------
     UnknownName
