@@ -31,6 +31,10 @@ examples:
   tactsim material --fit my_rubber.csv --form stable --save fit.png
   tactsim material --relaxation held.csv --rise "0.2 s"
 """
+BARELY_STRETCHED = 1.05
+"""A curve that ends below this stretch holds no tension to speak of."""
+IN_TENSION = 1.5
+"""Assumption: a moderate stretch at which fits are compared in tension."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -125,11 +129,27 @@ def _fit(arguments: argparse.Namespace) -> int:
         console.out(line)
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
+    if curve.stretch.max() < BARELY_STRETCHED:
+        console.note(_left_open(fits))
     if arguments.save is not None:
         from tactsim.cli.figures.material_curves import fit_figure, png
 
         _save(png(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
     return 0
+
+
+def _left_open(fits: list[UniaxialFit]) -> str:
+    """What a curve in compression alone does not say: by how much the stable fits differ in tension."""
+    import numpy as np
+
+    from tactsim.materials.homogeneous import nominal_stress
+
+    note = "note: this curve is compression alone, which says nothing of tension; a threshold pressure depends on it"
+    stable = [fit.material for fit in fits if fit.form.startswith("stable")]
+    if len(stable) < 2:
+        return note
+    stresses = [nominal_stress(material, "uniaxial", np.array(IN_TENSION)).item() for material in stable]
+    return f"{note}: at a stretch of {IN_TENSION:g} the stable fits differ by a factor of {max(stresses) / min(stresses):.2g}"
 
 
 def _fit_lines(fit: UniaxialFit) -> str:
@@ -138,13 +158,11 @@ def _fit_lines(fit: UniaxialFit) -> str:
 
     errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
     stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
-    constants = {
-        name: format_quantity(value, "Pa")
-        for name, value in fit.material.model_dump(exclude={"kind", "bulk_modulus"}).items()
-        if isinstance(value, float)
-    }
-    entries = ", ".join(f"{name}: {value}" for name, value in {"kind": fit.material.kind, **constants}.items())
-    return f"{fit.form}: {errors}; {stable}\n  {{{entries}}}"
+    named = {f"c{i}{j}": value for (i, j), value in fit.material.terms.items()}
+    entries = ", ".join(f"{name}: {format_quantity(value, 'Pa')}" for name, value in named.items())
+    if "coefficients" in type(fit.material).model_fields:
+        entries = f"coefficients: {{{entries}}}"
+    return f"{fit.form}: {errors}; {stable}\n  {{kind: {fit.material.kind}, {entries}}}"
 
 
 def _materials(name: str) -> dict[str, Material]:

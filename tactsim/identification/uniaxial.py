@@ -17,6 +17,7 @@ from tactsim.materials.invariant_polynomial import InvariantPolynomial, monomial
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
+from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.stability import PAIRS, shear_conditions
 from tactsim.materials.stability_range import SCANNED, StabilityReport, stability_range
 
@@ -35,8 +36,13 @@ FORMS = {
     "3-parameter": Form(("c10", "c01", "c11"), MooneyRivlin3),
     "5-parameter": Form(("c10", "c01", "c20", "c11", "c02"), MooneyRivlin5),
     "stable": Form(("c10", "c01", "c11"), MooneyRivlin3, strongly_elliptic=True),
+    "stable-c20": Form(("c10", "c01", "c20"), Polynomial, strongly_elliptic=True),
+    "stable-c20-c11": Form(("c10", "c01", "c20", "c11"), Polynomial, strongly_elliptic=True),
+    "stable-c20-c02": Form(("c10", "c01", "c20", "c02"), Polynomial, strongly_elliptic=True),
+    "stable-c20-c30": Form(("c10", "c01", "c20", "c30"), Polynomial, strongly_elliptic=True),
 }
-"""Fits by name. ``stable`` is the thesis's own three-term energy, held strongly elliptic."""
+"""Fits by name. ``stable`` is the thesis's own three-term energy, held strongly elliptic. The others that begin so fit a
+compression curve as well and differ in every other deformation: their spread is what such a curve leaves open."""
 
 SMALLEST_SHEAR_FRACTION = 0.1
 """Assumption: a stable fit keeps every shear modulus of the ellipticity conditions above this part of its value at rest."""
@@ -195,8 +201,10 @@ def _ellipticity_rows(names: tuple[str, ...]) -> Array:
 
 def _material(form: Form, values: Array, source: str) -> InvariantPolynomial:
     """The fitted constants as a material, zero where the form has none."""
-    constants = dict.fromkeys((name for name in form.kind.model_fields if name.startswith("c")), 0.0)
-    constants |= dict(zip(form.coefficients, map(float, values), strict=True))
+    fitted = dict(zip(form.coefficients, map(float, values), strict=True))
+    constants: dict[str, float] | dict[str, dict[str, float]] = {"coefficients": fitted}
+    if form.kind is not Polynomial:
+        constants = dict.fromkeys((name for name in form.kind.model_fields if name.startswith("c")), 0.0) | fitted
     try:
         return form.kind.model_validate(constants)
     except ValidationError as error:

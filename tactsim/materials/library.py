@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from tactsim.analytic.atrial import atrial_shear_compliance
+from tactsim.interfaces import Material
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.neo_hookean import NeoHookean
@@ -29,6 +30,22 @@ class MaterialSet:
     """Largest relative error of the nominal stress over that range, dimensionless."""
     rms_relative_error: float | None = None
     """Root mean square of the relative errors over that range, dimensionless."""
+    threshold_spread: tuple[float, float] | None = None
+    """Lowest and highest threshold pressure of other stable energies that fit the same curve in compression, over that of this
+    one, dimensionless, for the specimen and recess of the case ``annulus_icf``; None if not computed. Source: table_3_2, whose
+    rows ``spread`` compute it."""
+
+    @property
+    def left_open(self) -> str | None:
+        """What data in compression alone leave undecided, in words; None if the spread is not known."""
+        if self.fitted_stretch is None or self.threshold_spread is None:
+            return None
+        (shortest, longest), (low, high) = self.fitted_stretch, self.threshold_spread
+        return (
+            f"fitted in compression alone (stretch {shortest:g} to {longest:g}), which leaves its energy open: other stable "
+            f"energies that fit as well give {low:g} to {high:g} times its threshold pressure on a layer of 10 mm, recess 0.8 mm "
+            "(table_3_2)"
+        )
 
 
 def named_material(name: str) -> MaterialSet:
@@ -79,6 +96,7 @@ B1A_STABLE = MaterialSet(
     fitted_stretch=(0.6, 1.0),
     max_relative_error=0.0255,
     rms_relative_error=0.0093,
+    threshold_spread=(1.08, 2.07),
 )
 
 ICF_STABLE = MaterialSet(
@@ -89,6 +107,7 @@ ICF_STABLE = MaterialSet(
     fitted_stretch=(0.6, 1.0),
     max_relative_error=0.0516,
     rms_relative_error=0.0171,
+    threshold_spread=(1.21, 2.39),
 )
 
 _ATRIAL_NOTE = "the data determine the compliance between 1 and 36 Hz, not each constant; a neo-Hookean energy is an assumption"
@@ -160,8 +179,12 @@ class _Library(Mapping[str, MaterialSet]):
         return len({*self._sets, *self._made})
 
 
-LIBRARY: Mapping[str, MaterialSet] = _Library(
-    (ARTERY_WALL, B1A_PRINTED, B1A_STABLE, HARD_BALL, HARD_TUBE, ICF_PRINTED, ICF_STABLE, LUMP),
-    {"atrial": _atrial, "atrial_printed": _atrial_printed},
-)
+_WRITTEN = (ARTERY_WALL, B1A_PRINTED, B1A_STABLE, HARD_BALL, HARD_TUBE, ICF_PRINTED, ICF_STABLE, LUMP)
+LIBRARY: Mapping[str, MaterialSet] = _Library(_WRITTEN, {"atrial": _atrial, "atrial_printed": _atrial_printed})
 """Shipped sets by name."""
+
+
+def set_with_constants_of(material: Material) -> MaterialSet | None:
+    """The shipped set of written constants, not those made from a compliance, whose constants this material has."""
+    terms = getattr(material, "terms", None)
+    return next((entry for entry in _WRITTEN if entry.material.terms == terms), None)

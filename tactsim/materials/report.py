@@ -33,6 +33,8 @@ def _origin_lines(entry: MaterialSet | None, material: Material) -> list[str]:
             f"  fit: largest relative error {entry.max_relative_error:.1%}, rms {entry.rms_relative_error:.1%}, "
             f"over uniaxial stretch {_interval(entry.fitted_stretch)}"
         )
+    if entry.left_open:
+        lines.append(f"  open: {entry.left_open}")
     return lines
 
 

@@ -110,7 +110,9 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
             axis.plot(ends, [place, place], "-", color=RUN_COLOUR, linewidth=3, solid_capstyle="butt")
             axis.plot(ends, [place, place], "|", color=RUN_COLOUR, markersize=9)
         else:
-            axis.text(0.5, place, "no threshold", transform=axis.get_yaxis_transform(), ha="center", va="center", fontsize=8)
+            axis.text(0.5, place, "failed", transform=axis.get_yaxis_transform(), ha="center", va="center", fontsize=8)
+    for place in np.cumsum(panel.get("groups", ()))[:-1]:
+        axis.axhline(place - 0.5, color="0.7", linewidth=0.6)
     for line, colour in zip(panel["lines"], PRINTED_COLOURS, strict=False):
         label = f"{line['label']}: {format_quantity(line['value'], unit)}"
         axis.axvline(line["value"], color=colour, linestyle="--", label=label)
@@ -122,7 +124,7 @@ def _draw_ranges(axis: Axes, panel: dict[str, Any], unit: str) -> None:
     axis.set_yticks(range(len(labels)), labels)
     axis.invert_yaxis()
     axis.set_title(panel["title"], loc="left")
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14 * 14 / max(len(labels), 14)), fontsize=8)
     despined(axis)
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from tactsim.model import FrozenModel
 
-Override = str | float | bool | dict[str, str | float | bool]
+Override = str | float | bool | dict[str, str | float | bool | dict[str, str]]
 
 
 class StudyRun(FrozenModel):

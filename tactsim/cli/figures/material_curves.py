@@ -23,7 +23,7 @@ SHOWN = (0.5, 2.0)
 """Stretches on the axis."""
 
 CURVE_POINTS = 301
-LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.")
+LINE_STYLES = ("C0--", "C1-.", "C2:", "C3-", "C4--", "C5-.", "C6:", "C8-")
 """Distinguishable without colour."""
 RANGE_IN_VIEW = (0.6, 1.75)
 """Stretches whose stress the vertical axis holds: further out the curves are so steep that nothing else would be seen."""

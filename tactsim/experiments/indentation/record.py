@@ -13,6 +13,7 @@ from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.fem.material_forms import interpreted_warnings
+from tactsim.materials.library import set_with_constants_of
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
 from tactsim.mechanics.history_path import TimedState
@@ -160,6 +161,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def assumptions(self) -> list[str]:
         """What the thesis does not print and the case chose."""
         assumptions = contact_assumptions(self.setup)
+        if self._drive.stops_at_touch:
+            assumptions += energy_assumptions(self.setup)
         if self._clock is not None:
             tolerance = self._clock.policy.settings.tolerance
             assumptions.append(f"estimated error of the stress in time below {tolerance:g} of its size")
@@ -227,3 +230,9 @@ def contact_assumptions(setup: IndentationSetup) -> list[str]:
         assumptions.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
     assumptions.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")
     return assumptions
+
+
+def energy_assumptions(setup: IndentationSetup) -> list[str]:
+    """What the threshold of a tissue owes to the choice of its energy, where the data are compression alone."""
+    sets = {entry.name: entry for material in setup.specimen.materials if (entry := set_with_constants_of(material))}
+    return [f"{name} is {entry.left_open}" for name, entry in sorted(sets.items()) if entry.left_open]

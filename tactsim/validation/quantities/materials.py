@@ -14,6 +14,8 @@ from tactsim.errors import InputError, UnknownName
 from tactsim.identification.uniaxial import UniaxialFit, fit_uniaxial, uniaxial_nominal_stress, uniaxial_stress_as_printed
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Material, drawing, quantity
+from tactsim.materials.any_material import AnyMaterial
+from tactsim.materials.homogeneous import nominal_stress
 from tactsim.materials.library import named_material
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 
@@ -150,18 +152,36 @@ def fit_error(material: SetName, form: FitForm, measure: Measure = "max") -> flo
 
 
 @quantity(unit="1")
+def difference_of_fits(material: SetName, forms: Annotated[tuple[FitForm, ...], Field(min_length=2)]) -> float:
+    """Largest relative difference of the nominal stress between any two fits to the uniaxial compression curve of a set.
+
+    Parameters
+    ----------
+    forms : forms of the fits
+
+    Raises
+    ------
+    UnknownName
+        If there is no such set or form.
+    """
+    stretch = compression_curve(material).stretch
+    stresses = np.stack([np.abs(uniaxial_nominal_stress(fitted(material, form).material, stretch)) for form in forms])
+    return float((stresses.max(axis=0) / stresses.min(axis=0) - 1).max())
+
+
+@quantity(unit="1")
 def material_error(
     *,
-    material: SetName,
+    material: AnyMaterial,
     reference: SetName,
     between: tuple[Annotated[float, Field(gt=0, lt=1)], Literal[1]] = (0.6, 1),
     measure: Measure,
 ) -> float:
-    """Relative error of the uniaxial nominal stress of a material set against a reference set.
+    """Relative error of the uniaxial nominal stress of a material against a reference set.
 
     Parameters
     ----------
-    material : shipped set that is judged
+    material : shipped set or constants that are judged
     reference : shipped set that it stands for
     between : stretches; at 1 both stresses vanish, so the last point lies one spacing below
 
@@ -171,7 +191,7 @@ def material_error(
         If there is no such set.
     """
     stretch = _stretches(between[0])
-    judged, true = (uniaxial_nominal_stress(named_material(name).material, stretch) for name in (material, reference))
+    judged, true = (nominal_stress(law, "uniaxial", stretch) for law in (material, named_material(reference).material))
     error = judged / true - 1
     return float(np.abs(error).max() if measure == "max" else np.sqrt(np.mean(error**2)))
 

@@ -1,4 +1,4 @@
-"""What the simulations of a table's studies give: quantities, ratios, brackets, and how far the closed forms carry."""
+"""What the simulations of a table's studies give: quantities, ratios, counts, and how far the closed forms carry."""
 
 from __future__ import annotations
 
@@ -13,16 +13,14 @@ from tactsim.errors import InputError
 from tactsim.interfaces import drawing, quantity
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.model import FrozenModel
-from tactsim.units import Length, Positive, parse_quantity
+from tactsim.units import Length, Positive
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
-from tactsim.validation.endings import Interval
 from tactsim.validation.inputs import Inputs, RunName, StudyName
 from tactsim.validation.quantities.annulus import OUTER_RADIUS
 from tactsim.validation.study import RunOutcome
 
 StudyAndRun = tuple[str, str]
 """Study and run."""
-Area = Literal["annulus", "disc", "both"]
 ClosedForm = Literal["half_space", "layer"]
 
 
@@ -78,98 +76,6 @@ def converged_runs(inputs: Inputs, study: StudyName) -> float:
         If there is no such study.
     """
     return float(sum(outcome.converged for outcome in inputs.study(study)))
-
-
-def _readings(outcome: RunOutcome, quantity: str, area: Area = "both") -> list[float]:
-    """The quantity in SI; a pressure over the annulus, over the full disc, or both (erratum E16).
-
-    Source: the annular area is what turns the pressures of Table 3.3 into its forces; "total area, on the larger sensor" in 3.2
-    may mean the disc.
-    """
-    value = outcome.quantities[quantity]
-    if quantity != "threshold_pressure":
-        return [value]
-    over_disc = value * outcome.disc_share
-    return {"annulus": [value], "disc": [over_disc], "both": [over_disc, value]}[area]
-
-
-@quantity(unit=lambda quantity: "Pa" if quantity == "threshold_pressure" else "m")
-def bracket(
-    inputs: Inputs,
-    studies: Annotated[tuple[str, ...], Field(min_length=1)],
-    quantity: Literal["threshold_pressure", "threshold_displacement"],
-    area: Area = "both",
-) -> Interval:
-    """The smallest and the largest simulated value, in Pa or m.
-
-    Only runs that converged count. For ``threshold_pressure`` the interval spans the pressures over both areas of erratum E16.
-
-    Parameters
-    ----------
-    studies : studies of the table that span the interval
-    quantity : quantity of the runs
-    area : which area a pressure refers to
-
-    Raises
-    ------
-    UnknownName, InputError
-        If there is no such study, or no run converged.
-    """
-    outcomes = [outcome for study in studies for outcome in inputs.study(study) if outcome.converged]
-    if not outcomes:
-        raise InputError(f"no run of {', '.join(studies)} converged")
-    values = [value for outcome in outcomes for value in _readings(outcome, quantity, area)]
-    return Interval(min(values), max(values))
-
-
-class PrintedLine(FrozenModel):
-    """A printed number drawn across the runs of a study."""
-
-    label: str
-    """What it is."""
-    value: str
-    """The number with its unit."""
-
-
-class Panel(FrozenModel):
-    """The runs of one study."""
-
-    study: str
-    """Study of the table."""
-    title: str
-    """What it simulates."""
-    printed: tuple[PrintedLine, ...]
-    """Printed numbers to compare with."""
-
-
-@drawing
-def range_bars(inputs: Inputs, title: Title, panels: Annotated[tuple[Panel, ...], Field(min_length=1)]) -> Data:
-    """Form ``ranges``: the threshold pressures in Pa of each run over both areas beside the printed numbers, as Table 3.2.
-
-    A run that has not converged has no values.
-
-    Parameters
-    ----------
-    panels : studies from left to right
-
-    Raises
-    ------
-    UnknownName
-        If there is no such study.
-    """
-
-    def bar(outcome: RunOutcome) -> Data:
-        return {"label": outcome.id, "values": _readings(outcome, "threshold_pressure") if outcome.converged else []}
-
-    drawn = [
-        {
-            "title": compared.title,
-            "bars": [bar(outcome) for outcome in inputs.study(compared.study)],
-            "lines": [{"label": line.label, "value": parse_quantity(line.value, "Pa")} for line in compared.printed],
-        }
-        for compared in panels
-    ]
-    return {"form": "ranges", "title": title, "axis": "threshold pressure", "unit": "Pa", "panels": drawn}
 
 
 class ComparedRun(FrozenModel):

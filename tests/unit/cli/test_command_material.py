@@ -10,6 +10,8 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.cli import main
+from tactsim.identification.uniaxial import fit_uniaxial, uniaxial_nominal_stress
+from tactsim.identification.uniaxial_data import read_uniaxial_curve
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.any_material import AnyMaterial
@@ -116,6 +118,24 @@ def test_every_form_is_tried(curve: Path, capsys: pytest.CaptureFixture[str]) ->
     out = capsys.readouterr().out
     for form in ("2-parameter", "3-parameter", "5-parameter", "stable"):
         assert f"{form}: " in out
+
+
+@pytest.mark.parametrize(("largest", "open_in_tension"), [(0.98, True), (1.6, False)])
+def test_a_curve_in_compression_alone_leaves_tension_open(
+    largest: float, open_in_tension: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stretch = np.linspace(0.6, largest, 40)
+    stress = uniaxial_nominal_stress(named_material("icf_printed").material, stretch)
+    curve = tmp_path / "icf.csv"
+    points = zip(stretch.tolist(), stress.tolist(), strict=True)
+    curve.write_text("\n".join(["stretch,nominal_stress_Pa", *(f"{x!r},{p!r}" for x, p in points)]))
+    assert main(["material", "--fit", str(curve)]) == 0
+    out, err = capsys.readouterr()
+    fits = [fit_uniaxial(read_uniaxial_curve(curve), form).material for form in ("stable-c20", "stable")]  # stiffest and softest
+    most, least = (uniaxial_nominal_stress(material, np.array([1.5])).item() for material in fits)
+    assert (f"at a stretch of 1.5 the stable fits differ by a factor of {most / least:.2g}" in err) == open_in_tension
+    assert ("compression alone" in err) == open_in_tension
+    assert "stable-c20: largest relative error" in out
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,10 @@ KNOWN = {
     "3-parameter": MooneyRivlin3(c10=-8598.8, c01=10284, c11=5143.6),
     "5-parameter": MooneyRivlin5(c10=2e3, c01=1e3, c20=500.0, c11=250.0, c02=125.0),
     "stable": MooneyRivlin3(c10=2e3, c01=1e3, c11=250.0),
+    "stable-c20": Polynomial(coefficients={"c10": 2e3, "c01": 1e3, "c20": 500.0}),
+    "stable-c20-c11": Polynomial(coefficients={"c10": 2e3, "c01": 1e3, "c20": 500.0, "c11": 250.0}),
+    "stable-c20-c02": Polynomial(coefficients={"c10": 2e3, "c01": 1e3, "c20": 500.0, "c02": 125.0}),
+    "stable-c20-c30": Polynomial(coefficients={"c10": 2e3, "c01": 1e3, "c20": 500.0, "c30": 100.0}),
 }
 
 

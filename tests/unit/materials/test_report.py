@@ -20,6 +20,7 @@ def test_a_shipped_set_reports_its_source_note_and_errors(name):
     assert entry.source in text
     assert entry.note in text
     assert ("largest relative error" in text) == (entry.fitted_stretch is not None)
+    assert ("  open: " in text) == (entry.left_open is not None) == (entry.threshold_spread is not None)
 
 
 def test_an_unstable_set_warns_and_names_its_window_and_a_stable_one_does_not():

@@ -11,7 +11,9 @@ from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
 from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.record import energy_assumptions
 from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.specimen import Layer, Specimen
 
@@ -48,6 +50,20 @@ def test_threshold_quantities(plain):
     assert values["threshold_displacement"] == values["displacement"] < 0.6e-3
     assert any("fillet" in text for text in plain.assumptions)
     assert {name for step in plain.steps for name in step.values} <= set(plain.units)
+
+
+def test_a_threshold_says_what_a_fit_in_compression_leaves_open():
+    def lines_of(**changes):
+        setup = thin(specimen={"material": named_material("icf_stable").material, **changes.pop("specimen", {})}, **changes)
+        return energy_assumptions(setup)
+
+    (line,) = lines_of()
+    assert "icf_stable is fitted in compression alone (stretch 0.6 to 1)" in line
+    assert "1.21 to 2.39 times its threshold pressure" in line
+    skin = (Layer(material=named_material("b1a_stable").material, thickness=0.5e-3),)
+    assert [text.split()[0] for text in lines_of(specimen={"layers": skin})] == ["b1a_stable", "icf_stable"]
+    assert energy_assumptions(thin()) == [], "a material of the user's own"
+    assert lines_of(specimen={"material": named_material("icf_printed").material}) == []
 
 
 def test_run_goes_past_the_touch_with_both_sensors_loaded(plain):
