@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from campaign.random_cases import random_case
-
 from tactsim.case.writing import yaml_text
 
 OUTCOMES = ("converged", "refused", "failed with reason", "stopped by time", "wrong", "hung")
@@ -101,7 +100,7 @@ def judged(code: int, place: Path) -> tuple[str, str]:
 
 
 def contradictions(quantities: dict[str, Any]) -> list[str]:
-    """What a converged result must not say: numbers that are not finite, forces that do not balance, volumes turned inside out."""
+    """What a converged result must not say: values that are not finite, forces out of balance, volumes turned inside out."""
     faults = [
         f"{name} is not finite" for name, value in quantities.items() if isinstance(value, float) and not math.isfinite(value)
     ]
