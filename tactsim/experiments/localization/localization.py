@@ -29,6 +29,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
@@ -87,7 +88,7 @@ class Localization(Experiment):
                 rows(self.history_units, readings.filled.sum(axis=(1, 2))[:, None]),
                 quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
                 assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
-                warnings=[*self._warnings(stored, plain, readings), *_several_places(estimate)],
+                warnings=[*self._warnings(stored, plain, readings), *_of_the_estimate(readings, estimate)],
                 scene=self._scene(scene, readings, estimate),
             )
         )
@@ -132,6 +133,12 @@ class Localization(Experiment):
         return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 
+def _of_the_estimate(readings: Readings, estimate: Estimate) -> list[str]:
+    """What the user must know of an estimate."""
+    misfit = plain_parts_warning(readings, estimate)
+    return [*_several_places(estimate), *([] if misfit is None else [misfit])]
+
+
 def _several_places(estimate: Estimate) -> list[str]:
     """The places of an estimator of one inclusion that several explain better; those of classes state their number anyway."""
     if estimate.classes is not None or len(estimate.inclusions) < 2:
@@ -157,6 +164,9 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
     quantities = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
     if estimate.probability is not None:
         quantities["probability"] = Quantity(estimate.probability, "1", "that anything is there")
+    if estimate.factor is not None:
+        text = "readings of plain tissue over those of the reference, from stiffness and gain together"
+        quantities["reference_factor"] = Quantity(estimate.factor, "1", text)
     if estimate.classes is not None:
         names = ", ".join(estimate.classes)
         quantities["class_probabilities"] = Quantity(list(estimate.classes.values()), "1", f"probability of {names}")

@@ -18,6 +18,7 @@ from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.live.sources.watch import Watch
+from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.localization.region import shadows
 
 DIGITS = 3
@@ -75,10 +76,11 @@ def estimated(
     watch.stage = "comparing what could be there with the readings"
     with stopped_by(watch.asked_to_stop):
         estimate = choice.estimator.estimate(readings)
+    misfit = plain_parts_warning(readings, estimate)
     bare = [BARE] if readings.difference is None and estimate.inclusions and choice.name != "stored" else []
     return {
         "present": estimate.present,
-        "words": [*_words(estimate), *bare],
+        "words": [*_words(estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
         "errors": _errors(scene, estimate),
         "inclusions": [_drawn(one) for one in estimate.inclusions],
     }

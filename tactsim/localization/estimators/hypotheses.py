@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -15,8 +16,19 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
-from tactsim.localization.evidence import Change, Explanation, nothing
+from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
+from tactsim.localization.reference_errors import (
+    OTHER_TISSUE,
+    SAME_TISSUE,
+    TAXEL_ERROR,
+    ReferenceErrors,
+    ReferenceFit,
+    factor_words,
+    fitted,
+    whitened,
+    without_error,
+)
 from tactsim.units import Length
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
@@ -42,8 +54,9 @@ class HypothesesEstimator(Estimator):
     .. math:: P(k | d) \propto P(k)\, \langle p(d | \text{bodies}) \rangle_k
 
     Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
-    the likeliest one. To first order a tube acts by its whole section, with one contrast for wall and lumen together: an empty
-    soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
+    the likeliest one. The reference may be wrong by a common factor of stiffness and gain, which is fitted with one ball or none,
+    and from taxel to taxel (``reference_errors``). To first order a tube acts by its whole section, with one contrast for wall
+    and lumen together: an empty soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -63,6 +76,12 @@ class HypothesesEstimator(Estimator):
     """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
+    background_scale: Annotated[float, Field(ge=0, le=1)] = SAME_TISSUE
+    """Error of the whole reference over itself where it is of the same tissue, as that of ``model_based``."""
+    factor_spread: Annotated[float, Field(ge=0, le=1)] = OTHER_TISSUE
+    """Standard deviation of the common factor of stiffness and gain where it is of another tissue, as that of ``model_based``."""
+    background_error: Annotated[float, Field(ge=0, le=1)] = TAXEL_ERROR
+    """Error of the reference from taxel to taxel over its root mean square, as that of ``model_based``."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Prior probability of any inclusion."""
     second: Annotated[float, Field(gt=0, le=1)] = 0.2
@@ -90,36 +109,46 @@ class HypothesesEstimator(Estimator):
         """
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
-        values, noise = readings.difference.ravel(), 2 * readings.noise**2
-        variance = noise + self.model_error**2 * float(np.mean(values**2))
-        if variance == 0:
+        values, priors = readings.difference.ravel(), self._priors(readings)
+        if any(without_error(values, errors) for errors in priors):
             return Estimate(
                 False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
             )
-        change = Change(values, variance, self.contrast_spread)
-        explained: dict[str, tuple[Explanation, Candidates]] = {
-            name: self._explained(name, change, readings) for name in self.classes
-        }
-        evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in explained.items()}
-        if noise > 0:
-            evidence["none"] = self._prior("none") + nothing(values, noise)
+        balls = ball_candidates(readings.response, readings.block_size, _steps(self.radii), gap=self.gap).signals
+        fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
+        fit = max(fits, key=lambda one: one.likelihood)
+        explained = {name: self._explained(name, fit, readings) for name in self.classes}
+        evidence = {name: self._prior(name) + fit.log_whitening + one.evidence for name, (one, _) in explained.items()}
+        evidence["none"] = self._prior("none") + fit.nothing
         probabilities = self._probabilities(evidence)
         likeliest = max(probabilities, key=lambda name: probabilities[name])
         probability = float(np.clip(1 - probabilities["none"], 0.0, 1.0))
         if likeliest == "none":
-            return Estimate(
-                False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
-            )
+            reason = f"nothing there with a probability of {probabilities['none']:.3g}{factor_words(fit.bare_factor)}"
+            return Estimate(False, (), reason, probability, probabilities, fit.bare_factor)
         cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
         inclusions = likely_bodies(*explained[likeliest], cell)
-        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
-        return Estimate(True, inclusions, reason, probability, probabilities)
+        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(fit.factor)}"
+        return Estimate(True, inclusions, reason, probability, probabilities, fit.factor)
 
-    def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Explanation, Candidates]:
-        """How well a class explains the change, and its candidates."""
+    def _priors(self, readings: Readings) -> list[ReferenceErrors]:
+        """Errors of a reference of the same tissue, and of another."""
+        plain = np.asarray(readings.reference, dtype=float).ravel()
+        factors = {self.background_scale, float(np.hypot(self.background_scale, self.factor_spread))}
+        return [
+            ReferenceErrors(plain, readings.noise, self.background_error, factor, self.model_error) for factor in sorted(factors)
+        ]
+
+    def _explained(self, name: str, fit: ReferenceFit, readings: Readings) -> tuple[Explanation, Candidates]:
+        """How well a class explains the change of a fit, and its candidates with signals in deviations of the errors."""
         check_time()
         assert readings.response is not None  # checked by estimate
-        candidates, coarse = self._bodies(name, readings.response, readings.block_size)
+        candidates, coarse = (
+            bodies and replace(bodies, signals=whitened(fit.factor * bodies.signals, fit.covariance))
+            for bodies in self._bodies(name, readings.response, readings.block_size)
+        )
+        assert candidates is not None  # only the coarse ones may be missing
+        change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
         if coarse is None:
             return change.single(candidates), candidates
         return change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)])), candidates
