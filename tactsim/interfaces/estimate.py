@@ -42,7 +42,7 @@ class EstimatedInclusion:
     kind : "sphere", "tube", or "unknown" if the estimator does not say
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
-    contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
+    contrast : of the stiffness at the working strain, as it acts on the taxels: 0 for tissue, negative if softer; None if unknown
     covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
     region : where its centre lies with a stated probability; None if not estimated
     line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated

@@ -18,6 +18,7 @@ from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.live.sources.watch import Watch
+from tactsim.localization.lump_response import stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.localization.region import shadows
 
@@ -120,8 +121,8 @@ def _uncertainty(one: EstimatedInclusion) -> list[str]:
         return []
     deviations = np.sqrt(np.diag(one.covariance))
     x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
-    contrast = "" if one.contrast is None else f"; contrast {one.contrast:.2g} ± {deviations[4]:.1g}"
-    return [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm{contrast} (one standard deviation)"]
+    lines = [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm (one standard deviation)"]
+    return lines if one.contrast is None else [*lines, stiffness_words(one.contrast).capitalize()]
 
 
 def _errors(scene: PageScene, estimate: Estimate) -> list[str]:
