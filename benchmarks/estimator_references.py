@@ -165,8 +165,8 @@ def as_text(content: Mapping[str, Any]) -> str:
         f"read with {1e3 * content['noise']:.2f} mN of noise. In brackets the 95 % interval, of rates by Wilson.",
         "",
         "An estimator compares with a grasp of plain tissue, the reference. Good numbers belong to a reference of the tissue "
-        "that was grasped; what another reference costs stands beside them. *Warned* counts grasps of which `result.warnings` says "
-        "that the readings away from the estimate do not fit the reference.",
+        "that was grasped; what another reference costs stands beside them. *Warned* counts grasps of which `result.warnings` "
+        "says that the readings away from the estimate do not fit the reference.",
         "",
         f"| {' | '.join(heads)} |",
         "|" + " --- |" * len(heads),
