@@ -20,7 +20,6 @@ from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
-    SAME_TISSUE,
     TAXEL_ERROR,
     ReferenceErrors,
     ReferenceFit,
@@ -54,9 +53,10 @@ class HypothesesEstimator(Estimator):
     .. math:: P(k | d) \propto P(k)\, \langle p(d | \text{bodies}) \rangle_k
 
     Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
-    the likeliest one. The reference may be wrong by a common factor of stiffness and gain, which is fitted with one ball or none,
-    and from taxel to taxel (``reference_errors``). To first order a tube acts by its whole section, with one contrast for wall
-    and lumen together: an empty soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
+    the likeliest one. The reference is exact, or of another tissue and wrong by a common factor of stiffness and gain, fitted
+    with one ball or none, and from taxel to taxel (``reference_errors``). To first order a tube acts by its whole section, with
+    one contrast for wall and lumen together: an empty soft one is softer than the tissue. The wall's thickness and a pressure
+    cannot be determined.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -76,12 +76,11 @@ class HypothesesEstimator(Estimator):
     """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
-    background_scale: Annotated[float, Field(ge=0, le=1)] = SAME_TISSUE
-    """Error of the whole reference over itself where it is of the same tissue, as that of ``model_based``."""
     factor_spread: Annotated[float, Field(ge=0, le=1)] = OTHER_TISSUE
-    """Standard deviation of the common factor of stiffness and gain where it is of another tissue, as that of ``model_based``."""
+    """Standard deviation of the common factor of stiffness and gain where the reference is of another tissue, or was read by
+    other sensors; as likely beforehand as the same tissue, of which it is taken as exact. 0 if it cannot be another."""
     background_error: Annotated[float, Field(ge=0, le=1)] = TAXEL_ERROR
-    """Error of the reference from taxel to taxel over its root mean square, as that of ``model_based``."""
+    """Error of a reference of another tissue from taxel to taxel, beside the factor, over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Prior probability of any inclusion."""
     second: Annotated[float, Field(gt=0, le=1)] = 0.2
@@ -116,31 +115,32 @@ class HypothesesEstimator(Estimator):
             )
         balls = ball_candidates(readings.response, readings.block_size, _steps(self.radii), gap=self.gap).signals
         fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
-        fit = max(fits, key=lambda one: one.likelihood)
-        explained = {name: self._explained(name, fit, readings) for name in self.classes}
-        evidence = {name: self._prior(name) + fit.log_whitening + one.evidence for name, (one, _) in explained.items()}
-        evidence["none"] = self._prior("none") + fit.nothing
-        probabilities = self._probabilities(evidence)
+        explained = {str(name): [self._explained(name, fit, readings) for fit in fits] for name in self.classes}
+        densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
+        densities["none"] = [fit.nothing for fit in fits]
+        probabilities = self._probabilities(
+            {name: self._prior(name) + float(np.logaddexp.reduce(each)) for name, each in densities.items()}
+        )
         likeliest = max(probabilities, key=lambda name: probabilities[name])
-        probability = float(np.clip(1 - probabilities["none"], 0.0, 1.0))
+        probability, best = float(np.clip(1 - probabilities["none"], 0.0, 1.0)), int(np.argmax(densities[likeliest]))
         if likeliest == "none":
-            reason = f"nothing there with a probability of {probabilities['none']:.3g}{factor_words(fit.bare_factor)}"
-            return Estimate(False, (), reason, probability, probabilities, fit.bare_factor)
-        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
-        inclusions = likely_bodies(*explained[likeliest], cell)
-        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(fit.factor)}"
-        return Estimate(True, inclusions, reason, probability, probabilities, fit.factor)
+            factor = fits[best].bare_factor
+            reason = f"nothing there with a probability of {probabilities['none']:.3g}{factor_words(factor)}"
+            return Estimate(False, (), reason, probability, probabilities, factor)
+        cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), fits[best].factor
+        inclusions = likely_bodies(*explained[likeliest][best][1:], cell)
+        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(factor)}"
+        return Estimate(True, inclusions, reason, probability, probabilities, factor)
 
     def _priors(self, readings: Readings) -> list[ReferenceErrors]:
         """Errors of a reference of the same tissue, and of another."""
         plain = np.asarray(readings.reference, dtype=float).ravel()
-        factors = {self.background_scale, float(np.hypot(self.background_scale, self.factor_spread))}
-        return [
-            ReferenceErrors(plain, readings.noise, self.background_error, factor, self.model_error) for factor in sorted(factors)
-        ]
+        same = ReferenceErrors(plain, readings.noise, 0.0, 0.0, self.model_error)
+        other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
+        return [same, other] if self.factor_spread > 0 else [same]
 
-    def _explained(self, name: str, fit: ReferenceFit, readings: Readings) -> tuple[Explanation, Candidates]:
-        """How well a class explains the change of a fit, and its candidates with signals in deviations of the errors."""
+    def _explained(self, name: str, fit: ReferenceFit, readings: Readings) -> tuple[float, Explanation, Candidates]:
+        """Log density of the change of a fit under a class, the bodies that explain it, and the candidates in deviations."""
         check_time()
         assert readings.response is not None  # checked by estimate
         candidates, coarse = (
@@ -150,8 +150,10 @@ class HypothesesEstimator(Estimator):
         assert candidates is not None  # only the coarse ones may be missing
         change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
         if coarse is None:
-            return change.single(candidates), candidates
-        return change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)])), candidates
+            one = change.single(candidates)
+            return fit.log_whitening + one.evidence, one, candidates
+        one = change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)]))
+        return fit.log_whitening + one.evidence, one, candidates
 
     def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""

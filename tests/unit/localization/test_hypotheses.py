@@ -17,9 +17,7 @@ SIZE = np.array([40e-3, 40e-3, 20e-3])
 LAYOUT = TaxelLayout()
 RADII = np.array([2.5e-3, 3.5e-3, 4.5e-3, 5.5e-3])
 NOISE = 2e-3
-SURE = {"background_error": 0.0, "background_scale": 0.0, "factor_spread": 0.0}
-"""A reference that is known exactly."""
-ESTIMATOR = HypothesesEstimator(model_error=0.02, radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3), **SURE)
+ESTIMATOR = HypothesesEstimator(model_error=0.02, radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3))
 GAP = ESTIMATOR.gap
 
 

@@ -18,8 +18,8 @@ from tactsim.localization.reference_errors import ReferenceErrors, fitted, log_d
 CENTER, RADIUS, CONTRAST = np.array([18e-3, 22e-3, 12e-3]), 4e-3, 10.0
 PLAIN = plain_forces(np.array([1e-3]))[0]
 ONE_LUMP = ("lump",)
-FITTING = {"model_based": ModelBasedEstimator(), "hypotheses": HypothesesEstimator(classes=ONE_LUMP)}
-RIGID = {"factor_spread": 0.0, "background_scale": 0.0}
+FITTING = {"model_based": ModelBasedEstimator(background_scale=0.0), "hypotheses": HypothesesEstimator(classes=ONE_LUMP)}
+RIGID = {"factor_spread": 0.0}
 """The reference is taken for that of the tissue."""
 
 
