@@ -206,7 +206,7 @@ def _sentence(content: Mapping[str, Any], reference: str, factor: str) -> str:
     lateral, depth = (1e3 * numbers[f"{name}_error"]["median"]["value"] for name in ("lateral", "depth"))
     return (
         f"finds {100 * rate['value']:.0f} % [{100 * rate['low']:.0f}, {100 * rate['high']:.0f}] of the lumps with "
-        f"{round(alarms['value'] * numbers['without_lump'])} false alarms in {numbers['without_lump']}, in the median "
+        f"false alarms in {round(alarms['value'] * numbers['without_lump'])} of {numbers['without_lump']}, in the median "
         f"{lateral:.1f} mm off in plan and {depth:.1f} mm in height, and its 90 % regions hold {100 * held['value']:.0f} % "
         f"[{100 * held['low']:.0f}, {100 * held['high']:.0f}] of them"
     )
