@@ -42,7 +42,7 @@ class EstimatedInclusion:
     kind : "sphere", "tube", or "unknown" if the estimator does not say
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
-    contrast : of the stiffness as it acts on the taxels, 0 for plain tissue, negative if softer; None if not estimated
+    contrast : of the stiffness at the working strain, as it acts on the taxels: 0 for tissue, negative if softer; None if unknown
     covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
     region : where its centre lies with a stated probability; None if not estimated
     line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
@@ -79,6 +79,7 @@ class Estimate:
     reason : why, in words for a user
     probability : that anything is there, from 0 to 1; None if the estimator does not say
     classes : probability of each class by its name, adding up to 1; None if the estimator does not distinguish classes
+    factor : what plain tissue reads over the reference, by its stiffness and the gain of the sensors; None if not estimated
     """
 
     present: bool
@@ -86,6 +87,7 @@ class Estimate:
     reason: str
     probability: float | None = None
     classes: dict[str, float] | None = None
+    factor: float | None = None
 
     def __post_init__(self) -> None:
         if self.classes is not None and not np.isclose(sum(self.classes.values()), 1.0, rtol=0, atol=1e-6):
@@ -94,6 +96,8 @@ class Estimate:
             raise InvalidQuantity(f"present is {self.present} with {len(self.inclusions)} inclusions; these must agree")
         if self.probability is not None and not 0 <= self.probability <= 1:
             raise InvalidQuantity(f"probability {self.probability}; allowed: 0 to 1")
+        if self.factor is not None and not np.isfinite(self.factor):
+            raise InvalidQuantity(f"a factor of the reference {self.factor}; needed: finite")
 
 
 def inclusion_in_words(inclusion: EstimatedInclusion) -> str:

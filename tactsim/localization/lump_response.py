@@ -17,6 +17,10 @@ from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import InvalidQuantity
 
+RIGID_CONTRAST = 2.5
+"""Contrast of a small rigid ball in incompressible tissue."""
+MOST_TOLD_APART = 10
+"""Ratio of stiffness beyond which the contrast hardly changes."""
 FINER = 4
 """Parts per side of a voxel by which the share of a voxel in a ball is computed."""
 
@@ -98,6 +102,27 @@ def eshelby_contrast(shear_ratio: Array) -> Array:
     """
     ratio = np.asarray(shear_ratio, dtype=float)
     return 5 * (ratio - 1) / (2 * ratio + 3)
+
+
+def stiffness_ratio_of(contrast: float) -> float:
+    r"""Stiffness of a small ball over that of the tissue at the working strain, dimensionless, from its contrast c.
+
+    .. math:: k = \frac{5 + 3 c}{5 - 2 c}
+
+    The inverse of :func:`eshelby_contrast`: 1 for tissue, 0 for a hole, infinite from c = 5/2 on, where the ball is as good as
+    rigid, or too large for a small one.
+    """
+    if contrast >= RIGID_CONTRAST:
+        return float("inf")
+    return max(0.0, (5 + 3 * contrast) / (5 - 2 * contrast))
+
+
+def stiffness_words(contrast: float) -> str:
+    """The stiffness of a ball of this contrast in words."""
+    ratio = stiffness_ratio_of(contrast)
+    if ratio > MOST_TOLD_APART:
+        return f"more than {MOST_TOLD_APART:g} times as stiff as the tissue at this closing"
+    return f"{ratio:.2g} times as stiff as the tissue at this closing"
 
 
 def _ball(radius: float, cell: Array) -> Array:

@@ -73,3 +73,14 @@ def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
     stress = material.first_piola_kirchhoff(F, np.zeros(stretch.shape))
     slope = material.volume_change_gradient(F)
     return stress[0, 0] - stress[2, 2] / slope[2, 2] * slope[0, 0]
+
+
+def stiffness_ratio(material: Material, tissue: Material, stretch: float) -> float:
+    """Stress of a material over that of the tissue at the same uniaxial ``stretch``, dimensionless: 1 for the tissue itself.
+
+    It is the ratio at a working strain; at the stretch 1 it is that of the shear moduli, the ratio at rest.
+    """
+    if stretch == 1.0:
+        return float(material.shear_modulus / tissue.shear_modulus)
+    own, other = (float(nominal_stress(one, "uniaxial", np.array(stretch))) for one in (material, tissue))
+    return own / other

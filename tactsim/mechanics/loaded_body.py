@@ -18,7 +18,8 @@ from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.regularising_springs import RegularisingSprings
 from tactsim.fem.solver_choice import solver_for
 from tactsim.fem.space import TaylorHood
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.point_values import cauchy_stress, von_mises
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.prescribed_motion import PrescribedMotions
@@ -129,7 +130,7 @@ class LoadedBody:
         ]
         distance = max(float(np.linalg.norm(step)) for step in steps)
         directions = [step / distance if distance > 0 else step for step in steps]
-        return contact_equilibrium(
+        return guaranteed_equilibrium(
             self.problem, now, now.load + distance, unknowns, directions=directions, loads=acting, relaxation=relaxation
         )
 

@@ -35,7 +35,7 @@ from tactsim.storage.own_files import MANIFEST, manifest_of, names_in, read_mani
 
 RESULT_FILE = "result.json"
 _OWN_NAME = re.compile(
-    r"result\.json|history\.csv|provenance\.json|figures|figures/\w+\.(png|svg|pdf)|fields\.pvd|fields_\d+\.vtu|validation\.(json|md)"
+    r"result\.json|history\.csv|provenance\.json|figures|figures/\w+\.(png|svg|pdf)|fields\.pvd|fields_\d+\.vtu|validation\.(html|json|md)"
 )
 """Paths in the folders that tactsim wrote before it wrote manifests."""
 SPARE = 6

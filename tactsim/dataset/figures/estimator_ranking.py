@@ -21,7 +21,7 @@ MILLIMETRES = 1e3
 AXES = {
     "depth": "depth of the centre in mm",
     "radius": "radius in mm",
-    "contrast": "shear modulus over the tissue's",
+    "contrast": "shear modulus over the tissue's, at rest",
     "closing": "closing of each jaw in mm",
 }
 NOMINAL = (0.85, 0.95)

@@ -38,7 +38,7 @@ REPEATED = 16
 class Truth:
     """What a sample was computed with; lengths in m, all but ``closing`` None without a lump.
 
-    ``depth`` is that of the centre below the upper face, ``contrast`` the shear modulus over that of the tissue.
+    ``depth`` is that of the centre below the upper face, ``contrast`` the shear modulus over that of the tissue, both at rest.
     """
 
     sample: int

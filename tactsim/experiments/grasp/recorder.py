@@ -25,7 +25,7 @@ PER_INCLUSION = {
     "inclusion_lumen_pressure": ("Pa", "pressure in the empty space of a tube at the end, 0 without"),
     "inclusion_depth": ("m", "distance of the highest point from the upper face"),
     "inclusion_shear_modulus": ("Pa", "small-strain shear modulus"),
-    "inclusion_contrast": ("1", "shear modulus over that of the tissue"),
+    "inclusion_contrast": ("1", "shear modulus over that of the tissue, both at rest"),
 }
 PER_SAMPLE = {
     "tissue_shear_modulus": ("Pa", "small-strain shear modulus of the tissue"),

@@ -19,6 +19,7 @@ from tactsim.experiments.localization.source import (
     folder_words,
     readings_of,
     reference_notes,
+    stiffness_ratios,
     stored_grasp,
     with_reference,
 )
@@ -29,6 +30,8 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.lump_response import stiffness_ratio_of
+from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
 from tactsim.results.result import Quantity, Result, Status, rows
 from tactsim.units import Force, format_quantity
@@ -85,9 +88,12 @@ class Localization(Experiment):
             Findings(
                 estimate.reason,
                 rows(self.history_units, readings.filled.sum(axis=(1, 2))[:, None]),
-                quantities=_taxel_quantities(readings) | _estimate_quantities(estimate) | _error_quantities(estimate, true),
+                quantities=_taxel_quantities(readings)
+                | _estimate_quantities(estimate)
+                | _error_quantities(estimate, true)
+                | _stiffness_quantities(estimate, stiffness_ratios(self.grasp, readings.closing)),
                 assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation)",),
-                warnings=[*self._warnings(stored, plain, readings), *_several_places(estimate)],
+                warnings=[*self._warnings(stored, plain, readings), *_of_the_estimate(readings, estimate)],
                 scene=self._scene(scene, readings, estimate),
             )
         )
@@ -132,6 +138,12 @@ class Localization(Experiment):
         return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 
+def _of_the_estimate(readings: Readings, estimate: Estimate) -> list[str]:
+    """What the user must know of an estimate."""
+    misfit = plain_parts_warning(readings, estimate)
+    return [*_several_places(estimate), *([] if misfit is None else [misfit])]
+
+
 def _several_places(estimate: Estimate) -> list[str]:
     """The places of an estimator of one inclusion that several explain better; those of classes state their number anyway."""
     if estimate.classes is not None or len(estimate.inclusions) < 2:
@@ -157,6 +169,9 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
     quantities = {"present": Quantity(int(estimate.present), "1", "1 if anything is there, 0 if nothing is")}
     if estimate.probability is not None:
         quantities["probability"] = Quantity(estimate.probability, "1", "that anything is there")
+    if estimate.factor is not None:
+        text = "readings of plain tissue over those of the reference, from stiffness and gain together"
+        quantities["reference_factor"] = Quantity(estimate.factor, "1", text)
     if estimate.classes is not None:
         names = ", ".join(estimate.classes)
         quantities["class_probabilities"] = Quantity(
@@ -172,15 +187,30 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
         quantities["estimated_radius"] = Quantity(first.radius, "m", "radius of the strongest inclusion")
     if first.contrast is not None:
         quantities["estimated_contrast"] = Quantity(
-            first.contrast,
-            "1",
-            "contrast of the strongest inclusion with the tissue at this closing, 0 if alike, negative if softer",
+            first.contrast, "1", "contrast of the strongest inclusion at the working strain, 0 for tissue, negative if softer"
         )
     if first.covariance is not None:
         deviations = np.sqrt(np.diag(first.covariance))
         quantities["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations (x, y, z)")
         quantities["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
         quantities["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
+    return quantities
+
+
+def _stiffness_quantities(estimate: Estimate, true: tuple[tuple[float, float], ...]) -> dict[str, Quantity]:
+    """Stiffness over that of the tissue, 1 for tissue: as estimated, and of every true inclusion."""
+    quantities = {}
+    contrast = estimate.inclusions[0].contrast if estimate.inclusions else None
+    if contrast is not None and np.isfinite(stiffness_ratio_of(contrast)):
+        text = "stiffness of the strongest inclusion over that of the tissue at the working strain, taken for a small ball"
+        quantities["estimated_stiffness_ratio"] = Quantity(stiffness_ratio_of(contrast), "1", text)
+    if true:
+        working, rest = ([pair[k] for pair in true] for k in (0, 1))
+        text = "stress of each true inclusion over that of the tissue at the working strain, the mean one of plain tissue"
+        quantities["true_stiffness_ratio"] = Quantity(working, "1", text)
+        quantities["true_stiffness_ratio_at_rest"] = Quantity(
+            rest, "1", "the same at small strain: the ratio of the shear moduli"
+        )
     return quantities
 
 

@@ -8,13 +8,16 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from pydantic import ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
@@ -91,6 +94,26 @@ def with_reference(readings: Readings, reference: Readings) -> Readings:
     valid = [part.valid for part in (readings, reference) if part.valid is not None]
     mask = np.logical_and.reduce(valid) if valid else None
     return replace(readings, reference=reference.forces, valid=mask)
+
+
+def stiffness_ratios(folder: str, closing: float | None) -> tuple[tuple[float, float], ...]:
+    """Stiffness of each inclusion of a stored grasp over that of its tissue: at the working strain, and at rest.
+
+    The working strain is the mean one of plain tissue, both jaws closed by ``closing`` in m. Empty if the grasp does not keep the
+    case that it was computed from, or its closing is not known.
+    """
+    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
+    if experiment.get("kind") != "grasp" or closing is None:
+        return ()
+    try:
+        grasp = Grasp.model_validate(experiment)
+    except ValidationError:
+        return ()
+    tissue, stretch = grasp.block.tissue, 1 - 2 * closing / float(grasp.block.size[2])
+    return tuple(
+        (stiffness_ratio(one.material, tissue, stretch), stiffness_ratio(one.material, tissue, 1.0))
+        for one in grasp.unlike_tissue
+    )
 
 
 def saturated_taxels(result: Result) -> Array:

@@ -18,6 +18,8 @@ from tactsim.live.session.choices import Choice
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.live.sources.watch import Watch
+from tactsim.localization.lump_response import stiffness_words
+from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.localization.region import shadows
 
 DIGITS = 3
@@ -75,10 +77,11 @@ def estimated(
     watch.stage = "comparing what could be there with the readings"
     with stopped_by(watch.asked_to_stop):
         estimate = choice.estimator.estimate(readings)
+    misfit = plain_parts_warning(readings, estimate)
     bare = [BARE] if readings.difference is None and estimate.inclusions and choice.name != "stored" else []
     return {
         "present": estimate.present,
-        "words": [*_words(estimate), *bare],
+        "words": [*_words(estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
         "errors": _errors(scene, estimate),
         "inclusions": [_drawn(one) for one in estimate.inclusions],
     }
@@ -118,8 +121,8 @@ def _uncertainty(one: EstimatedInclusion) -> list[str]:
         return []
     deviations = np.sqrt(np.diag(one.covariance))
     x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
-    contrast = "" if one.contrast is None else f"; contrast {one.contrast:.2g} ± {deviations[4]:.1g}"
-    return [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm{contrast} (one standard deviation)"]
+    lines = [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm (one standard deviation)"]
+    return lines if one.contrast is None else [*lines, stiffness_words(one.contrast).capitalize()]
 
 
 def _errors(scene: PageScene, estimate: Estimate) -> list[str]:

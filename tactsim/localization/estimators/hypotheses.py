@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -15,8 +16,18 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
-from tactsim.localization.evidence import Change, Explanation, nothing
+from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
+from tactsim.localization.reference_errors import (
+    OTHER_TISSUE,
+    TAXEL_ERROR,
+    ReferenceErrors,
+    ReferenceFit,
+    factor_words,
+    fitted,
+    whitened,
+    without_error,
+)
 from tactsim.units import Length
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
@@ -42,8 +53,10 @@ class HypothesesEstimator(Estimator):
     .. math:: P(k | d) \propto P(k)\, \langle p(d | \text{bodies}) \rangle_k
 
     Place, radius and contrast are means of the posterior of the likeliest class, with their covariance; the line of a tube is
-    the likeliest one. To first order a tube acts by its whole section, with one contrast for wall and lumen together: an empty
-    soft one is softer than the tissue. The wall's thickness and a pressure cannot be determined.
+    the likeliest one. The reference is exact, or of another tissue and wrong by a common factor of stiffness and gain, fitted
+    with one ball or none, and from taxel to taxel (``reference_errors``). To first order a tube acts by its whole section, with
+    one contrast for wall and lumen together: an empty soft one is softer than the tissue. The wall's thickness and a pressure
+    cannot be determined.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -63,6 +76,11 @@ class HypothesesEstimator(Estimator):
     """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
+    factor_spread: Annotated[float, Field(ge=0, le=1)] = OTHER_TISSUE
+    """Standard deviation of the common factor of stiffness and gain where the reference is of another tissue, or was read by
+    other sensors; as likely beforehand as the same tissue, of which it is taken as exact. 0 if it cannot be another."""
+    background_error: Annotated[float, Field(ge=0, le=1)] = TAXEL_ERROR
+    """Error of a reference of another tissue from taxel to taxel, beside the factor, over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Prior probability of any inclusion."""
     second: Annotated[float, Field(gt=0, le=1)] = 0.2
@@ -90,39 +108,52 @@ class HypothesesEstimator(Estimator):
         """
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
-        values, noise = readings.difference.ravel(), 2 * readings.noise**2
-        variance = noise + self.model_error**2 * float(np.mean(values**2))
-        if variance == 0:
+        values, priors = readings.difference.ravel(), self._priors(readings)
+        if any(without_error(values, errors) for errors in priors):
             return Estimate(
                 False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
             )
-        change = Change(values, variance, self.contrast_spread)
-        explained: dict[str, tuple[Explanation, Candidates]] = {
-            name: self._explained(name, change, readings) for name in self.classes
-        }
-        evidence: dict[str, float] = {name: self._prior(name) + one.evidence for name, (one, _) in explained.items()}
-        if noise > 0:
-            evidence["none"] = self._prior("none") + nothing(values, noise)
-        probabilities = self._probabilities(evidence)
+        balls = ball_candidates(readings.response, readings.block_size, _steps(self.radii), gap=self.gap).signals
+        fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
+        explained = {str(name): [self._explained(name, fit, readings) for fit in fits] for name in self.classes}
+        densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
+        densities["none"] = [fit.nothing for fit in fits]
+        probabilities = self._probabilities(
+            {name: self._prior(name) + float(np.logaddexp.reduce(each)) for name, each in densities.items()}
+        )
         likeliest = max(probabilities, key=lambda name: probabilities[name])
-        probability = float(np.clip(1 - probabilities["none"], 0.0, 1.0))
+        probability, best = float(np.clip(1 - probabilities["none"], 0.0, 1.0)), int(np.argmax(densities[likeliest]))
         if likeliest == "none":
-            return Estimate(
-                False, (), f"nothing there with a probability of {probabilities['none']:.3g}", probability, probabilities
-            )
-        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
-        inclusions = likely_bodies(*explained[likeliest], cell)
-        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}"
-        return Estimate(True, inclusions, reason, probability, probabilities)
+            factor = fits[best].bare_factor
+            reason = f"nothing there with a probability of {probabilities['none']:.3g}{factor_words(factor)}"
+            return Estimate(False, (), reason, probability, probabilities, factor)
+        cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), fits[best].factor
+        inclusions = likely_bodies(*explained[likeliest][best][1:], cell)
+        reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(factor)}"
+        return Estimate(True, inclusions, reason, probability, probabilities, factor)
 
-    def _explained(self, name: str, change: Change, readings: Readings) -> tuple[Explanation, Candidates]:
-        """How well a class explains the change, and its candidates."""
+    def _priors(self, readings: Readings) -> list[ReferenceErrors]:
+        """Errors of a reference of the same tissue, and of another."""
+        plain = np.asarray(readings.reference, dtype=float).ravel()
+        same = ReferenceErrors(plain, readings.noise, 0.0, 0.0, self.model_error)
+        other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
+        return [same, other] if self.factor_spread > 0 else [same]
+
+    def _explained(self, name: str, fit: ReferenceFit, readings: Readings) -> tuple[float, Explanation, Candidates]:
+        """Log density of the change of a fit under a class, the bodies that explain it, and the candidates in deviations."""
         check_time()
         assert readings.response is not None  # checked by estimate
-        candidates, coarse = self._bodies(name, readings.response, readings.block_size)
+        candidates, coarse = (
+            bodies and replace(bodies, signals=whitened(fit.factor * bodies.signals, fit.covariance))
+            for bodies in self._bodies(name, readings.response, readings.block_size)
+        )
+        assert candidates is not None  # only the coarse ones may be missing
+        change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
         if coarse is None:
-            return change.single(candidates), candidates
-        return change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)])), candidates
+            one = change.single(candidates)
+            return fit.log_whitening + one.evidence, one, candidates
+        one = change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)]))
+        return fit.log_whitening + one.evidence, one, candidates
 
     def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-import scipy
 from pydantic import Field
 
 from tactsim.array import Array
@@ -17,6 +16,17 @@ from tactsim.interfaces.readings import Readings, TissueResponse
 from tactsim.localization.candidates import ball_candidates
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
+from tactsim.localization.reference_errors import (
+    OTHER_TISSUE,
+    SAME_TISSUE,
+    TAXEL_ERROR,
+    ReferenceErrors,
+    ReferenceFit,
+    factor_words,
+    fitted,
+    whitened,
+    without_error,
+)
 from tactsim.localization.region import CellRegion
 from tactsim.localization.separate_places import rises_apart
 from tactsim.units import Length
@@ -49,11 +59,13 @@ class ModelBasedEstimator(Estimator):
     .. math:: \ln p(d | x, r) = \frac{1}{2} \frac{(s \cdot S^{-1} d)^2}{s \cdot S^{-1} s + \sigma_c^{-2}}
         - \frac{1}{2} \ln\bigl(1 + \sigma_c^2\, s \cdot S^{-1} s\bigr) + \text{const}
 
-    .. math:: S = \bigl(2 \sigma^2 + e_m^2 \overline{d^2} + e_b^2 \overline{p^2}\bigr) 1 + b^2 p p^T
+    .. math:: S = \bigl(2 \sigma^2 + e_m^2 \overline{a^2} + e_b^2 \overline{p^2}\bigr) 1 + \beta^2 p p^T
 
-    with the noise of both readings, the error of the forward model, and the reference p, which is known to a common factor
-    1 + b and to e_b from taxel to taxel. Mean, covariance and region are those of the posterior. Nothing is there if that
-    explains d better; then S lacks the model's error.
+    with the noise of both readings, the error of the forward model over what the ball adds, a, and the reference p, which is
+    known to e_b from taxel to taxel and to a common factor f of stiffness and gain of standard deviation beta
+    (``reference_errors``): ``background_scale`` if it is of the same tissue, more by ``factor_spread`` if not, whichever makes
+    the readings likelier. Mean, covariance and region are those of the posterior; the contrast is over the tissue that was read.
+    Nothing is there if that explains d better; then S lacks the model's error.
 
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
     do not overlap (``evidence``), with the same S, on a coarser grid. Two are the answer if they are likelier, if the readings
@@ -75,9 +87,12 @@ class ModelBasedEstimator(Estimator):
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.35
     """Error of the forward model over the root mean square of the change; the default is the least of five at which nine in
     ten of the 90 % regions held the lump, in 38 grasps of another seed than those of ``sweep_judged``."""
-    background_scale: Annotated[float, Field(ge=0, le=1)] = 0.02
-    """Error of the whole reference over itself: the closing, stiffness and friction are not known exactly."""
-    background_error: Annotated[float, Field(ge=0, le=1)] = 0.015
+    background_scale: Annotated[float, Field(ge=0, le=1)] = SAME_TISSUE
+    """Error of the whole reference over itself where it is of the same tissue: the closing and friction are not known exactly."""
+    factor_spread: Annotated[float, Field(ge=0, le=1)] = OTHER_TISSUE
+    """Standard deviation of the common factor of stiffness and gain where it is of another tissue, or read by other sensors; as
+    likely beforehand as the same tissue. 0 if it cannot be another."""
+    background_error: Annotated[float, Field(ge=0, le=1)] = TAXEL_ERROR
     """Error of the reference from taxel to taxel over its root mean square."""
     prior: Annotated[float, Field(gt=0, lt=1)] = 0.5
     """Probability beforehand that anything is there."""
@@ -105,34 +120,34 @@ class ModelBasedEstimator(Estimator):
         if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
         change, plain = readings.difference.ravel(), np.asarray(readings.reference, dtype=float).ravel()
-        response = readings.response
-        nothing = self._covariance(change * 0, plain, readings.noise)
-        something = self._covariance(change, plain, readings.noise)
-        if something[0, 0] == 0:
+        candidates = self._candidates(readings.response, readings.block_size)
+        priors = self._errors(plain, readings.noise)
+        if any(without_error(change, errors) for errors in priors):
             return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0)
-        candidates = self._candidates(response, readings.block_size)
-        evidence, contrasts, spread = self._evidence(candidates.signals, change, something)
-        total, weights = (
-            scipy.special.logsumexp(evidence) - np.log(len(evidence)),
-            np.exp(evidence - scipy.special.logsumexp(evidence)),
-        )
-        probability = self._probability(total, change, nothing, something)
+        fits = [fitted(candidates.signals, change, errors, self.contrast_spread) for errors in priors]
+        fit = max(fits, key=lambda one: one.likelihood)
+        probability = self._probability(fits)
         if probability < 0.5:
-            return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
-        mean, covariance = _moments(np.column_stack([candidates.centers, candidates.radii, contrasts]), weights, spread)
-        shape = tuple(map(len, response.axes))
-        cells = np.bincount(candidates.cells, weights, int(np.prod(shape))).reshape(shape)
+            reason = f"nothing there with a probability of {1 - probability:.3g}"
+            return Estimate(False, (), reason + factor_words(fit.bare_factor), probability, factor=fit.bare_factor)
+        mean, covariance = _moments(
+            np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor]),
+            fit.weights,
+            fit.spreads / fit.factor**2,
+        )
+        shape = tuple(map(len, readings.response.axes))
+        cells = np.bincount(candidates.cells, fit.weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
-        region = CellRegion(response.axes, cells)
-        pair = self._pair(readings, something, total, between=not region.contains(mean[:3]))
+        region = CellRegion(readings.response.axes, cells)
+        pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         if pair is not None:
-            return replace(pair, probability=probability)
+            return replace(pair, probability=probability, factor=fit.factor)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
-        words = "softer" if contrast < 0 else "stiffer"
-        return Estimate(True, (ball,), f"a {words} ball with a probability of {probability:.3g}", probability)
+        reason = f"a {'softer' if contrast < 0 else 'stiffer'} ball with a probability of {probability:.3g}"
+        return Estimate(True, (ball,), reason + factor_words(fit.factor), probability, factor=fit.factor)
 
-    def _pair(self, readings: Readings, covariance: Array, one: float, *, between: bool) -> Estimate | None:
-        """Two balls, if they are likelier than one, whose log evidence on the finest grid is ``one``; None if not.
+    def _pair(self, readings: Readings, fit: ReferenceFit, *, between: bool) -> Estimate | None:
+        """Two balls, if they are likelier than the one of a ``fit`` on the finest grid; None if not.
 
         ``between``: the mean place of one ball lies where it hardly can be, between several places where it can.
         """
@@ -141,19 +156,18 @@ class ModelBasedEstimator(Estimator):
             return None
         steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
         radii = list(np.linspace(*self.radii, steps))
-        root = scipy.linalg.cholesky(covariance, lower=True)
         fine, coarse = (
-            replace(balls, signals=scipy.linalg.solve_triangular(root, balls.signals.T, lower=True).T)
+            replace(balls, signals=whitened(fit.factor * balls.signals, fit.covariance))
             for balls in (
                 ball_candidates(response, size, radii, gap=self.gap, every=EVERY),
                 ball_candidates(response, size, radii[1::2], gap=self.gap, every=COARSE),
             )
         )
-        white = Change(scipy.linalg.solve_triangular(root, difference.ravel(), lower=True), 1.0, self.contrast_spread)
+        white = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
-        single = max(one + nothing(white.values, 1.0), white.single(fine).evidence)
+        single = max(fit.total + nothing(white.values, 1.0), white.single(fine).evidence)
         odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
-        apart = rises_apart(difference, readings.noise)
+        apart = rises_apart(difference - (fit.factor - 1) * np.asarray(readings.reference), readings.noise)
         if odds <= 1 and not apart and not between:
             return None
         cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
@@ -171,18 +185,10 @@ class ModelBasedEstimator(Estimator):
             words = f"two places explain the readings better than one, as {why}"
         return Estimate(True, bodies, words)
 
-    def _covariance(self, change: Array, plain: Array, noise: float) -> Array:
-        """Covariance S (taxels, taxels) in N^2 of the errors of a change of force."""
-        white = 2 * noise**2 + self.model_error**2 * np.mean(change**2) + self.background_error**2 * np.mean(plain**2)
-        return white * np.eye(plain.size) + self.background_scale**2 * np.outer(plain, plain)
-
-    def _evidence(self, signals: Array, change: Array, covariance: Array) -> tuple[Array, Array, Array]:
-        """Logarithmic evidence (n,) over that of no signal, and mean and variance (n,) of the contrast."""
-        root = scipy.linalg.cholesky(covariance, lower=True)
-        white = scipy.linalg.solve_triangular(root, np.column_stack([change, signals.T]), lower=True)
-        strength, along = (white[:, 1:] ** 2).sum(axis=0), white[:, 0] @ white[:, 1:]
-        stiff = strength + 1 / self.contrast_spread**2
-        return along**2 / stiff / 2 - np.log(stiff * self.contrast_spread**2) / 2, along / stiff, 1 / stiff
+    def _errors(self, plain: Array, noise: float) -> list[ReferenceErrors]:
+        """Of a reference p (taxels,) in N of the same tissue, and of another."""
+        factors = [self.background_scale, float(np.hypot(self.background_scale, self.factor_spread))]
+        return [ReferenceErrors(plain, noise, self.background_error, factor, self.model_error) for factor in sorted(set(factors))]
 
     def _candidates(self, response: TissueResponse, size: Array) -> Candidates:
         """All balls of the table that fit into the block."""
@@ -197,11 +203,9 @@ class ModelBasedEstimator(Estimator):
         every = np.concatenate(cells)
         return Candidates(every, grid[every], radii, np.concatenate(signals))
 
-    def _probability(self, total: float, change: Array, nothing: Array, something: Array) -> float:
-        """Of anything being there, from the evidence ``total`` over that of errors of the covariance ``something`` alone."""
-        if nothing[0, 0] == 0:
-            return 1.0
-        away = _log_density(change, nothing) - _log_density(change, something) - total
+    def _probability(self, fits: list[ReferenceFit]) -> float:
+        """Of anything being there; each prior of the factor is as likely as the other."""
+        away = np.logaddexp.reduce([fit.nothing for fit in fits]) - np.logaddexp.reduce([fit.something for fit in fits])
         return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(away, -700, 700))))
 
 
@@ -212,9 +216,3 @@ def _moments(samples: Array, weights: Array, spread: Array) -> tuple[Array, Arra
     covariance = (weights[:, None] * away).T @ away
     covariance[4, 4] += weights @ spread
     return mean, covariance
-
-
-def _log_density(change: Array, covariance: Array) -> float:
-    """Of a Gaussian of this covariance, without the constant of its dimension."""
-    root = scipy.linalg.cholesky(covariance, lower=True)
-    return float(-(scipy.linalg.solve_triangular(root, change, lower=True) ** 2).sum() / 2 - np.log(np.diag(root)).sum())

@@ -15,7 +15,7 @@ RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3])
 NOISE = 1e-4
 BESIDE = 0.2e-3 * np.stack(np.meshgrid([1, -1], [1, -1], [1, -1]), axis=-1).reshape(-1, 3)
 """To the cells of the grid that meet at a point on their borders."""
-SURE = {"background_error": 0.0, "background_scale": 0.0}
+SURE = {"background_error": 0.0, "background_scale": 0.0, "factor_spread": 0.0}
 """A reference that is known exactly."""
 
 

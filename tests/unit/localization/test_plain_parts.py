@@ -1,0 +1,61 @@
+"""The readings beside an estimate say whether the reference is of the tissue that was read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_grasps import LAYOUT, NOISE, SIZE, plain_forces, response
+
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
+from tactsim.localization.plain_parts import plain_parts, plain_parts_warning
+
+PLAIN = plain_forces(np.array([1e-3]))[0]
+CORNER = (10e-3, 10e-3, 10e-3)
+NOTHING = Estimate(False, (), "nothing")
+LUMP = Estimate(True, (EstimatedInclusion("sphere", CORNER, 4e-3),), "a lump")
+
+
+def read(forces: np.ndarray, seed: int = 1) -> Readings:
+    noise = NOISE * np.random.default_rng(seed).standard_normal((2, *forces.shape))
+    return Readings(forces + noise[0], LAYOUT, SIZE, reference=PLAIN + noise[1], noise=NOISE)
+
+
+def with_lump() -> np.ndarray:
+    return PLAIN + 10.0 * response().signal(np.array([CORNER]), np.array([4e-3]))[0]
+
+
+def test_plain_tissue_fits_its_reference() -> None:
+    assert all(plain_parts_warning(read(PLAIN, seed), NOTHING) is None for seed in range(50))
+
+
+def test_stiffer_tissue_is_a_warning_with_its_factor() -> None:
+    parts = plain_parts(read(1.25 * PLAIN), NOTHING)
+    assert parts is not None
+    assert parts.chi_square > 3 * parts.limit
+    assert parts.fits_scaled
+    assert parts.factor == pytest.approx(1.25, abs=5e-3)
+    words = plain_parts_warning(read(1.25 * PLAIN), NOTHING)
+    assert words is not None
+    assert "1.25 times as large" in words
+    assert "takes that for an inclusion" in words
+    assert "allows for one common factor" in str(plain_parts_warning(read(1.25 * PLAIN), replace(NOTHING, factor=1.25)))
+
+
+def test_a_lump_is_not_held_against_the_reference() -> None:
+    assert plain_parts_warning(read(with_lump()), LUMP) is None
+    missed = plain_parts_warning(read(with_lump()), NOTHING)
+    assert missed is not None
+    assert "nor any multiple of it" in missed
+    parts = plain_parts(read(PLAIN), LUMP)
+    assert parts is not None
+    assert parts.taxels == 2 * 6  # without the lump's own column of taxels, and the two beside it
+
+
+def test_nothing_is_said_without_a_reference_or_plain_parts() -> None:
+    assert plain_parts(Readings(PLAIN, LAYOUT, SIZE), NOTHING) is None
+    everywhere = tuple(EstimatedInclusion("unknown", (x, y, 10e-3)) for x in (10e-3, 30e-3) for y in (10e-3, 30e-3))
+    assert plain_parts(read(PLAIN), Estimate(True, everywhere, "lumps")) is None
+    assert plain_parts(replace(read(PLAIN), valid=np.arange(18).reshape(2, 3, 3) % 2 == 0), NOTHING).taxels == 9
