@@ -3,7 +3,8 @@
 python benchmarks/estimator_references.py --work FOLDER [--samples 64] [--out docs/verification]
 
 FOLDER keeps the plain grasps and the data set, which are not computed again. The grasps of ``cases/sweep_judged.yaml`` are drawn
-with a seed by which no setting of an estimator was chosen. They take some seconds each, the judging a quarter of an hour.
+with a seed by which no setting of ``model_based`` was chosen; the prior of ``hypotheses`` was changed after half of them were
+seen. They take some seconds each, the judging a quarter of an hour.
 """
 
 from __future__ import annotations
