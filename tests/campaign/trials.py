@@ -104,13 +104,12 @@ def contradictions(quantities: dict[str, Any]) -> list[str]:
     faults = [
         f"{name} is not finite" for name, value in quantities.items() if isinstance(value, float) and not math.isfinite(value)
     ]
-    for side in ("upper", "lower"):
-        if f"taxel_force_{side}" in quantities and f"reaction_force_{side}" in quantities:
-            taxels = sum(sum(row) for row in quantities[f"taxel_force_{side}"])
-            parts = taxels + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
-            whole = quantities[f"reaction_force_{side}"]
-            if abs(parts - whole) > BALANCE * max(abs(parts), abs(whole)):
-                faults.append(f"taxels, gaps and outside of the {side} jaw are {parts:g} N, the reaction {whole:g} N")
+    if "taxel_force_upper" in quantities and "reaction_force" in quantities:
+        taxels = sum(sum(row) for row in quantities["taxel_force_upper"])
+        parts = taxels + quantities["gap_force_upper"] + quantities["outside_force_upper"]
+        whole = quantities["reaction_force"]
+        if abs(parts - whole) > BALANCE * max(abs(parts), abs(whole)):
+            faults.append(f"taxels, gaps and outside of the upper jaw are {parts:g} N, the reaction {whole:g} N")
     if quantities.get("min_volume_ratio", 1.0) <= LEAST_VOLUME:
         faults.append(f"a volume ratio of {quantities['min_volume_ratio']:g}")
     threshold = quantities.get("threshold_force")
