@@ -82,9 +82,9 @@ def indentation(rng: Generator) -> Case:
         "displacement": length(thickness * rng.uniform(0.02, 0.25)),
         "mesh": {"growth": 0.6, "finest": length(outer / 25)},
     }
-    if body["kind"] == "annulus" and rng.random() < 0.7:
+    if body["kind"] == "annulus":
         case["recess"] = length(outer * rng.uniform(0.05, 0.3))
-    else:
+    if body["kind"] != "annulus" or rng.random() < 0.5:
         case["stop"] = "displacement"
     return case
 
@@ -111,8 +111,8 @@ def grasp(rng: Generator) -> Case:
 
 
 def _lump(rng: Generator, size: list[float], radius: float, place: int, count: int) -> Case:
-    """A ball in its share of the block, at least a third of its radius below every surface."""
-    room = 1.34 * radius
+    """A ball in its share of the block, at least 1 mm and a third of its radius below every surface."""
+    room = radius + max(radius / 3, 1e-3)
     low, high = size[0] * place / count + room, size[0] * (place + 1) / count - room
     middle = [rng.uniform(low, high) if high > low else (low + high) / 2, *(rng.uniform(room, s - room) for s in size[1:])]
     material = {"kind": "neo_hookean", "c10": f"{500 * 1000 ** rng.random():.4g} Pa"}

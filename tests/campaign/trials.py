@@ -15,7 +15,9 @@ from typing import Any
 from campaign.random_cases import random_case
 from tactsim.case.writing import yaml_text
 
-OUTCOMES = ("converged", "refused", "failed with reason", "stopped by time", "wrong", "hung")
+OUTCOMES = ("converged", "no threshold", "refused", "failed with reason", "stopped by time", "wrong", "hung")
+REASONS = {"took longer than": "stopped by time", "the threshold was not reached": "no threshold"}
+"""Beginnings of reasons that say more than that a run failed; a threshold beyond the displacement is an answer."""
 CODES = {0: "converged", 2: "refused", 3: "failed with reason"}
 PATIENCE = 30.0
 """Seconds beyond its own limit after which a run counts as hung."""
@@ -96,7 +98,8 @@ def judged(code: int, place: Path) -> tuple[str, str]:
     if code == 0:
         faults = contradictions({name: quantity["value"] for name, quantity in result["quantities"].items()})
         return ("wrong", "; ".join(faults)) if faults else ("converged", result["reason"])
-    return ("stopped by time" if result["reason"].startswith("took longer than") else CODES[code]), result["reason"]
+    named = (outcome for beginning, outcome in REASONS.items() if result["reason"].startswith(beginning))
+    return next(named, CODES[code]), result["reason"]
 
 
 def contradictions(quantities: dict[str, Any]) -> list[str]:

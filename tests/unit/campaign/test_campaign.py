@@ -43,6 +43,7 @@ def place(folder: Path, result: dict | None, words: str = "") -> Path:
         (0, GOOD, "", "converged"),
         (3, GOOD | {"status": "failed", "reason": "gave up"}, "", "failed with reason"),
         (3, GOOD | {"status": "failed", "reason": "took longer than the 60 s that it was given"}, "", "stopped by time"),
+        (3, GOOD | {"status": "failed", "reason": "the threshold was not reached within 1 mm"}, "", "no threshold"),
         (2, None, "error: a word", "refused"),
         (2, None, "", "wrong"),
         (1, None, "error: internal error", "wrong"),
