@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal, Self
 
-import numpy as np
 from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
+from tactsim.contact.own_axes import BodyInOwnAxes
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
-from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.registry import Registered
 from tactsim.units import Angle
 
@@ -20,7 +19,7 @@ TiltableBody = Annotated[RigidBody, Registered(RigidBody, lambda cls: {2, 3} <= 
 Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
 
 
-class Tilted(RigidBody):
+class Tilted(BodyInOwnAxes):
     """A body of revolution whose axis leans; its reference point, the middle of its face, stays at the origin."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
@@ -41,17 +40,6 @@ class Tilted(RigidBody):
     def rotation(self) -> Array:
         """Matrix (3, 3) that turns the body's own axes into those of the tissue."""
         return tilt_matrix(self.tilt_x, self.tilt_y)
-
-    @property
-    def contact_shape(self) -> ContactShape:
-        """That of the body that is turned."""
-        return self.body.contact_shape
-
-    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
-        """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""
-        turn = self.rotation
-        distance, normal, hessian = self.body.signed_distance(turn.T @ x)
-        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
 
     def own_coordinates(self, x: Array) -> Array:
         """Points (3, n) in m in the body's own axes, of which the third is that of its revolution."""

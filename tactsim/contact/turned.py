@@ -8,22 +8,20 @@ import numpy as np
 from pydantic import model_validator
 
 from tactsim.array import Array
+from tactsim.contact.own_axes import BodyInOwnAxes
 from tactsim.contact.plane import Plane
 from tactsim.interfaces import RigidBody
-from tactsim.interfaces.contact_shape import ContactShape
 
 UNIT = 1e-12
 """Error of the length of a unit vector that is round-off."""
 
 
-class Turned(RigidBody):
+class Turned(BodyInOwnAxes):
     """A body whose axis, which points away from the tissue, has any direction; its reference point stays at the origin.
 
     No kind of its own: case files name the body and the side it comes from.
     """
 
-    body: RigidBody
-    """The body that is turned."""
     axis: tuple[float, ...]
     """Unit vector from the tissue to the body, with as many components as there are coordinates."""
 
@@ -53,14 +51,3 @@ class Turned(RigidBody):
         first -= (first @ away) * away
         first /= np.linalg.norm(first)
         return np.column_stack([first, np.cross(away, first), away])
-
-    @property
-    def contact_shape(self) -> ContactShape:
-        """That of the body that is turned."""
-        return self.body.contact_shape
-
-    def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
-        """Distance in m, outward normal and Hessian in 1/m at points (d, n)."""
-        turn = self.rotation
-        distance, normal, hessian = self.body.signed_distance(turn.T @ x)
-        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
