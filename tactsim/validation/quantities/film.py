@@ -140,27 +140,19 @@ def film_resistance(
 
 @quantity(unit="1")
 def film_sensitivity(
-    number: Literal["drift", "exponent", "line_error", "printed_excess"],
-    composite: FilmComposite = LITERAL,
-    force: Force = 1.0,
-    time: Time = 60.0,
+    number: Literal["exponent", "line_error", "printed_excess"], composite: FilmComposite = LITERAL, force: Force = 1.0
 ) -> float:
     """How a film departs from an ideal one, dimensionless.
 
-    ``drift`` is the relative growth of the conductance until a time; ``exponent`` is d ln C / d ln F; ``line_error`` the largest
-    relative error of the resistance against the line of 3.1.2 from 0.5 to 5 N; ``printed_excess`` how much more 2.1.14 with
-    varying coefficients strains at once than 2.3.1.
+    ``exponent`` is d ln C / d ln F; ``line_error`` the largest relative error of the resistance against the line of 3.1.2 from
+    0.5 to 5 N; ``printed_excess`` how much more 2.1.14 with varying coefficients strains at once than 2.3.1.
 
     Parameters
     ----------
     number : which of them
     force : constant force on the reference area
-    time : time since it began
     """
     film = Film(composite=composite)
-    if number == "drift":
-        first, last = film.conductance([0.0, time], [force] * 2)
-        return float(last / first - 1)
     if number == "exponent":
         return float(film.sensitivity([0.0], [force])[0] * force / film.conductance([0.0], [force])[0])
     if number == "line_error":
