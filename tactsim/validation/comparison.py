@@ -110,7 +110,8 @@ def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
     def figure(match: re.Match[str]) -> str:
         if match[1] == "ratio":
             return "?" if outcome.ratio is None else f"{outcome.ratio:.3g}"
-        return figure_text(outcome if match[1] == "computed" else computed[match[1]], 3)
+        other = outcome if match[1] == "computed" else computed.get(match[1])
+        return match[0] if other is None else figure_text(other, 3)  # one that no row has is a fault of the table
 
     return FIGURE.sub(figure, outcome.reason) if outcome.computed is not None else outcome.reason
 

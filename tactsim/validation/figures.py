@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,6 +22,8 @@ from tactsim.validation.comparison import RowOutcome
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
 POINTS_SHOWN = 40
+WIDTH_OF_CHAPTER = 0.8
+"""Part of the distance of two chapters that the points of one take."""
 
 
 def validation_figure(data: dict[str, Any]) -> bytes:
@@ -49,19 +52,19 @@ def overview(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mappi
 
 def overview_figure(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> Figure:
     """The figure of `overview`."""
-    names = list(dict.fromkeys(chapters))
+    names, places = list(dict.fromkeys(chapters)), _places(chapters)
     figure = new_figure(9.5, 5.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3.2, 1.0))
     labels = [label for label in colours if any(row.label == label for row in rows)]
     for height, label in enumerate(labels):
         for axis, with_ratio in ((upper, True), (lower, False)):
             chosen = [k for k, row in enumerate(rows) if row.label == label and _has_ratio(row) == with_ratio]
-            x = [names.index(chapters[k]) + _spread(k, chapters) for k in chosen]
+            x = [places[k] for k in chosen]
             y = [rows[k].ratio if with_ratio else len(labels) - height for k in chosen]
             axis.plot(x, y, "o", markersize=4.5, markeredgewidth=0.4, markeredgecolor="white", color=colours[label])
     upper.set_yscale("log")
     upper.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
-    upper.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    _label_decades(upper)
     upper.set_ylabel("computed over expected")
     lower.set_ylabel("no ratio")
     lower.set_yticks([])
@@ -81,10 +84,14 @@ def _has_ratio(row: RowOutcome) -> bool:
     return row.ratio is not None and row.ratio > 0
 
 
-def _spread(place: int, chapters: Sequence[str]) -> float:
-    """Offset of a point within its chapter, so that the rows stand side by side in their order."""
-    own = [k for k, chapter in enumerate(chapters) if chapter == chapters[place]]
-    return 0.8 * ((own.index(place) + 0.5) / len(own) - 0.5)
+def _places(chapters: Sequence[str]) -> list[float]:
+    """Place of each point along the axis: chapter by chapter, the rows of a chapter side by side in their order."""
+    counts, seen = Counter(chapters), Counter[str]()
+    names, places = list(counts), []
+    for chapter in chapters:
+        places.append(names.index(chapter) + WIDTH_OF_CHAPTER * ((seen[chapter] + 0.5) / counts[chapter] - 0.5))
+        seen[chapter] += 1
+    return places
 
 
 def ranges_figure(data: dict[str, Any]) -> Figure:
@@ -157,9 +164,7 @@ def _draw_curves(axis: Axes, panel: dict[str, Any]) -> None:
             axis.plot(x, y, next(styles), label=curve["label"])
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
     if panel.get("logarithmic"):
-        axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        low, high = axis.get_ylim()
-        axis.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}") if high < 10 * low else NullFormatter())
+        _label_decades(axis)
     axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
     despined(axis)
 
@@ -205,3 +210,11 @@ def images_figure(data: dict[str, Any]) -> Figure:
     axes[-1].set_xlabel(data["axis"])
     entitle(figure, data["title"])
     return figure
+
+
+def _label_decades(axis: Axes) -> None:
+    """Plain numbers along a logarithmic vertical axis, between the decades too where there is less than one."""
+    plain = FuncFormatter(lambda value, _: f"{value:g}")
+    low, high = axis.get_ylim()
+    axis.yaxis.set_major_formatter(plain)
+    axis.yaxis.set_minor_formatter(plain if high < 10 * low else NullFormatter())

@@ -123,3 +123,5 @@ def test_the_run_fills_in_the_figures_of_a_reason(tmp_path: Path) -> None:
 def test_a_figure_that_no_row_has_is_a_fault(tmp_path: Path) -> None:
     loaded = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", "500 Pa").replace("{runs} runs", "{rnus} runs")))
     assert loaded.faults == ("small: the reason of pressure has a figure {rnus}, which is no row of the table",)
+    studies = {"icf": (run("a", 20e3), run("b", 40e3))}
+    assert "{rnus} runs" in compare("small", loaded.tables["small"], tmp_path, studies).rows[0].reason
