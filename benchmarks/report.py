@@ -1,6 +1,6 @@
 """Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
 
-python benchmarks/report.py [--readme] [--peers [FILE]]
+python benchmarks/report.py [--readme] [--peers [FILE]] [--history]
 """
 
 from __future__ import annotations
@@ -12,14 +12,17 @@ import platform
 import sys
 from pathlib import Path
 
+import against
 import assembly
 import commands
 import data_sets
 import figures as pictures
 import grasp
+import history
 import localization
 import peers
 import sensor_chain
+import stretch
 import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
@@ -72,6 +75,8 @@ def table(figures: dict[str, dict[str, float]]) -> str:
         ),
         *pictures.rows(figures["figures"]),
         *_data_sets(figures["data_sets"]),
+        *against.rows(figures["against"]),
+        *stretch.rows(figures["stretch"]),
         *_against_peers(figures.get("peers")),
     ]
     lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
@@ -116,11 +121,14 @@ def main() -> None:
     parser.add_argument(
         "--peers", nargs="?", const="", help="also solve one block with other programs (minutes), or take what peers.py printed"
     )
+    parser.add_argument("--history", action="store_true", help=f"add the figures to {history.HISTORY.name}")
     arguments = parser.parse_args()
-    parts = (assembly, viscoelasticity, commands, pictures, grasp, sensor_chain, localization, data_sets)
+    parts = (assembly, viscoelasticity, commands, pictures, grasp, sensor_chain, localization, data_sets, stretch, against)
     figures: dict[str, dict] = {part.__name__: part.measure() for part in parts}
     if arguments.peers is not None:
         figures["peers"] = peers.measure() if arguments.peers == "" else _printed(Path(arguments.peers))
+    if arguments.history:
+        history.append(figures)
     text = table(figures)
     sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
     if arguments.readme:

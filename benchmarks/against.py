@@ -1,0 +1,165 @@
+"""This commit against an earlier one: whole commands, by turns, in one run; medians and their ratios.
+
+python benchmarks/against.py [--base COMMIT] [--repeats 5] [NAME ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+ROOT = Path(__file__).parents[1]
+BASE = "26a5475"
+REPEATS = 5
+SAMPLES = 20
+"""Of a sweep."""
+LUMPS = ("--set", "experiment.contact.friction=0.6", "--set", "experiment.loading.pieces.0.to=1 mm")
+EACH_ONCE = ("--set", "sweep.within_specimen=[]", "--set", "sweep.samples_per_specimen=1")
+"""Friction and closing of the figure that is asked for, each lump once; the sweeps themselves vary them."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A command, how many answers it gives, and what is asked: seconds for a run, answers per hour for a sweep."""
+
+    arguments: tuple[str, ...]
+    asked: float
+    answers: int = 0
+
+    def figure(self, seconds: float) -> float:
+        """Seconds, or answers per hour."""
+        return 3600 * self.answers / seconds if self.answers else seconds
+
+
+def _run(case: str) -> tuple[str, ...]:
+    return ("run", f"cases/{case}.yaml", "--quiet")
+
+
+def _sweep(case: str, *options: str) -> tuple[str, ...]:
+    return ("sweep", f"cases/{case}.yaml", "--quiet", "--samples", str(SAMPLES), *options)
+
+
+JOBS = {
+    "annulus_icf": Job(_run("annulus_icf"), 5.0),
+    "grasp_lump_icf": Job(_run("grasp_lump_icf"), 5.0),
+    "atrial_annulus": Job(_run("atrial_annulus"), 15.0),
+    "sweep_lumps": Job(_sweep("sweep_lumps", *LUMPS, *EACH_ONCE), 4000.0, SAMPLES),
+    "sweep_classes": Job(_sweep("sweep_classes"), 1000.0, SAMPLES),
+}
+
+
+@dataclass(frozen=True)
+class Spent:
+    """What a command took in s: by the clock, of processors, and of the clock without figures where its result tells."""
+
+    seconds: float
+    processor_seconds: float
+    solving_seconds: float | None
+
+
+def measure(names: Sequence[str] = tuple(JOBS), base: str = BASE, repeats: int = REPEATS) -> dict[str, dict[str, float]]:
+    """Medians of each job here and at the base, which take turns, after a run of each that compiles and fills its caches."""
+    figures: dict[str, dict[str, float]] = {}
+    with _checkout(base) as earlier, tempfile.TemporaryDirectory() as work:
+        for name in names:
+            job = JOBS[name]
+            taken: dict[str, list[Spent]] = {"base": [], "here": []}
+            for turn in range(repeats + 1):
+                for side, place in (("base", earlier), ("here", ROOT)):
+                    spent = _spent(job, place, Path(work) / side, f"{name}_{turn}")
+                    if turn:
+                        taken[side].append(spent)
+            figures[name] = _summed_up(job, taken)
+    return figures
+
+
+def _summed_up(job: Job, taken: dict[str, list[Spent]]) -> dict[str, float]:
+    figures = {"asked": job.asked}
+    for side, runs in taken.items():
+        seconds = median(spent.seconds for spent in runs)
+        figures |= {side: job.figure(seconds), f"{side}_seconds": seconds}
+        figures[f"{side}_processor_seconds"] = median(spent.processor_seconds for spent in runs)
+        if all(spent.solving_seconds is not None for spent in runs):
+            figures[f"{side}_solving_seconds"] = median(spent.solving_seconds or 0.0 for spent in runs)
+    figures["ratio"] = figures["base_seconds"] / figures["here_seconds"]
+    return figures
+
+
+@contextmanager
+def _checkout(commit: str) -> Iterator[Path]:
+    """The files of a commit in a folder of their own, which is removed at the end."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder) / "base"
+        git = ["git", "-C", str(ROOT), "worktree"]
+        subprocess.run([*git, "add", "--quiet", "--detach", str(place), commit], check=True)
+        try:
+            yield place
+        finally:
+            subprocess.run([*git, "remove", "--force", str(place)], check=True)
+
+
+def _spent(job: Job, place: Path, work: Path, name: str) -> Spent:
+    """One run of a job with the package of a place; its caches are its own."""
+    work.mkdir(exist_ok=True)
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(place),
+        "NUMBA_CACHE_DIR": str(work / "compiled"),
+        "XDG_CACHE_HOME": str(work / "cache"),
+    }
+    out = work / name
+    command = [sys.executable, "-m", "tactsim.cli", *job.arguments, "--out", str(out)]
+    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    done = subprocess.run(command, cwd=place, env=environment, check=False, capture_output=True, text=True)
+    seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode not in ((0, 3) if job.answers else (0,)):  # samples that failed are counted in the store
+        raise RuntimeError(f"{' '.join(command)} in {place} ended with {done.returncode}: {done.stderr[-500:]}")
+    used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Spent(seconds, used, _solving_seconds(out / "result.json"))
+
+
+def _solving_seconds(result: Path) -> float | None:
+    """Seconds from the case to the last state, figures not counted, if this is the result of a run."""
+    if not result.exists():
+        return None
+    timing = json.loads(result.read_text())["timing"]
+    return float(timing["total"])
+
+
+def rows(figures: dict[str, dict[str, float]]) -> list[tuple[str, str, str]]:
+    """Rows of the performance table: what, what is asked, what was measured here and at the base."""
+    made = []
+    for name, taken in figures.items():
+        per_hour = JOBS[name].answers > 0
+        unit = " per hour" if per_hour else " s"
+        solving = "" if "here_solving_seconds" not in taken else f" ({taken['here_solving_seconds']:.1f} s without figures)"
+        measured = f"{taken['here']:.3g}{unit}{solving}, {taken['ratio']:.1f} times as fast as {BASE} ({taken['base']:.3g}{unit})"
+        made.append((f"`{name}.yaml`, {'samples' if per_hour else 'whole command'}", f"{taken['asked']:g}{unit}", measured))
+    return made
+
+
+def main() -> None:
+    """Print figures as JSON and as a table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", metavar="NAME", nargs="*", default=list(JOBS), help=f"of {', '.join(JOBS)}; all by default")
+    parser.add_argument("--base", default=BASE, help="commit to compare with; default: %(default)s")
+    parser.add_argument("--repeats", type=int, default=REPEATS, help="runs of each; default: %(default)s")
+    arguments = parser.parse_args()
+    figures = measure(arguments.names, arguments.base, arguments.repeats)
+    table = "\n".join(f"| {' | '.join(row)} |" for row in rows(figures))
+    sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{table}\n")
+
+
+if __name__ == "__main__":
+    main()
