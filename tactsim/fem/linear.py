@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import platform
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -23,10 +24,15 @@ LOOSENESS = 10.0
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well as its own."""
+    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well: made only where it is used."""
 
     matrix: csr_matrix
-    nearby: csr_matrix
+    make_nearby: Callable[[], csr_matrix] | None = None
+
+    @property
+    def nearby(self) -> csr_matrix:
+        """The nearby matrix, by default the matrix itself."""
+        return self.matrix if self.make_nearby is None else self.make_nearby()
 
 
 class DirectSolver(Protocol):
@@ -106,9 +112,15 @@ class SuperLU:
 
 
 def solved(
-    solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0, nearby: csr_matrix | None = None
+    solver: LinearSolver,
+    matrix: csr_matrix,
+    right: Array,
+    accuracy: float = 0.0,
+    nearby: Callable[[], csr_matrix] | None = None,
 ) -> Array:
     """Checked solution (n,) of one linear system, to an error over its size of ``accuracy`` by an iterative solver.
+
+    ``nearby`` makes the nearby matrix of the `LinearSystem`.
 
     Neither solver reports a singular matrix reliably: both replace zero pivots and return huge numbers.
 
@@ -118,7 +130,7 @@ def solved(
         If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
     """
     if isinstance(solver, IterativeSolver):
-        solver.factor(LinearSystem(matrix, matrix if nearby is None else nearby))
+        solver.factor(LinearSystem(matrix, nearby))
     else:
         solver.factor(matrix)
     return resolved(solver, matrix, right, accuracy)

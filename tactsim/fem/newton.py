@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
@@ -201,17 +202,20 @@ class _Solution:
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
         constraints, solver = self._balance.constraints, self._solver
         residual, data = state.internal.copy(), body.tangent(state.unknowns, state.kinematics)
-        coupling = np.zeros(len(data))
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
-            data += interface.surface.stiffness(force.derivative)
-            if force.coupling.any():
-                coupling += interface.surface.stiffness(force.coupling)
+            interface.surface.add_stiffness(data, force.derivative)
         u, _ = body.space.split(state.unknowns)
         for load in self._forces.loads:
             data += load.stiffness(u)
         matrix = body.pattern.matrix(constraints.apply(data))
-        nearby = body.pattern.matrix(constraints.apply(data - coupling)) if coupling.any() else matrix
+
+        def nearby() -> csr_matrix:
+            uncoupled = data.copy()
+            for interface, force in zip(interfaces, now, strict=True):
+                interface.surface.add_stiffness(uncoupled, -force.coupling)
+            return body.pattern.matrix(constraints.apply(uncoupled))
+
         step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
         if control is None:
             return _Step(step, 0.0)

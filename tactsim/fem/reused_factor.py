@@ -34,14 +34,12 @@ class ReusedFactor(IterativeSolver):
         self.name = f"{direct.name}, reused"
         self.factorisations = self.solutions = 0
         self._direct = direct
-        self._matrix: csr_matrix | None = None
-        self._nearby: csr_matrix | None = None
+        self._system: LinearSystem | None = None
         self._current, self._spent = False, WORTH_A_FACTOR
 
     def factor(self, system: LinearSystem) -> None:
         """Keep the system; its nearby matrix is factored only once the last factor no longer pays."""
-        self._matrix, self._nearby = system.matrix, system.nearby
-        self._current = False
+        self._system, self._current = system, False
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,) of the last matrix, its residual over the right-hand side below ``accuracy``.
@@ -53,34 +51,37 @@ class ReusedFactor(IterativeSolver):
         ConvergenceError
             If the right-hand side holds numbers that are not finite.
         """
-        if self._matrix is None:
+        if self._system is None:
             raise InputError("factor a matrix before solving")
         if not np.isfinite(right).all():
             raise ConvergenceError("the right-hand side holds numbers that are not finite")
+        matrix, begin = self._system.matrix, None
         if not right.any():
             return np.zeros_like(right)
         if not self._current and self._spent < WORTH_A_FACTOR:
-            solution, reached = self._iterated(right, max(accuracy, FINEST), cycles=1)
+            begin, reached = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=1)
             if reached:
-                return solution
+                return begin
         if not self._current:
-            self._direct.factor(self._nearby)
+            self._direct.factor(self._system.nearby)
             self.factorisations += 1
             self._current, self._spent = True, 0
-        solution, _ = self._iterated(right, max(accuracy, FINEST), cycles=MOST_CYCLES)
+        solution, _ = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
         return solution
 
     def close(self) -> None:
         """Release the factor's memory."""
         self._direct.close()
-        self._matrix, self._nearby, self._current, self._spent = None, None, False, WORTH_A_FACTOR
+        self._system, self._current, self._spent = None, False, WORTH_A_FACTOR
 
-    def _iterated(self, right: Array, accuracy: float, *, cycles: int) -> tuple[Array, bool]:
+    def _iterated(
+        self, matrix: csr_matrix, right: Array, begin: Array | None, accuracy: float, *, cycles: int
+    ) -> tuple[Array, bool]:
         """Solution by flexible GMRES, which measures the true residual even with a rounded factor; whether it converged."""
-        guide = LinearOperator((len(right), len(right)), matvec=self._counted, dtype=float)
+        guide = LinearOperator(matrix.shape, matvec=self._counted, dtype=float)
         restart = MOST_OF_ONE - 1  # and one more direction instead of those of the cycle before
-        solution, _ = gcrotmk(self._matrix, right, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)
-        left = np.linalg.norm(self._matrix @ solution - right) / np.linalg.norm(right)
+        solution, _ = gcrotmk(matrix, right, begin, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)
+        left = np.linalg.norm(matrix @ solution - right) / np.linalg.norm(right)
         return solution, bool(left <= 2 * accuracy)
 
     def _counted(self, vector: Array) -> Array:

@@ -19,7 +19,7 @@ class SurfaceAssembly:
         facets = self.unknowns[:: points.per_facet]
         rows = np.repeat(facets[:, :, None], width, axis=2)
         places = pattern.positions(rows, rows.transpose(0, 2, 1)).reshape(len(facets), width // dim, dim, width // dim, dim)
-        self._positions = places.transpose(2, 4, 0, 1, 3).ravel()
+        self._places, self._positions = np.unique(places.transpose(2, 4, 0, 1, 3).ravel(), return_inverse=True)
         values = points.values[: points.per_facet]
         self._products = np.einsum("qa,qb->qab", values, values).reshape(len(values), -1)
         self._entries = len(pattern.indices)
@@ -37,8 +37,13 @@ class SurfaceAssembly:
 
     def stiffness(self, derivative: Array) -> Array:
         """Tangent entries, minus the derivative of the external force, for d(traction)/dx of shape (d, d, n) in Pa/m."""
+        return self.add_stiffness(np.zeros(self._entries), derivative)
+
+    def add_stiffness(self, data: Array, derivative: Array) -> Array:
+        """The tangent entries ``data`` of the whole body with those of ``stiffness`` added to them, in place."""
         weighted = (-self.points.weights * derivative).reshape(-1, self.points.per_facet)
-        return np.bincount(self._positions, (weighted @ self._products).ravel(), self._entries)
+        data[self._places] += np.bincount(self._positions, (weighted @ self._products).ravel(), len(self._places))
+        return data
 
     def total(self, traction: Array) -> Array:
         """Resultant (d,) in N."""

@@ -13,7 +13,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem import pardiso
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
-from tactsim.fem.reused_factor import ReusedFactor
+from tactsim.fem.reused_factor import MOST_OF_ONE, ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -188,3 +188,28 @@ def test_a_factor_too_old_is_made_again_and_closing_forgets_it():
     solver.close()
     with pytest.raises(InputError, match="factor a matrix"):
         solver.solve(right)
+
+
+def test_the_nearby_matrix_is_made_only_where_it_is_factored():
+    matrix, right = tangent_of(3, axes=3)
+    solver, made = ReusedFactor(direct_solver("pardiso_single")), []
+
+    def nearby():
+        made.append(solver.factorisations)
+        return matrix
+
+    for amount in (0.0, 1e-3, 2e-3):
+        solved(solver, changed(matrix, amount), right, 1e-6, nearby)
+    assert made == [0]
+
+
+def test_an_iteration_that_an_old_factor_does_not_finish_goes_on_with_the_new_one():
+    matrix, right = tangent_of(3, axes=3)
+    now = changed(matrix, 0.2, skew=0.05)
+    solver, fresh = (ReusedFactor(direct_solver("pardiso_single")) for _ in range(2))
+    solved(solver, matrix, right, 1e-8)
+    before = solver.solutions
+    solved(solver, now, right, 1e-8)
+    solved(fresh, now, right, 1e-8)
+    assert solver.factorisations == 2
+    assert solver.solutions - before - MOST_OF_ONE < fresh.solutions

@@ -1,0 +1,25 @@
+"""How much is solved for a grasp: counts of systems, factors and solutions, whatever the machine."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.path import grasp_path
+from tactsim.fem.reused_factor import ReusedFactor
+
+SYSTEMS, FACTORS, SOLUTIONS = 20, 5, 140
+"""Most for the example, which closes in two steps. Without multipliers extrapolated from the first step, or with every system
+factored, there are more; it takes 20, 5 and 133."""
+
+
+def test_a_grasp_factors_rarely_and_solves_little(one_thread):
+    grasp = Grasp.example()
+    model = grasp.model(grasp.sourced())
+    states = [state for state, _ in grasp_path(grasp, model).states()]
+    solver = model.problem.solver
+    if not isinstance(solver, ReusedFactor):
+        pytest.skip("without Pardiso every system is factored")
+    assert sum(state.iterations for state in states) <= SYSTEMS
+    assert solver.factorisations <= FACTORS
+    assert solver.solutions <= SOLUTIONS
