@@ -16,7 +16,7 @@ from tactsim.fem.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
-from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
+from tactsim.fem.linear import IterativeSolver, LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.prescribed_force import PrescribedForce
 
@@ -26,6 +26,8 @@ CYCLE_RATIO = 0.9
 FORCING, LARGEST_FORCING = 0.05, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
+NEAR = 0.1
+"""Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
 
@@ -142,7 +144,14 @@ class _Solution:
         if kinematics is None:
             worst = inside_out_in_words(self._body, self._body.kinematics(unknowns))
             raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
-        return self._balance.at(unknowns, kinematics, rigid_displacement)
+        state = self._balance.at(unknowns, kinematics, rigid_displacement)
+        if state.residual < NEAR:
+            self._iterates = self._forces_at(state)
+        return state
+
+    def _forces_at(self, state: NewtonState) -> list[Any]:
+        """The forces of the interfaces that belong to the displacement."""
+        return [i.iterate_at(d) for i, d in zip(self._forces.interfaces, state.displacements, strict=True)]
 
     def _iterated(self, state: NewtonState) -> NewtonState:
         """The state after one more step; the iterated forces follow."""
@@ -150,7 +159,7 @@ class _Solution:
         if not self._searching and self._cycles():
             self._searching = True
         if self._searching:
-            self._iterates = [i.iterate_at(d) for i, d in zip(interfaces, state.displacements, strict=True)]
+            self._iterates = self._forces_at(state)
         now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.displacements, self._iterates, strict=True)]
         step = self._linear_step(state, now)
         damping, after = self._searched(state, step, *self._damped(state, step))
@@ -201,17 +210,18 @@ class _Solution:
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
         constraints, solver = self._balance.constraints, self._solver
         residual, data = state.internal.copy(), body.tangent(state.unknowns, state.kinematics)
-        coupling = np.zeros(len(data))
+        coupling = np.zeros(len(data)) if isinstance(solver, IterativeSolver) else None
         for interface, force in zip(interfaces, now, strict=True):
             residual -= interface.surface.force(force.traction)
             data += interface.surface.stiffness(force.derivative)
-            if force.coupling.any():
+            if coupling is not None and force.coupling.any():
                 coupling += interface.surface.stiffness(force.coupling)
         u, _ = body.space.split(state.unknowns)
         for load in self._forces.loads:
             data += load.stiffness(u)
         matrix = body.pattern.matrix(constraints.apply(data))
-        nearby = body.pattern.matrix(constraints.apply(data - coupling)) if coupling.any() else matrix
+        coupled = coupling is not None and coupling.any()
+        nearby = body.pattern.matrix(constraints.apply(data - coupling)) if coupled else matrix
         step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
         if control is None:
             return _Step(step, 0.0)
