@@ -61,10 +61,10 @@ def test_a_body_without_a_boundary_condition_is_an_error_with_a_diagnosis(dim, n
 @pytest.mark.parametrize("dim", [2, 3])
 def test_too_few_iterations_raise_with_the_history(dim):
     body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))
-    problem = Problem(body, fixed, options=NewtonOptions(max_iterations=2))
-    with pytest.raises(ConvergenceError, match="did not converge in 3 iterations") as caught:
+    problem = Problem(body, fixed, options=NewtonOptions(max_iterations=1))
+    with pytest.raises(ConvergenceError, match="did not converge in 2 iterations") as caught:
         problem.solve(np.zeros(body.space.size), nodal_force=force)
-    assert len(caught.value.history) == 3
+    assert len(caught.value.history) == 2
     assert np.isfinite(caught.value.history).all()
 
 
