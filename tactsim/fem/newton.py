@@ -18,7 +18,8 @@ from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
 from tactsim.fem.linear import IterativeSolver, LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.prescribed_force import Border, PrescribedForce
+from tactsim.fem.newton_step import Factored, NewtonStep, bordered
+from tactsim.fem.prescribed_force import PrescribedForce
 
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
@@ -28,12 +29,8 @@ FORCING, LARGEST_FORCING = 0.05, 1e-2
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
 NEAR = 0.1
 """Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
-POLISHED, CONTRACTION = 0.1, 0.3
-"""Residual below which steps with the last factor of a direct solver follow a step, and by how much each must shrink it.
-
-Near the solution the contact no longer changes, and an old tangent is good enough: such a step costs a quarter of one with a new
-tangent in a section of 10 000 unknowns (the modified Newton method; Kelley 1995, doi:10.1137/1.9781611970944, section 5.4). A bad
-step is found by its residual and dropped, whatever the factor is of, so that it may be that of the solution before."""
+CONTRACTION = 0.3
+"""A step with an old factor that leaves more than this part of the residual is dropped."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
 
@@ -64,7 +61,7 @@ class Problem:
         self.solver = solver or direct_solver()
         self.options = options or NewtonOptions()
         self._scales = Scales.of(body)
-        self._factored: _Factored | None = None
+        self._factored: Factored | None = None
 
     def solve(
         self,
@@ -116,34 +113,11 @@ class Problem:
         return point_displacements(self.body, unknowns, interfaces, load_control, rigid_displacement)
 
 
-@dataclass(frozen=True)
-class _Step:
-    """A step of the ``unknowns`` (size,), and of the ``rigid_displacement`` of the interfaces in m under load control."""
-
-    unknowns: Array
-    rigid_displacement: float
-
-
-@dataclass(frozen=True)
-class _Factored:
-    """A factor that the solver holds, and the solution ``along`` the border (size,) with it under load control."""
-
-    along: Array | None
-
-
-def _bordered(step: Array, border: Border | None, along: Array | None) -> _Step:
-    """The step with that of the rigid displacement, if the force is prescribed."""
-    if border is None or along is None:
-        return _Step(step, 0.0)
-    rigid_displacement = border.displacement_step(step, along)
-    return _Step(step + rigid_displacement * along, rigid_displacement)
-
-
 class _Solution:
     """The iterations of one solution, until the relative residual is below ``goal``."""
 
     def __init__(
-        self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float, factored: _Factored | None = None
+        self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float, factored: Factored | None = None
     ):
         self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
         self._body, self._forces = balance.body, balance.forces
@@ -196,7 +170,7 @@ class _Solution:
         both = zip(self._forces.interfaces, state.displacements, self._iterates, strict=True)
         return [interface.linearised(displacement, iterate) for interface, displacement, iterate in both]
 
-    def _advance_iterates(self, now: Sequence[LinearisedContact], step: _Step, damping: float) -> None:
+    def _advance_iterates(self, now: Sequence[LinearisedContact], step: NewtonStep, damping: float) -> None:
         interfaces = self._forces.interfaces
         moves = point_displacements(self._body, step.unknowns, interfaces, self._forces.load_control, step.rigid_displacement)
         together = zip(interfaces, now, self._iterates, moves, strict=True)
@@ -208,7 +182,7 @@ class _Solution:
             return state
         if self._forces.load_control is not None and self.factored.along is None:
             return state
-        while self._goal <= state.residual < POLISHED:
+        while self._goal <= state.residual < self._options.polished:
             now = self._linearised(state)
             step = self._step_with_last_factor(state, now)
             kinematics = self._admissible(state.unknowns + step.unknowns, self._options.volume_floor)
@@ -231,7 +205,9 @@ class _Solution:
             raise ConvergenceError(f"after {len(history)} iterations {where} is no finite number", history)
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
-    def _searched(self, before: NewtonState, step: _Step, damping: float, kinematics: Kinematics) -> tuple[float, NewtonState]:
+    def _searched(
+        self, before: NewtonState, step: NewtonStep, damping: float, kinematics: Kinematics
+    ) -> tuple[float, NewtonState]:
         """The step length and the state after it; once the residual has cycled, halved until the unbalanced forces shrink."""
         for halved in range((self._options.search_halvings if self._searching else 0) + 1):
             if halved:
@@ -258,7 +234,7 @@ class _Solution:
             return True
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
-    def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> _Step:
+    def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
         needed = SHARE_OF_TOLERANCE * self._goal / state.residual
         accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
@@ -279,10 +255,10 @@ class _Solution:
         step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
         along = None if border is None else resolved(solver, matrix, constraints.free(border.column), accuracy)
-        self.factored = _Factored(along)
-        return _bordered(step, border, along)
+        self.factored = Factored(along)
+        return bordered(step, border, along)
 
-    def _step_with_last_factor(self, state: NewtonState, now: Sequence[LinearisedContact]) -> _Step:
+    def _step_with_last_factor(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Step by the last tangent, of which the solver holds the factor."""
         control, interfaces = self._forces.load_control, self._forces.interfaces
         residual = state.internal.copy()
@@ -290,9 +266,9 @@ class _Solution:
             residual -= interface.surface.force(force.traction)
         step = self._solver.solve(-self._balance.constraints.free(residual))
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
-        return _bordered(step, border, None if self.factored is None else self.factored.along)
+        return bordered(step, border, None if self.factored is None else self.factored.along)
 
-    def _damped(self, before: NewtonState, step: _Step) -> tuple[float, Kinematics]:
+    def _damped(self, before: NewtonState, step: NewtonStep) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""
         floor, damping = self._options.volume_floor * min(1.0, float(before.kinematics.J.min())), 1.0
         while damping >= self._options.smallest_damping:
