@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-import scipy
-
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
+from tactsim.fem.event import between, crossing
 from tactsim.fem.progress import Headway, check_steps
 from tactsim.units import format_quantity
 
@@ -98,7 +97,7 @@ class PathFollower(Generic[State]):
                 reached = self._advance(now, load, _predicted(before, now, load))
                 happened = event is not None and event.value(reached) >= 0
                 if event is not None and happened:
-                    reached = self._located(event, now, reached)
+                    reached = self._located(event, before, now, reached)
             except ConvergenceError as error:
                 self.rejected += 1
                 step = (load - now.load) * self._control.cut
@@ -114,22 +113,16 @@ class PathFollower(Generic[State]):
                 return
             headway.spent(now.iterations, now.load, (target - now.load) / self._control.largest)
 
-    def _located(self, event: Event[State], before: State, after: State) -> State:
-        """The state at the event, which lies between the two."""
-        values = {before.load: event.value(before), after.load: event.value(after)}
-        states = {after.load: after}
+    def _located(self, event: Event[State], earlier: State | None, before: State, after: State) -> State:
+        """The state at the event, which lies between the two; ``earlier`` is the one before both."""
+        states = {before.load: before, after.load: after}
 
         def value(load: float) -> float:
-            if load not in values:
-                share = (load - before.load) / (after.load - before.load)
-                guess = (1 - share) * before.unknowns + share * after.unknowns
-                states[load] = self._advance(before, load, guess)
-                values[load] = event.value(states[load])
-            return values[load]
+            states[load] = self._advance(before, load, between(states, load))
+            return event.value(states[load])
 
-        root = scipy.optimize.brentq(value, before.load, after.load, xtol=event.tolerance)
-        value(root)
-        return states.get(root, after)
+        known = {state.load: event.value(state) for state in (earlier, before, after) if state is not None}
+        return states[crossing(value, known, (before.load, after.load), event.tolerance)]
 
 
 def _predicted(before: State | None, now: State, load: float) -> Array:

@@ -17,8 +17,9 @@ from tactsim.fem.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
-from tactsim.fem.linear import LinearSolver, direct_solver, resolved, solved
+from tactsim.fem.linear import IterativeSolver, LinearSolver, direct_solver, resolved, solved
 from tactsim.fem.newton_options import NewtonOptions
+from tactsim.fem.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.prescribed_force import PrescribedForce
 
 CYCLE_AFTER = 6
@@ -27,6 +28,10 @@ CYCLE_RATIO = 0.9
 FORCING, LARGEST_FORCING = 0.05, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
 nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
+NEAR = 0.1
+"""Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
+CONTRACTION = 0.3
+"""A step with an old factor that leaves more than this part of the residual is dropped."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
 
@@ -57,6 +62,7 @@ class Problem:
         self.solver = solver or direct_solver()
         self.options = options or NewtonOptions()
         self._scales = Scales.of(body)
+        self._factored: Factored | None = None
 
     def solve(
         self,
@@ -90,9 +96,11 @@ class Problem:
         """
         forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
         balance = self.balance(forces, relaxation)
-        return _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse)).run(
-            guess.copy(), rigid_displacement
-        )
+        solution = _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse), self._factored)
+        try:
+            return solution.run(guess.copy(), rigid_displacement)
+        finally:
+            self._factored = solution.factored
 
     def balance(self, forces: ExternalForces, relaxation: RelaxationStep | None = None) -> Balance:
         """What measures how far a state under these forces is from equilibrium; ``relaxation`` as in `solve`."""
@@ -106,23 +114,18 @@ class Problem:
         return point_displacements(self.body, unknowns, interfaces, load_control, rigid_displacement)
 
 
-@dataclass(frozen=True)
-class _Step:
-    """A step of the ``unknowns`` (size,), and of the ``rigid_displacement`` of the interfaces in m under load control."""
-
-    unknowns: Array
-    rigid_displacement: float
-
-
 class _Solution:
     """The iterations of one solution, until the relative residual is below ``goal``."""
 
-    def __init__(self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float):
+    def __init__(
+        self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float, factored: Factored | None = None
+    ):
         self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
         self._body, self._forces = balance.body, balance.forces
         self._iterates: list[Any] = [interface.start() for interface in self._forces.interfaces]
         self._history: list[float] = []
         self._halvings, self._searching = 0, False
+        self.factored = factored
 
     def run(self, guess: Array, rigid_displacement: float) -> Equilibrium:
         """The equilibrium; raises as `Problem.solve` says."""
@@ -143,22 +146,57 @@ class _Solution:
         if kinematics is None:
             worst = inside_out_in_words(self._body, self._body.kinematics(unknowns))
             raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
-        return self._balance.at(unknowns, kinematics, rigid_displacement)
+        state = self._balance.at(unknowns, kinematics, rigid_displacement)
+        if state.residual < NEAR:
+            self._iterates = self._forces_at(state)
+        return self._polished(state)
+
+    def _forces_at(self, state: NewtonState) -> list[Any]:
+        """The forces of the interfaces that belong to the displacement."""
+        return [i.iterate_at(d) for i, d in zip(self._forces.interfaces, state.displacements, strict=True)]
 
     def _iterated(self, state: NewtonState) -> NewtonState:
         """The state after one more step; the iterated forces follow."""
-        interfaces = self._forces.interfaces
         if not self._searching and self._cycles():
             self._searching = True
         if self._searching:
-            self._iterates = [i.iterate_at(d) for i, d in zip(interfaces, state.displacements, strict=True)]
-        now = [i.linearised(d, c) for i, d, c in zip(interfaces, state.displacements, self._iterates, strict=True)]
+            self._iterates = self._forces_at(state)
+        now = self._linearised(state)
         step = self._linear_step(state, now)
         damping, after = self._searched(state, step, *self._damped(state, step))
+        self._advance_iterates(now, step, damping)
+        return self._polished(after) if damping == 1 else after
+
+    def _linearised(self, state: NewtonState) -> list[LinearisedContact]:
+        both = zip(self._forces.interfaces, state.displacements, self._iterates, strict=True)
+        return [interface.linearised(displacement, iterate) for interface, displacement, iterate in both]
+
+    def _advance_iterates(self, now: Sequence[LinearisedContact], step: NewtonStep, damping: float) -> None:
+        interfaces = self._forces.interfaces
         moves = point_displacements(self._body, step.unknowns, interfaces, self._forces.load_control, step.rigid_displacement)
         together = zip(interfaces, now, self._iterates, moves, strict=True)
         self._iterates = [i.advanced(n, c, move, damping) for i, n, c, move in together]
-        return after
+
+    def _polished(self, state: NewtonState) -> NewtonState:
+        """The state after steps with the last factor, as long as they pay."""
+        if self.factored is None or isinstance(self._solver, IterativeSolver):
+            return state
+        if self._forces.load_control is not None and self.factored.along is None:
+            return state
+        while self._goal <= state.residual < self._options.polished:
+            now = self._linearised(state)
+            step = self._step_with_last_factor(state, now)
+            kinematics = self._admissible(state.unknowns + step.unknowns, self._options.volume_floor)
+            if kinematics is None:
+                break
+            after = self._balance.at(
+                state.unknowns + step.unknowns, kinematics, state.rigid_displacement + step.rigid_displacement
+            )
+            if not after.residual < CONTRACTION * state.residual:
+                break
+            self._advance_iterates(now, step, 1.0)
+            state = after
+        return state
 
     def _give_up(self, state: NewtonState) -> NoReturn:
         history = self._history
@@ -168,7 +206,9 @@ class _Solution:
             raise ConvergenceError(f"after {len(history)} iterations {where} is no finite number", history)
         raise ConvergenceError(f"Newton did not converge in {len(history)} iterations (residual {history[-1]:.2e})", history)
 
-    def _searched(self, before: NewtonState, step: _Step, damping: float, kinematics: Kinematics) -> tuple[float, NewtonState]:
+    def _searched(
+        self, before: NewtonState, step: NewtonStep, damping: float, kinematics: Kinematics
+    ) -> tuple[float, NewtonState]:
         """The step length and the state after it; once the residual has cycled, halved until the unbalanced forces shrink."""
         for halved in range((self._options.search_halvings if self._searching else 0) + 1):
             if halved:
@@ -195,7 +235,7 @@ class _Solution:
             return True
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
-    def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> _Step:
+    def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
         needed = SHARE_OF_TOLERANCE * self._goal / state.residual
         accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
@@ -217,14 +257,22 @@ class _Solution:
             return body.pattern.matrix(constraints.apply(uncoupled))
 
         step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
-        if control is None:
-            return _Step(step, 0.0)
-        border = control.border([interface.surface for interface in interfaces], now)
-        along = resolved(solver, matrix, constraints.free(border.column), accuracy)
-        rigid_displacement = border.displacement_step(step, along)
-        return _Step(step + rigid_displacement * along, rigid_displacement)
+        border = None if control is None else control.border([interface.surface for interface in interfaces], now)
+        along = None if border is None else resolved(solver, matrix, constraints.free(border.column), accuracy)
+        self.factored = Factored(along)
+        return bordered(step, border, along)
 
-    def _damped(self, before: NewtonState, step: _Step) -> tuple[float, Kinematics]:
+    def _step_with_last_factor(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
+        """Step by the last tangent, of which the solver holds the factor."""
+        control, interfaces = self._forces.load_control, self._forces.interfaces
+        residual = state.internal.copy()
+        for interface, force in zip(interfaces, now, strict=True):
+            residual -= interface.surface.force(force.traction)
+        step = self._solver.solve(-self._balance.constraints.free(residual))
+        border = None if control is None else control.border([interface.surface for interface in interfaces], now)
+        return bordered(step, border, None if self.factored is None else self.factored.along)
+
+    def _damped(self, before: NewtonState, step: NewtonStep) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""
         floor, damping = self._options.volume_floor * min(1.0, float(before.kinematics.J.min())), 1.0
         while damping >= self._options.smallest_damping:

@@ -24,3 +24,9 @@ class NewtonOptions:
     """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
     volume_floor: float = 0.2
     """A step is shortened until no J falls below this part of the smallest J before it."""
+    polished: float = 0.1
+    """Residual below which steps with the last factor of a direct solver follow a step; zero leaves every step to a new tangent.
+
+    Near the solution the contact no longer changes, and an old tangent is good enough: such a step costs a quarter of one with a
+    new tangent in a section of 10 000 unknowns (modified Newton; Kelley 1995, doi:10.1137/1.9781611970944, section 5.4).
+    One that does not pay is known by its residual and dropped, so that the factor may be that of the solution before."""

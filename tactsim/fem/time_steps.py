@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-import scipy
-
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
+from tactsim.fem.event import between, crossing
 from tactsim.fem.progress import Headway, check_steps
 
 
@@ -99,7 +98,7 @@ class TimeMarcher(Generic[State]):
                     if not self._control.accepts(error):
                         raise _TooLong(f"the error {error:.1e} of a step of {step:.3g} s is above {self._control.tolerance:g}")
                     happened = event is not None and event.value(reached) >= 0
-                    reached = self._located(event, now, reached) if event is not None and happened else reached
+                    reached = self._located(event, before, now, reached) if event is not None and happened else reached
                 except ConvergenceError as failure:
                     self.rejected += 1
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance
@@ -117,19 +116,16 @@ class TimeMarcher(Generic[State]):
                     return
                 headway.spent(now.iterations, now.time, len(stops) - number + (stops[-1] - now.time) / largest)
 
-    def _located(self, event: TimeEvent[State], before: State, after: State) -> State:
-        """The state at the event, which lies between the two."""
+    def _located(self, event: TimeEvent[State], earlier: State | None, before: State, after: State) -> State:
+        """The state at the event, which lies between the two; ``earlier`` is the one before both."""
         states = {before.time: before, after.time: after}
 
         def value(time: float) -> float:
-            if time not in states:
-                share = (time - before.time) / (after.time - before.time)
-                states[time] = self._advance(before, time, (1 - share) * before.unknowns + share * after.unknowns)
+            states[time] = self._advance(before, time, between(states, time))
             return event.value(states[time])
 
-        root = scipy.optimize.brentq(value, before.time, after.time, xtol=event.tolerance * (after.time - before.time))
-        value(root)
-        return states[root]
+        known = {state.time: event.value(state) for state in (earlier, before, after) if state is not None}
+        return states[crossing(value, known, (before.time, after.time), event.tolerance * (after.time - before.time))]
 
 
 class _TooLong(ConvergenceError):

@@ -1,0 +1,75 @@
+"""Where along a path an event happens: few equilibria, because each costs a Newton solution, and those of the path count too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from tactsim.array import Array
+
+MOST_ESTIMATES = 4
+"""Interpolations in a row; if they have not found the root, the bracket is halved by turns."""
+
+
+class PathState(Protocol):
+    """A state of the path."""
+
+    @property
+    def unknowns(self) -> Array:
+        """Its unknowns."""
+
+
+def between(states: Mapping[float, PathState], place: float) -> Array:
+    """Unknowns at a place by interpolation between the nearest states on both sides of it, given by their places."""
+    low, high = max(p for p in states if p < place), min(p for p in states if p > place)
+    share = (place - low) / (high - low)
+    return (1 - share) * states[low].unknowns + share * states[high].unknowns
+
+
+def crossing(
+    value: Callable[[float], float], known: Mapping[float, float], bracket: tuple[float, float], tolerance: float
+) -> float:
+    """Place in the bracket where a value turns from negative to positive, the last one at which ``value`` was called.
+
+    Inverse quadratic interpolation through the three places of smallest value (Brent 1973, Algorithms for Minimization without
+    Derivatives, chapter 4), which the path before the bracket may hold, so that the first estimate is of third order already.
+    The error left at a place is its value over the smaller of the slopes to both ends of the bracket.
+
+    Parameters
+    ----------
+    value : at a place in the bracket
+    known : values at places, those of both ends of the bracket among them
+    bracket : a place with a negative value, and a later one with a value that is zero or positive
+    tolerance : largest error of the place
+    """
+    values, (low, high), estimates = dict(known), bracket, 0
+    if values[high] == 0:
+        return high
+    while True:
+        estimates += 1
+        place = _estimated(values, low, high)
+        if not low < place < high or (estimates > MOST_ESTIMATES and estimates % 2):
+            place = (low + high) / 2
+        here = values[place] = value(place)
+        slopes = [(here - values[end]) / (place - end) for end in (low, high)]
+        low, high = (place, high) if here < 0 else (low, place)
+        if abs(here) <= tolerance * min(slopes) or high - low <= tolerance:
+            return place
+
+
+def _estimated(values: Mapping[float, float], low: float, high: float) -> float:
+    """Root of the parabola of the place over the value, or of the line between both ends where there is none in the bracket."""
+    nearest = sorted(values, key=lambda place: abs(values[place]))[:3]
+    if len({values[place] for place in nearest}) == 3:
+        root = sum(a * _share([values[b] for b in nearest if b != a], values[a]) for a in nearest)
+        if low < root < high:
+            return root
+    return low - values[low] * (high - low) / (values[high] - values[low])
+
+
+def _share(others: list[float], own: float) -> float:
+    """Lagrange's polynomial, at zero, that is one at ``own`` and zero at the ``others``."""
+    share = 1.0
+    for other in others:
+        share *= other / (other - own)
+    return share
