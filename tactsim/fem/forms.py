@@ -7,8 +7,9 @@ displacement-pressure form), with :math:`P(F, p)` and the volume change :math:`g
     \int P(F, p + \kappa c) : \nabla v\, dV = f(v), \qquad \int q\, (1 - \kappa / K)\, c\, dV = 0,
     \qquad c = g(F) - p / K
 
-with the resistance :math:`\kappa` of `Body` to a change of volume that the pressure does not ask for. The deformation gradient is linear in the unknowns, :math:`F = 1 + B u`; on an axisymmetric body its hoop component is
-:math:`1 + u_R / R` and :math:`dV = 2 \pi R\, dR\, dZ`. Linearised at fixed p and at fixed F:
+with the resistance :math:`\kappa` of `Body` to a change of volume that the pressure does not ask for. The deformation gradient
+is linear in the unknowns, :math:`F = 1 + B u`; on an axisymmetric body its hoop component is :math:`1 + u_R / R` and
+:math:`dV = 2 \pi R\, dR\, dZ`. Linearised at fixed p and at fixed F:
 
 .. math::
     K_{uu} = \int B^T \left( \frac{\partial P}{\partial F}
