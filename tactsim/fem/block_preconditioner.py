@@ -2,7 +2,8 @@
 
 For the tangent [[A, B'], [B, -C]] the residual's forces are first augmented by B' W^-1 times its volumes, then divided by
 [[A~, B' (1 - W^-1 C)], [0, -S~]]. W is the lumped mass matrix of the pressures over b G, A~ a cycle of two levels for A and
-b G (div u) (div v), S~ the mass matrix over (4/3 + b) G and C. Without W the iterations grow with every refinement, at free
+b G (div u) (div v), S~ the mass matrix over (4/3 + b) G + kappa and C, kappa the stiffness by which a `Body` resists what its
+pressures leave of a change of volume. Without W the iterations grow with every refinement, at free
 edges: A alone hardly resists a change of volume there.
 
 Sources: Elman, Silvester & Wathen 2014, Finite Elements and Fast Iterative Solvers, chapter 9 (block preconditioner); Benzi &
@@ -42,8 +43,9 @@ class BlockPreconditioned(IterativeSolver):
 
     def __init__(self, body: Body):
         self._displacements, self._dilatation = TwoLevel(body), dilatation(body)
-        mass = pressure_mass(body)
-        self._mass, self._lumped = mass / (4 / 3 + BULK), np.asarray(mass.sum(axis=1)).ravel() / BULK
+        shear = _moduli(body)
+        self._mass = pressure_mass(body, (4 / 3 + BULK) * shear + body.volume_stiffness)
+        self._lumped = np.asarray(pressure_mass(body, BULK * shear).sum(axis=1)).ravel()
         self._split, self._dim = body.space.displacement_size, body.space.dim
         self._schur = direct_solver()
         self._matrix: csr_matrix | None = None
@@ -130,10 +132,10 @@ class BlockPreconditioned(IterativeSolver):
         return np.concatenate([self._displacements(force - self._gradient @ effective), pressure])
 
 
-def pressure_mass(body: Body) -> csr_matrix:
-    """Mass matrix of the pressures over the shear modulus, in m^3/Pa, shape (n_corner, n_corner)."""
+def pressure_mass(body: Body, moduli: Array) -> csr_matrix:
+    """Mass matrix of the pressures over a modulus (E,) in Pa, in m^3/Pa, shape (n_corner, n_corner)."""
     values, space = body.points.pressure_values, body.space
-    blocks = np.einsum("e,eq,qv,qw->evw", 1 / _moduli(body), body.points.weights, values, values)
+    blocks = np.einsum("e,eq,qv,qw->evw", 1 / moduli, body.points.weights, values, values)
     pressures = space.pressures
     rows, columns = np.broadcast_arrays(pressures[:, :, None], pressures[:, None, :])
     return csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(len(space.pressure_corners),) * 2)

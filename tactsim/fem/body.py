@@ -52,14 +52,22 @@ class Body:
     .. math::
         \\int (P_{iso}(F) + p\\, \\partial_F g) : \\nabla v\\, dV = f(v), \\qquad \\int q\\, (g(F) - p / K)\\, dV = 0
 
-    with the stress P = P_iso + p dg/dF and the volume change g of each material. Where a material has no compiled form, its
-    own methods are called at the points (``interpreted``), several times slower.
+    with the stress P = P_iso + p dg/dF and the volume change g of each material. Linear pressures hold g to p / K in the mean
+    around each corner only. A body may resist what that leaves, by
+
+    .. math:: \\int \\tfrac12 \\kappa\\, (g(F) - p / K)^2\\, dV, \\qquad \\kappa = \\frac{a G}{1 + a G / K}
+
+    in its potential, with a multiple a of the shear modulus G. That is zero in every exact solution, so that it changes no order
+    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90094-9; Olshanskii & Reusken 2004,
+    doi:10.1090/S0025-5718-03-01629-6). Where a material has no compiled form, its own methods are called at the points
+    (``interpreted``), several times slower.
 
     Parameters
     ----------
     space : TaylorHood
     materials : one per region
     regions : (E,) index into ``materials``
+    volume_stiffness : a; with zero, the elements are those of Taylor and Hood
 
     Raises
     ------
@@ -70,7 +78,15 @@ class Body:
     relaxation: RelaxationStep | None = None
     """Coefficients of the present time step, for materials that relax."""
 
-    def __init__(self, space: TaylorHood, materials: Sequence[Material], regions: Array, *, quadrature_order: int | None = None):
+    def __init__(
+        self,
+        space: TaylorHood,
+        materials: Sequence[Material],
+        regions: Array,
+        *,
+        quadrature_order: int | None = None,
+        volume_stiffness: float = 0.0,
+    ):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
             raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
         self.space = space
@@ -80,6 +96,8 @@ class Body:
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
+        resisting = volume_stiffness * np.array([m.shear_modulus for m in materials])[self.regions]
+        self.volume_stiffness = resisting / (1 + resisting * self.compliance)
         self._kernels = compiled(space.dim)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
@@ -164,7 +182,11 @@ class Body:
         """The regions of materials without a compiled form."""
         uncompiled = [index for index, form in enumerate(self.forms) if form is None]
         chosen = ((self.materials[index], np.flatnonzero(self.regions == index)) for index in uncompiled)
-        return tuple(InterpretedPart(material, self.space, self.points, mine) for material, mine in chosen if mine.size)
+        return tuple(
+            InterpretedPart(material, self.space, self.points, mine, volume_stiffness=float(self.volume_stiffness[mine[0]]))
+            for material, mine in chosen
+            if mine.size
+        )
 
     def _at(self, part: InterpretedPart, unknowns: Array, state: Kinematics) -> PointState:
         """What a part is computed from."""
@@ -189,4 +211,5 @@ class Body:
             points.pressure_values,
             self.linear | ~compiled_elements,
             self.compliance,
+            self.volume_stiffness,
         )

@@ -4,14 +4,18 @@ For all test displacements v and pressures q (Simo, Taylor & Pister 1985, doi:10
 displacement-pressure form), with :math:`P(F, p)` and the volume change :math:`g(F)` of the material:
 
 .. math::
-    \int P(F, p) : \nabla v\, dV = f(v), \qquad \int q\, (g(F) - p / K)\, dV = 0
+    \int P(F, p + \kappa c) : \nabla v\, dV = f(v), \qquad \int q\, (1 - \kappa / K)\, c\, dV = 0,
+    \qquad c = g(F) - p / K
 
-The deformation gradient is linear in the unknowns, :math:`F = 1 + B u`; on an axisymmetric body its hoop component is
-:math:`1 + u_R / R` and :math:`dV = 2 \pi R\, dR\, dZ`. Linearised at fixed p and at fixed F:
+with the resistance :math:`\kappa` of `Body` to a change of volume that the pressure does not ask for. The deformation gradient
+is linear in the unknowns, :math:`F = 1 + B u`; on an axisymmetric body its hoop component is :math:`1 + u_R / R` and
+:math:`dV = 2 \pi R\, dR\, dZ`. Linearised at fixed p and at fixed F:
 
 .. math::
-    K_{uu} = \int B^T \frac{\partial P}{\partial F} B\, dV, \quad K_{up} = \int B^T \frac{\partial g}{\partial F} N\, dV, \quad
-    K_{pp} = -\int \frac{1}{K} N^T N\, dV
+    K_{uu} = \int B^T \left( \frac{\partial P}{\partial F}
+    + \kappa \frac{\partial g}{\partial F} \frac{\partial g}{\partial F} \right) B\, dV, \quad
+    K_{up} = \int (1 - \kappa / K)\, B^T \frac{\partial g}{\partial F} N\, dV, \quad
+    K_{pp} = -\int \frac{1 - \kappa / K}{K} N^T N\, dV
 """
 
 from __future__ import annotations
@@ -27,31 +31,33 @@ from tactsim.fem.body import Body
 
 def residual(body: Body, unknowns: Array) -> Array:
     """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
-    B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
+    B, F = strain_operator(body), deformation_gradient(body, unknowns)
     weights, N = body.points.weights, body.points.pressure_values
+    excess, p = _resisting(body, F, unknowns)
     stress = _at_points(body, (3, 3), lambda material, mine: material.first_piola_kirchhoff(F[:, :, mine], p[mine]))
     if body.relaxation is not None:
         stress = _relaxed(body, stress, _at_points(body, (3, 3), _pressure_stress(F, p))) + _history_term(body, F)
-    change = _at_points(body, (), lambda material, mine: material.volume_change(F[:, :, mine]))
     forces = np.einsum("eq,iJeq,iJeqak->eak", weights, stress, B, optimize=True)
-    volumes = np.einsum("eq,eq,qv->ev", weights, change - p * body.compliance[:, None], N)
+    volumes = np.einsum("e,eq,eq,qv->ev", _share(body), weights, excess, N)
     entries = np.hstack([forces.reshape(len(forces), -1), volumes])
     return np.bincount(body.space.element_unknowns().ravel(), entries.ravel(), body.space.size)
 
 
 def tangent(body: Body, unknowns: Array) -> csr_matrix:
     """Derivative of the residual, (size, size): N/m, N/Pa and m^3/Pa by block."""
-    B, F, p = strain_operator(body), deformation_gradient(body, unknowns), body.pressure(unknowns)
+    B, F = strain_operator(body), deformation_gradient(body, unknowns)
     weights, N = body.points.weights, body.points.pressure_values
+    _, p = _resisting(body, F, unknowns)
     moduli = _at_points(body, (3, 3, 3, 3), lambda material, mine: material.tangent(F[:, :, mine], p[mine]))
     if body.relaxation is not None:
         without = lambda material, mine: material.tangent(F[:, :, mine], 0 * p[mine])  # noqa: E731
         moduli = _relaxed(body, moduli, moduli - _at_points(body, (3, 3, 3, 3), without)) + _history_tangent(body)
     slope = _at_points(body, (3, 3), lambda material, mine: material.volume_change_gradient(F[:, :, mine]))
+    moduli = moduli + body.volume_stiffness[:, None] * np.einsum("iJeq,kLeq->iJkLeq", slope, slope)
     B = B.reshape(*B.shape[:4], -1)
     K_uu = np.einsum("eq,iJeqm,iJkLeq,kLeqn->emn", weights, B, moduli, B, optimize=True)
-    K_up = np.einsum("eq,iJeqm,iJeq,qv->emv", weights, B, slope, N, optimize=True)
-    K_pp = -np.einsum("eq,e,qv,qx->evx", weights, body.compliance, N, N, optimize=True)
+    K_up = np.einsum("e,eq,iJeqm,iJeq,qv->emv", _share(body), weights, B, slope, N, optimize=True)
+    K_pp = -np.einsum("eq,e,qv,qx->evx", weights, _share(body) * body.compliance, N, N, optimize=True)
     blocks = np.block([[K_uu, K_up], [K_up.transpose(0, 2, 1), K_pp]])
     unknown = body.space.element_unknowns()
     rows = np.repeat(unknown[:, :, None], unknown.shape[1], axis=2)
@@ -74,6 +80,19 @@ def deformation_gradient(body: Body, unknowns: Array) -> Array:
     u, _ = body.space.split(unknowns)
     change = np.einsum("iJeqak,eak->iJeq", strain_operator(body), u[body.space.elements])
     return np.eye(3)[:, :, None, None] + change
+
+
+def _resisting(body: Body, F: Array, unknowns: Array) -> tuple[Array, Array]:
+    """The volume change that the pressure does not ask for, and the pressure in Pa with the resistance to it, both (E, Q)."""
+    p = body.pressure(unknowns)
+    change = _at_points(body, (), lambda material, mine: material.volume_change(F[:, :, mine]))
+    excess = change - p * body.compliance[:, None]
+    return excess, p + body.volume_stiffness[:, None] * excess
+
+
+def _share(body: Body) -> Array:
+    """Part (E,) of the volume constraint that is left to the pressure."""
+    return 1 - body.volume_stiffness * body.compliance
 
 
 def _relaxed(body: Body, whole: Array, pressure_part: Array) -> Array:

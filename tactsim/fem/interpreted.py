@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,20 +40,21 @@ class PointState:
 class InterpretedPart:
     """The elements (E,) of one material, and their terms of the weak form of `Body`."""
 
-    def __init__(self, material: Material, space: TaylorHood, points: VolumePoints, elements: Array):
+    def __init__(self, material: Material, space: TaylorHood, points: VolumePoints, elements: Array, *, volume_stiffness: float):
         self.material, self.space, self.points, self.elements = material, space, points, elements
         self.compliance = 0.0 if material.bulk_modulus is None else 1 / material.bulk_modulus
+        self.volume_stiffness = volume_stiffness
         self.unknowns = space.element_unknowns()[elements]
 
     def add_residual(self, state: PointState, out: Array) -> None:
         """Add internal forces in N and volume constraints in m^3 to ``out`` (size,)."""
         for part in self._parts():
             here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
+            change, here = self._resisting(here)
             B, stress = self._operator(part), self.stress(here)
-            change = self.material.volume_change(here.F) - self.compliance * here.pressure
             weighted = np.moveaxis(weights * stress.reshape(9, *weights.shape), 0, -1)
             forces = np.einsum("ep,epm->em", weighted.reshape(len(B), -1), B)
-            volumes = np.einsum("eq,eq,qv->ev", weights, change, N)
+            volumes = self._share * np.einsum("eq,eq,qv->ev", weights, change, N)
             out += np.bincount(self.unknowns[part].ravel(), np.hstack([forces, volumes]).ravel(), out.size)
 
     def add_tangent(self, state: PointState, pattern: Pattern, data: Array) -> None:
@@ -61,8 +62,10 @@ class InterpretedPart:
         for part in self._parts():
             here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
             B, (count, points) = self._operator(part), weights.shape
-            moduli = np.moveaxis(weights * self.moduli(here).reshape(9, 9, count, points), (0, 1), (-2, -1))
-            slope = np.moveaxis(weights * self.material.volume_change_gradient(here.F).reshape(9, count, points), 0, -1)
+            gradient = self.material.volume_change_gradient(here.F).reshape(9, count, points)
+            moduli = self.moduli(self._resisting(here)[1]).reshape(9, 9, count, points)
+            moduli = np.moveaxis(weights * (moduli + self.volume_stiffness * gradient[:, None] * gradient), (0, 1), (-2, -1))
+            slope, weights = np.moveaxis(self._share * weights * gradient, 0, -1), self._share * weights
             across = B.transpose(0, 2, 1)
             K_uu = across @ (moduli @ B.reshape(count, points, 9, -1)).reshape(B.shape)
             K_up = across @ np.einsum("eqi,qv->eqiv", slope, N).reshape(count, 9 * points, -1)
@@ -93,6 +96,16 @@ class InterpretedPart:
             if self.material.small_strain
             else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[SYMMETRIC])
         )
+
+    @property
+    def _share(self) -> float:
+        """Of the volume constraint, beside the resistance to what it leaves."""
+        return 1 - self.volume_stiffness * self.compliance
+
+    def _resisting(self, state: PointState) -> tuple[Array, PointState]:
+        """The volume change (E, Q) that the pressure does not ask for, and the state with the pressure that resists it."""
+        change = self.material.volume_change(state.F) - self.compliance * state.pressure
+        return change, replace(state, pressure=state.pressure + self.volume_stiffness * change)
 
     def _parts(self) -> Iterator[slice]:
         return (slice(first, first + CHUNK) for first in range(0, len(self.elements), CHUNK))

@@ -139,7 +139,7 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
     @numba.njit(cache=True, parallel=True)
     def residual(u, p, tables, W, history_stress, order, starts, out):  # type: ignore[no-untyped-def]
         """Internal forces, then volume constraints, added to ``out``; ``history_stress`` (6, E, Q), or (6, 0, 0) for none."""
-        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
+        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance, stiffness = tables
         for color in range(starts.size - 1):
             first, last = starts[color], starts[color + 1]
             for task in numba.prange((last - first + BLOCK - 1) // BLOCK):
@@ -153,13 +153,15 @@ def _residual_loop(dim: int) -> Callable[..., Any]:
                         change = point_stress(F, W[:, e, q], linear[e], work, cof)
                         if history_stress.shape[1]:
                             add_history_stress(F, history_stress[:, e, q], linear[e], work)
+                        change -= compliance[e] * pressure
+                        pressure += stiffness[e] * change
                         for i in range(dim):
                             for j in range(3):
                                 m = entries[i][j]
                                 stress = weight * (work[0, m] + pressure * cof[m])
                                 for a in range(width):
                                     out[nodes[a] * dim + i] += stress * g[i, j, a]
-                        change = weight * (change - compliance[e] * pressure)
+                        change *= weight * (1.0 - stiffness[e] * compliance[e])
                         for v in range(corners):
                             out[u.size + pressures[e, v]] += change * shape_p[q, v]
 
@@ -172,7 +174,7 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
     @numba.njit(cache=True, parallel=True, fastmath={"contract", "reassoc", "nsz"})
     def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, data):  # type: ignore[no-untyped-def]
         """Entries of the tangent, added to ``data``."""
-        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance = tables
+        elements, pressures, gradients, hoop, weights, shape_p, linear, compliance, stiffness = tables
         for color in range(starts.size - 1):
             first, last = starts[color], starts[color + 1]
             for task in numba.prange((last - first + BLOCK - 1) // BLOCK):
@@ -187,10 +189,11 @@ def _tangent_loop(dim: int) -> Callable[..., Any]:
                         _deform(entries, u, nodes, gradients[e, q], hoop[e, q], g, F)
                         pressure, weight = _pressure(p, pressures[e], shape_p[q]), weights[e, q]
                         slopes = (W[0, e, q], W[1, e, q], W[2, e, q], W[3, e, q], W[4, e, q])
-                        point_tangent(F, slopes, linear[e], pressure, work, cof, A)
+                        point_tangent(F, slopes, linear[e], (pressure, compliance[e], stiffness[e]), work, cof, A)
                         if history_stress.shape[1]:
                             add_history_tangent(history_stress[:, e, q], linear[e], A)
                         _add_stiffness(entries, A, g, weight, T, K)
+                        weight *= 1.0 - stiffness[e] * compliance[e]
                         _add_coupling(entries, cof, g, shape_p[q], weight, B)
                         for v in range(corners):
                             for x in range(corners):

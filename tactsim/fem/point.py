@@ -152,14 +152,20 @@ def add_history_tangent(history_stress, linear, A):  # type: ignore[no-untyped-d
 
 
 @numba.njit(cache=True, inline="always")
-def point_tangent(F, W, linear, pressure, work, cof, A):  # type: ignore[no-untyped-def]
-    """dP/dF at fixed pressure into A (9, 9), derivative of the volume change into ``cof`` (9,); W holds the five slopes."""
+def point_tangent(F, W, linear, volume, work, cof, A):  # type: ignore[no-untyped-def]
+    """dP/dF at fixed pressure into A (9, 9), derivative of the volume change into ``cof`` (9,); W holds the five slopes and
+    ``volume`` the pressure, the compliance and the stiffness against a change of volume that the pressure does not ask for."""
+    pressure, compliance, stiffness = volume
     if linear:
         for m in range(9):
             cof[m] = 1.0 if m % 4 == 0 else 0.0
         linear_tangent(W[0], A)
     else:
         invariants = hyperelastic_stress(F, W[0], W[1], work)
-        hyperelastic_tangent(F, W, pressure, invariants, work, A)
+        excess = invariants[0] - 1.0 - compliance * pressure
+        hyperelastic_tangent(F, W, pressure + stiffness * excess, invariants, work, A)
         for m in range(9):
             cof[m] = invariants[0] * work[3, m]
+    for m in range(9):
+        for n in range(9):
+            A[m, n] += stiffness * cof[m] * cof[n]

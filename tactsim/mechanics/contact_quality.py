@@ -13,10 +13,10 @@ from tactsim.results.result import Quantity, StepRecord
 
 
 class ContactQuality:
-    """Follows the accepted states of one run; ``stiffest`` as in ``PenetrationEffect``."""
+    """Follows the accepted states of one run; ``stiffest`` as in ``PenetrationEffect``, ``finer`` says what refines the mesh."""
 
-    def __init__(self, stiffest: float = math.inf):
-        self._effect, self._volumes = PenetrationEffect(stiffest), VolumeRatios()
+    def __init__(self, stiffest: float = math.inf, *, finer: str = "take smaller elements"):
+        self._effect, self._volumes = PenetrationEffect(stiffest), VolumeRatios(finer)
 
     def values(self, body: Body, state: ContactEquilibrium) -> dict[str, float]:
         """History values of a state."""

@@ -57,14 +57,23 @@ class ContactRecord(ABC, Generic[Model]):
     path : through them
     tolerance : largest penetration in m
     stiffest : as in `PenetrationEffect`
+    finer : what makes the mesh finer, in the words of the case
     """
 
-    def __init__(self, model: Model, path: FollowedPath, *, tolerance: float, stiffest: float = math.inf):
+    def __init__(
+        self,
+        model: Model,
+        path: FollowedPath,
+        *,
+        tolerance: float,
+        stiffest: float = math.inf,
+        finer: str = "take smaller elements",
+    ):
         self.model, self.path, self.tolerance = model, path, tolerance
         self.steps: list[StepRecord] = []
         self.event: StepRecord | None = None
         """The step at which what the run looks for happened; None if it did not."""
-        self.quality = ContactQuality(stiffest)
+        self.quality = ContactQuality(stiffest, finer=finer)
         self._unstable = np.zeros(model.body.points.weights.shape, bool)
         self._kept: dict[str, tuple[Model, TimedState]] = {}
 
@@ -130,7 +139,9 @@ class ContactRecord(ABC, Generic[Model]):
         """Quantities of at least one step: those of every run with contact."""
         deepest = max(step.values["max_penetration"] for step in self.steps)
         share = self.steps[-1].values["unstable_volume_fraction"]
+        least = min(step.values["min_volume_ratio"] for step in self.steps)
         return {
+            "min_volume_ratio": Quantity(least, "1", "least local volume ratio in any step"),
             "max_penetration": Quantity(deepest, "m", "largest penetration at any surface point in any step"),
             "unstable_volume_fraction": Quantity(share, "1", UNSTABLE),
             **self.quality.quantities(self.steps),

@@ -29,10 +29,10 @@ def volume_error(body: Body, state: ContactEquilibrium) -> Array:
 
 
 class VolumeRatios:
-    """The worst of the accepted states of one run."""
+    """The worst of the accepted states of one run; ``finer`` says what refines the mesh."""
 
-    def __init__(self) -> None:
-        self.worst, self._worst_in_words = 0.0, ""
+    def __init__(self, finer: str = "take smaller elements") -> None:
+        self.worst, self._worst_in_words, self._finer = 0.0, "", finer
 
     def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
         """Part of the volume with poor ratios in a state."""
@@ -41,20 +41,20 @@ class VolumeRatios:
         share = float(weights[poor].sum() / weights.sum())
         if share > self.worst:
             self.worst, ratios = share, state.kinematics.J[poor]
-            self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst near {_place(body, error)}"
+            self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst in {_place(body, error)}"
         return share
 
     def warnings(self) -> list[str]:
-        """Warnings about the worst state."""
+        """Warnings about the worst state: how much, where, and what to do."""
         if self.worst <= POOR_SHARE:
             return []
         return [
             f"{self.worst:.2%} of the volume misses the volume that its pressure asks for by more than {POOR_RATIO:.0%} (local "
-            f"volume ratios of {self._worst_in_words}): the mesh is too coarse there; take smaller elements"
+            f"volume ratios of {self._worst_in_words}): the mesh is too coarse there; {self._finer}"
         ]
 
 
 def _place(body: Body, error: Array) -> str:
-    """Centroid of the element with the largest error, undeformed, and its region."""
+    """The element with the largest error: its number, undeformed centroid and region."""
     element = int(np.abs(error).max(axis=1).argmax())
     return element_in_words(body, element)

@@ -35,6 +35,7 @@ def test_an_incompressible_grasp_whose_elements_lose_their_volume_is_reported():
     (reported,) = (warning for warning in result.warnings if "misses the volume" in warning)
     assert "the mesh is too coarse there" in reported
     assert "mm in region 0" in reported
+    assert reported.endswith("take more mesh.cells")
     assert result.steps[-1].values["poor_volume_fraction"] <= result.quantities["poor_volume_fraction"].value
 
 

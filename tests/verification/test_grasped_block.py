@@ -149,7 +149,7 @@ PASSING = 5e-6
 """Allowed penetration in m of a jaw by a block 10 mm high."""
 
 
-def beyond_the_jaw(faces, *, size=(20e-3, 20e-3, 10e-3), closing=0.6e-3, tolerance=PASSING):
+def beyond_the_jaw(faces, *, size=(20e-3, 20e-3, 10e-3), closing=0.85e-3, tolerance=PASSING):
     """How far in m free faces of a stuck block reach beyond the upper jaw; ``faces`` may touch the jaws, by name."""
     block = graded_block(size, None, BlockMeshSettings(size=6e-3, edge_size=0.8e-3, growth=1.0))
     jaws = [Jaw(side=side, width=0.05, depth=0.05, fillet=1e-3) for side in ("upper", "lower")]
@@ -170,4 +170,4 @@ def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
 
 
 def test_without_contact_on_the_free_faces_they_would_pass_the_jaw():
-    assert beyond_the_jaw(("upper", "lower"), closing=0.55e-3) > 3 * PASSING
+    assert beyond_the_jaw(("upper", "lower")) > 3 * PASSING

@@ -40,12 +40,13 @@ class Map:
     slope: Callable[[Array, Array], Array]
 
 
-def patch(measure: str, material: Material | None = None) -> tuple[QuadraticMesh, Body]:
+def patch(measure: str, material: Material | None = None, volume_stiffness: float = 0.0) -> tuple[QuadraticMesh, Body]:
     """A small unstructured body, off the axis if axisymmetric."""
     dim = 3 if measure == "solid" else 2
     mesh = box([1.0] * dim, [2, 2, 1][:dim], jitter=0.2, seed=5)
     mesh = mesh.moved(mesh.nodes + np.array([0.5, 0.0, 0.0])[:dim])
-    return mesh, body_of(mesh, measure, material or MooneyRivlin5(c10=0.6, c01=0.2, c20=0.3, c11=0.1, c02=0.05, bulk_modulus=3.0))
+    material = material or MooneyRivlin5(c10=0.6, c01=0.2, c20=0.3, c11=0.1, c02=0.05, bulk_modulus=3.0)
+    return mesh, body_of(mesh, measure, material, volume_stiffness=volume_stiffness)
 
 
 def state_and_direction(body: Body) -> tuple[Array, Array]:
@@ -129,6 +130,21 @@ def test_tangent_of_a_body(measure, kind, verification_record):
     }
     verification_record("remainder of the tangent over half the step, all materials", sizes[-2] / sizes[-1], 4.0, **known)
     assert_taylor(body_map(patch(measure, cls.example())[1]), patch(measure, cls.example())[1])
+
+
+@pytest.mark.parametrize("bulk_modulus", [None, 3.0])
+@pytest.mark.parametrize("measure", MEASURES)
+def test_tangent_of_a_body_that_resists_changes_of_volume(measure, bulk_modulus):
+    """Mutants: the tangent without the resistance, and with another one."""
+    material = NeoHookean(c10=0.6, bulk_modulus=bulk_modulus)
+    body = patch(measure, material, 3.0)[1]
+
+    def check(stiffness):
+        other = patch(measure, material, stiffness)[1]
+        assert_taylor(Map(body.residual, body_map(other).slope), body)
+
+    check(3.0)
+    assert_kills(check, none=(0.0,), another=(3.03,))
 
 
 @pytest.mark.parametrize("measure", MEASURES)

@@ -42,8 +42,6 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
         quantities["lumen_pressure"] = Quantity(
             pressures, "Pa", "pressure in each [lumen], by the order of the inclusions" + LAST
         )
-    least = min(step["min_volume_ratio"] for step in values)
-    quantities["min_volume_ratio"] = Quantity(least, "1", "least local volume ratio in any step")
     return quantities
 
 

@@ -18,7 +18,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import ragged, suction, uneven, unlikely
+from tactsim.experiments.grasp.warnings import finer, ragged, suction, uneven, unlikely
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.viscoelasticity import shear_relaxation
@@ -36,7 +36,9 @@ class GraspRecord(ContactRecord[GraspModel]):
     """Collects the accepted steps of a grasp, with what the taxels of both jaws read."""
 
     def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
-        super().__init__(model, path, tolerance=experiment.tolerance, stiffest=_stiffest(experiment))
+        super().__init__(
+            model, path, tolerance=experiment.tolerance, stiffest=_stiffest(experiment), finer=finer(experiment.mesh.kind)
+        )
         self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
         self._read: MatrixReading | None = None

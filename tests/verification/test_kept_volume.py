@@ -1,0 +1,91 @@
+"""Incompressible tissue keeps its volume where free faces roll onto the jaws, and its pressures stay stable."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mutants import assert_kills
+from scipy.linalg import eigh
+from scipy.sparse import identity, kron
+from solids import body_of
+
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.path import grasp_path
+from tactsim.fem.block_preconditioner import pressure_mass
+from tactsim.fem.linear import direct_solver
+from tactsim.fem.two_level import linear_interpolation
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics import block_model
+from tactsim.mechanics.volume_ratios import volume_error
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded_block import graded_block
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+SIZE = (24e-3, 24e-3, 12e-3)
+OFF = 0.02
+"""Error of a volume ratio that counts."""
+
+
+def poor_volume(stiffness: float, monkeypatch) -> tuple[float, float]:
+    """Part of a plain block's volume that is off by more than ``OFF`` after a closing by 1 mm in all, and its least ratio."""
+    monkeypatch.setattr(block_model, "VOLUME_STIFFNESS", stiffness)
+    grasp = Grasp.model_validate(
+        {
+            "block": {"size": SIZE, "tissue": "icf_stable"},
+            "matrix": {"rows": 2, "columns": 2, "pitch": 10e-3, "size": 9e-3},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.5e-3, "duration": 1.0}]},
+            "mesh": {"kind": "graded", "size": 4e-3, "edge_size": 1.6e-3},
+            "time": {"steps": 1},
+        }
+    )
+    model = grasp.model(grasp.sourced())
+    state = list(grasp_path(grasp, model).states())[-1][0].contact
+    error, weights = np.abs(volume_error(model.body, state)), model.body.points.weights
+    return float(weights[error > OFF].sum() / weights.sum()), float(state.kinematics.J.min())
+
+
+def test_tissue_keeps_its_volume_at_the_edges_of_the_jaws(monkeypatch):
+    """Mutant: linear pressures alone hold the volume."""
+
+    def check(stiffness):
+        poor, least = poor_volume(stiffness, monkeypatch)
+        assert poor < 0.02  # 0.7 %, and 6 % without
+        assert least > 0.9  # 0.97, and 0.86 without
+
+    check(block_model.VOLUME_STIFFNESS)
+    assert_kills(check, without=(0.0,))
+
+
+def stability(size: float, *, linear: bool = False) -> float:
+    """Inf-sup constant of the pair of displacement and pressure on graded cells of ``size`` in m, all faces held.
+
+    Root of the second smallest eigenvalue of B A^-1 B' over the mass of the pressures (Chapelle & Bathe 1993,
+    doi:10.1016/0045-7949(93)90340-J); the smallest is that of a uniform pressure. ``linear`` displacements are the mutant.
+    """
+    mesh = graded_block(SIZE, None, BlockMeshSettings(size=size, edge_size=size / 2, growth=1.0)).mesh
+    body = body_of(mesh, "solid", NeoHookean(c10=0.5), volume_stiffness=block_model.VOLUME_STIFFNESS)
+    split = body.space.displacement_size
+    tangent = body.pattern.matrix(body.tangent(np.zeros(body.space.size)))
+    free = ~((np.abs(mesh.nodes) < 1e-9) | (np.abs(mesh.nodes - SIZE) < 1e-9)).any(axis=1)
+    shapes = linear_interpolation(body.space) if linear else identity(len(mesh.nodes), format="csr")
+    shapes = kron(shapes[:, free[: shapes.shape[1]]], identity(3), format="csr")
+    A, B = (shapes.T @ tangent[:split, :split] @ shapes).tocsr(), (tangent[split:, :split] @ shapes).toarray()
+    A.sort_indices()
+    solver = direct_solver("superlu")
+    solver.factor(A)
+    schur = B @ np.stack([solver.solve(row) for row in B], axis=1)
+    solver.close()
+    mass = pressure_mass(body, np.ones(len(mesh.elements))).toarray()
+    return float(np.sqrt(max(eigh(schur, mass, eigvals_only=True)[1], 0.0)))
+
+
+def test_pressures_stay_stable_as_cells_shrink():
+    """Mutant: displacements as linear as the pressures, which then checkerboard."""
+
+    def check(linear):
+        coarse, fine = (stability(size, linear=linear) for size in (8e-3, 5e-3))
+        assert coarse > 0.2
+        assert fine > 0.95 * coarse
+
+    check(False)
+    assert_kills(check, linear=(True,))
