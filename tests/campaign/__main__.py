@@ -7,6 +7,7 @@ import gc
 import itertools
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -29,6 +30,7 @@ WARMING = (Trial("indentation", 3, 3, 60.0), Trial("grasp", 3, 1, 60.0))
 def main() -> int:
     """Exit code: 0 if nothing is wrong and nothing hangs."""
     arguments = _arguments()
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))  # so that no child outlives this process
     if arguments.fresh:
         shutil.rmtree(arguments.out, ignore_errors=True)
     arguments.out.mkdir(parents=True, exist_ok=True)

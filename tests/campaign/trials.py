@@ -99,6 +99,7 @@ def tried(trial: Trial, folder: Path) -> Ended:
 def _command(case: str, seconds: float, place: Path) -> None:
     """``tactsim run`` with its output in files; the life of a child, which ends here whatever happens."""
     code = 1
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
         from tactsim.cli import main
 
