@@ -17,6 +17,7 @@ from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.snap_through import after_snap
 
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
@@ -39,6 +40,9 @@ COARSE = 4.5e-2
 """Residual that suffices between augmentations, with friction: without it Newton is as fast to the end."""
 SHARPER = 0.3
 """Factor of that residual once an augmentation has not raised the residual above it."""
+
+SNAP_STEP = 5e-3
+"""Step over the load below which a step that fails is one to which no equilibrium is near, so that the body snaps to another."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,20 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        raise
+        if not 0 < load - state.load <= SNAP_STEP * load:
+            raise
+    return _after_snap(problem, state, load, **settings)
+
+
+def _after_snap(
+    problem: Problem, state: ContactEquilibrium, load: float, *, loads: Sequence[FollowerLoad] = (), **settings: Any
+) -> ContactEquilibrium:
+    """The state that the body snaps to when no equilibrium is near; raises ConvergenceError if it comes to none."""
+
+    def solve(guess: Array, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
+        return _equilibrium(problem, state, load, guess, loads=[*loads, *drag], **settings)
+
+    return after_snap(problem.body, state.unknowns, solve, lambda reached: reached.unknowns)
 
 
 def _equilibrium(
