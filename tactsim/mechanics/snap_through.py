@@ -14,8 +14,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-import numpy as np
-
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.body import Body
@@ -64,5 +62,4 @@ def after_snap(
             return solve(now, [])
         except ConvergenceError as error:
             solutions += error.solutions
-            last = error
     raise ConvergenceError(f"no equilibrium after a snap in {MOST_STEPS} steps", solutions=solutions)

@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+
 from campaign.record import ANSWERS, first_runs, last_runs
 from campaign.trials import OUTCOMES, Ended
-
 from tactsim.dataset.ranking.measures import share
 
 WANTED = 0.99
