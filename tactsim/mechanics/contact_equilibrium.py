@@ -88,7 +88,7 @@ def _after_snap(
     """The state that the body snaps to when no equilibrium is near; raises ConvergenceError if it comes to none."""
 
     def solve(guess: Array, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
-        return _equilibrium(problem, state, load, guess, loads=[*loads, *drag], **settings)
+        return _equilibrium(problem, state, load, guess, loads=[*loads, *drag], from_guess=True, **settings)
 
     return after_snap(problem.body, state.unknowns, solve, lambda reached: reached.unknowns)
 
@@ -103,11 +103,13 @@ def _equilibrium(
     force: float | None = None,
     relaxation: RelaxationStep | None = None,
     loads: Sequence[FollowerLoad] = (),
+    from_guess: bool = False,
 ) -> ContactEquilibrium:
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
     With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``relaxation``
-    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body.
+    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body. Newton starts from the
+    contact forces of ``state``, or from those that belong to the guess.
 
     Raises
     ------
@@ -122,6 +124,9 @@ def _equilibrium(
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
+        if from_guess:
+            moves = problem.displacements(guess, contacts, load_control, 0.0)
+            contacts = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
         try:
             solved = _solved(problem, guess, contacts, load_control, loads=loads, relaxation=relaxation, coarse=coarse)
         except ConvergenceError as error:

@@ -23,9 +23,10 @@ from tactsim.fem.regularising_springs import AnchoredSprings
 FIRST_DRAG = 1e4
 """Stiffness of all drag together over that of the body, its shear modulus times its size: in an element of a fiftieth of the size
 it begins four times as stiff as the tissue."""
-LESS, MORE = 0.25, 8.0
-"""Factors of the drag after a step that converged, and one that did not."""
-MOST_STEPS = 16
+LESS, MORE = 0.4, 3.0
+"""Factors of the drag after a step that converged, and one that did not: a drag little above the negative stiffness of the unstable
+body lets it move away fastest."""
+MOST_STEPS = 30
 """Steps in pseudo-time before a snap counts as failed."""
 
 Solved = TypeVar("Solved")
@@ -50,16 +51,19 @@ def after_snap(
         If no equilibrium without drag is reached.
     """
     drag, now, solutions = FIRST_DRAG, state, 0
+    too_little = 2 * FIRST_DRAG
     for _ in range(MOST_STEPS):
         try:
             now = unknowns(solve(now, [AnchoredSprings(body, drag, now)]))
         except ConvergenceError as error:
             solutions += error.solutions
-            drag *= MORE
+            drag, too_little = drag * MORE, drag
             continue
         drag *= LESS
-        try:
-            return solve(now, [])
-        except ConvergenceError as error:
-            solutions += error.solutions
+        if drag < LESS * too_little:
+            try:
+                return solve(now, [])
+            except ConvergenceError as error:
+                solutions += error.solutions
+                too_little = drag
     raise ConvergenceError(f"no equilibrium after a snap in {MOST_STEPS} steps", solutions=solutions)
