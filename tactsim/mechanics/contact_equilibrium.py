@@ -108,8 +108,8 @@ def _equilibrium(
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
     With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``relaxation``
-    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body. Newton starts from the
-    contact forces of ``state``, or from those that belong to the guess.
+    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body. Newton starts from
+    the contact forces of ``state``, or from those that belong to the guess.
 
     Raises
     ------
@@ -121,14 +121,12 @@ def _equilibrium(
         before = tuple(contact.expected(load - state.load) for contact in before)
     load_control = None if force is None else PrescribedForce(tuple(directions), force)
     coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
+    solving = {"loads": loads, "relaxation": relaxation, "from_guess": from_guess}
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
-        if from_guess:
-            moves = problem.displacements(guess, contacts, load_control, 0.0)
-            contacts = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
         try:
-            solved = _solved(problem, guess, contacts, load_control, loads=loads, relaxation=relaxation, coarse=coarse)
+            solved = _solved(problem, guess, contacts, load_control, **solving, coarse=coarse)
         except ConvergenceError as error:
             error.solutions += iterations
             raise
@@ -162,12 +160,21 @@ def _equilibrium(
 
 
 def _solved(
-    problem: Problem, guess: Array, contacts: Sequence[PosedContact], load_control: PrescribedForce | None, **settings: Any
+    problem: Problem,
+    guess: Array,
+    contacts: Sequence[PosedContact],
+    load_control: PrescribedForce | None,
+    *,
+    from_guess: bool,
+    **settings: Any,
 ) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    begun, rigid_displacement = contacts, 0.0
+    begun, rigid_displacement = list(contacts), 0.0
+    if from_guess:
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
     for held_round in range(HELD_ROUNDS + 1):
         try:
             return problem.solve(

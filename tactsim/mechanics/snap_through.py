@@ -24,8 +24,8 @@ FIRST_DRAG = 1e4
 """Stiffness of all drag together over that of the body, its shear modulus times its size: in an element of a fiftieth of the size
 it begins four times as stiff as the tissue."""
 LESS, MORE = 0.4, 3.0
-"""Factors of the drag after a step that converged, and one that did not: a drag little above the negative stiffness of the unstable
-body lets it move away fastest."""
+"""Factors of the drag after a step that converged, and one that did not: a drag little above the negative stiffness of an
+unstable body lets it move away fastest."""
 MOST_STEPS = 30
 """Steps in pseudo-time before a snap counts as failed."""
 

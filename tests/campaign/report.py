@@ -20,14 +20,15 @@ LONGEST_REASON = 300
 INTRODUCTION = """\
 # Random cases
 
-Whether a case converges must not depend on who wrote it. These cases were drawn at random within what a user could sensibly write:
-indentations by an annulus, a ball or a flat punch of shipped and other tissues, and grasps of blocks with up to two lumps
-(`tests/campaign/random_cases.py` holds the ranges). A case is a function of its seed and number, so that each can be made again.
+Whether a case converges must not depend on who wrote it. These cases were drawn at random within what a user could sensibly
+write: indentations by an annulus, a ball or a flat punch of shipped and other tissues, and grasps of blocks with up to two lumps;
+`tests/campaign/random_cases.py` holds the ranges. A case is a function of its seed and number, so that each can be made again.
+At least {wanted:.0%} of the sensible cases shall be answered, none may hang, and none may lie.
 
-*Answered* means that the case converged, or that a threshold was asked that lies beyond the displacement of the case, which is an
-answer too. *Refused* cases, mostly lumps too near to a face, are no sensible ones and are left out of the share. *Wrong* is a
-result that contradicts itself: an internal error, values that are not finite, forces that do not add up, tissue turned inside
-out. *Hung* is what does not end {patience:g} s after its time limit. In brackets the 95 % interval by Wilson.
+*Answered* means that the case converged, or that it asked for a threshold that lies beyond its displacement, which is an answer
+too. *Refused* cases, such as lumps too near to a face, are no sensible ones and are left out of the share. *Wrong* is a result
+that contradicts itself: an internal error, values that are not finite, forces that do not add up, tissue turned inside out.
+*Hung* is what does not end {patience:g} s after its time limit. In brackets the 95 % interval by Wilson.
 """
 
 
@@ -60,7 +61,7 @@ def page(record: Sequence[Ended], *, asked: int | None, limit: float, patience: 
     of = f" of {asked} asked" if asked else ""
     ran = ", ".join(f"{sum(one.kind == kind for one in first)}{of} of the kind `{kind}`" for kind in kinds)
     texts = [
-        INTRODUCTION.format(patience=patience),
+        INTRODUCTION.format(patience=patience, wanted=WANTED).replace("99%", "99 %"),
         f"```text\n{command} {' '.join(kinds)}\n```\n",
         f"Run so far: {ran}, each with a limit of {limit:g} s, one thread each. {_times(first)}\n",
         "## First run\n",
