@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
-from tactsim.fem.body import Kinematics, RelaxationStep
+from tactsim.fem.body import Kinematics
 from tactsim.fem.diagnosis import collapsed_in_words
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
@@ -101,15 +101,13 @@ def _equilibrium(
     *,
     directions: Sequence[Array],
     force: float | None = None,
-    relaxation: RelaxationStep | None = None,
-    loads: Sequence[FollowerLoad] = (),
-    from_guess: bool = False,
+    **solving: Any,
 ) -> ContactEquilibrium:
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
-    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``relaxation``
-    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body. Newton starts from
-    the contact forces of ``state``, or from those that belong to the guess.
+    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``solving``
+    may hold ``relaxation``, the coefficients of the time step of materials that relax, ``loads``, further loads on the body, and
+    whether Newton starts from the contact forces that belong to the guess, ``from_guess``, not from those of ``state``.
 
     Raises
     ------
@@ -121,7 +119,6 @@ def _equilibrium(
         before = tuple(contact.expected(load - state.load) for contact in before)
     load_control = None if force is None else PrescribedForce(tuple(directions), force)
     coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
-    solving = {"loads": loads, "relaxation": relaxation, "from_guess": from_guess}
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
@@ -165,7 +162,7 @@ def _solved(
     contacts: Sequence[PosedContact],
     load_control: PrescribedForce | None,
     *,
-    from_guess: bool,
+    from_guess: bool = False,
     **settings: Any,
 ) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
