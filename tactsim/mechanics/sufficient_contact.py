@@ -37,7 +37,8 @@ class SufficientContact:
 
     def __init__(self, problem: EquilibriumProblem, largest: float, stiffest: float = math.inf):
         self._problem, self._largest = problem, largest
-        self._effect, self._accepted = PenetrationEffect(stiffest), None
+        self._effect = PenetrationEffect(stiffest)
+        self._accepted: ContactEquilibrium | None = None
 
     @property
     def body(self) -> Body:

@@ -37,9 +37,10 @@ def main() -> int:
     record = read_record(arguments.out / "trials.jsonl")
     if others := sorted({one.seed for one in record} - {arguments.seed}):
         sys.exit(f"{arguments.out} holds a campaign of the seed {others[0]}; take another --out, or --fresh to begin anew")
-    with tempfile.TemporaryDirectory() as place:
-        _warm(Path(place))
-    _random_cases(arguments, record)
+    if arguments.minutes != 0:
+        with tempfile.TemporaryDirectory() as place:
+            _warm(Path(place))
+        _random_cases(arguments, record)
     text = table_text(first_runs(record))
     (arguments.out / "table.md").write_text(text, encoding="utf-8")
     sys.stdout.write(text)
@@ -54,7 +55,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("kinds", metavar="KIND", nargs="*", help="kinds of cases; all by default")
     parser.add_argument("--seed", type=int, default=1, help="case k of a seed is the same everywhere; default: %(default)s")
     parser.add_argument("--cases", type=int, help="cases of each kind; by default as many as the time allows")
-    parser.add_argument("--minutes", type=float, help="time for the random cases; with neither, 10 minutes")
+    parser.add_argument("--minutes", type=float, help="time for the random cases, 0 for none; with neither, 10 minutes")
     parser.add_argument("--limit", type=float, default=300.0, help="seconds that a case may take; default: %(default)s")
     parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)), help="processes; default: one a core")
     parser.add_argument("--out", type=Path, default=Path("results", "campaign"), help="what stands there is gone on with")
@@ -90,7 +91,7 @@ def _warm(place: Path) -> None:
 
 def _random_cases(arguments: argparse.Namespace, record: list[Ended]) -> None:
     """Trials of every kind by turns, added to the record; what was answered is removed, everything else stays with its case."""
-    until = time.monotonic() + 60 * arguments.minutes if arguments.minutes else float("inf")
+    until = time.monotonic() + 60 * arguments.minutes if arguments.minutes is not None else float("inf")
     trials = _again(arguments, record) if arguments.again else _trials(arguments, record)
     running: list[Running] = []
     with (arguments.out / "trials.jsonl").open("a", encoding="utf-8") as lines:

@@ -28,7 +28,8 @@ At least {wanted:.0%} of the sensible cases shall be answered, none may hang, an
 *Answered* means that the case converged, or that it asked for a threshold that lies beyond its displacement, which is an answer
 too. *Refused* cases, such as lumps too near to a face, are no sensible ones and are left out of the share. *Wrong* is a result
 that contradicts itself: an internal error, values that are not finite, forces that do not add up, tissue turned inside out.
-*Hung* is what does not end {patience:g} s after its time limit. In brackets the 95 % interval by Wilson.
+*Hung* is what does not end {patience:g} s after its time limit. *Stopped by time* depends on the machine and on what else it does:
+the limit is by the clock, and the seconds of the processor stand beside it. In brackets the 95 % interval by Wilson.
 """
 
 
@@ -88,11 +89,13 @@ def _programs(record: Sequence[Ended]) -> str:
 def _failures(first: Sequence[Ended], last: dict[tuple[str, int], Ended]) -> str:
     """A row for each case that was not answered at first, with its reason and what it did last."""
     rows = [one for one in first if one.outcome not in ANSWERS]
-    lines = ["| case | outcome | reason | run again |", "|---|---|---|---|"]
+    lines = ["| case | outcome | processor [s] | reason | run again |", "|---|---|---|---|---|"]
     for one in sorted(rows, key=lambda one: (one.kind, one.outcome, one.number)):
         latest = last[one.kind, one.number]
         again = "" if latest is one else latest.outcome
-        lines.append(f"| {one.kind} {one.number} | {one.outcome} | {_shown(one.reason)} | {again} |")
+        lines.append(
+            f"| {one.kind} {one.number} | {one.outcome} | {one.processor_seconds:.0f} | {_shown(one.reason)} | {again} |"
+        )
     return "\n".join(lines) + "\n"
 
 
