@@ -229,10 +229,11 @@ class _Solution:
         return len(self._history) > CYCLE_AFTER and self._history[-1] > CYCLE_RATIO * min(self._history[-5:-1])
 
     def _stagnates(self) -> bool:
-        """Whether the last iterations, or the first ones, have not halved the residual, as when contact points alternate."""
+        """Whether the last iterations, or the first ones, have not halved the residual, as when contact points alternate; the
+        search that begins once they do has its own chance."""
         patience, start, history = self._options.patience, self._options.start_patience, self._history
         if start is not None and len(history) > start and min(history) > 0.5 * history[0]:
-            return True
+            return len(history) > start + self._options.patience or not (self._searching or self._cycles())
         return len(history) > 2 * patience and min(history[-patience:]) > 0.5 * min(history[:-patience])
 
     def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:

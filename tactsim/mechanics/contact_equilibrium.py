@@ -11,12 +11,13 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
-from tactsim.fem.body import Kinematics, RelaxationStep
+from tactsim.fem.body import Kinematics
 from tactsim.fem.diagnosis import collapsed_in_words
 from tactsim.fem.external_forces import FollowerLoad
 from tactsim.fem.newton import Equilibrium, Problem
 from tactsim.fem.prescribed_force import PrescribedForce
 from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.snap_through import after_snap
 
 PENALTY_ATTEMPTS = 5
 """How often a step is solved again with a stiffer contact before it counts as failed."""
@@ -39,6 +40,9 @@ COARSE = 4.5e-2
 """Residual that suffices between augmentations, with friction: without it Newton is as fast to the end."""
 SHARPER = 0.3
 """Factor of that residual once an augmentation has not raised the residual above it."""
+
+SNAP_STEP = 5e-3
+"""Step over the load below which a step that fails is one to which no equilibrium is near, so that the body snaps to another."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,20 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        raise
+        if not 0 < load - state.load <= SNAP_STEP * load:
+            raise
+    return _after_snap(problem, state, load, **settings)
+
+
+def _after_snap(
+    problem: Problem, state: ContactEquilibrium, load: float, *, loads: Sequence[FollowerLoad] = (), **settings: Any
+) -> ContactEquilibrium:
+    """The state that the body snaps to when no equilibrium is near; raises ConvergenceError if it comes to none."""
+
+    def solve(guess: Array, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
+        return _equilibrium(problem, state, load, guess, loads=[*loads, *drag], from_guess=True, **settings)
+
+    return after_snap(problem.body, state.unknowns, solve, lambda reached: reached.unknowns)
 
 
 def _equilibrium(
@@ -84,13 +101,13 @@ def _equilibrium(
     *,
     directions: Sequence[Array],
     force: float | None = None,
-    relaxation: RelaxationStep | None = None,
-    loads: Sequence[FollowerLoad] = (),
+    **solving: Any,
 ) -> ContactEquilibrium:
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
-    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``relaxation``
-    holds the coefficients of the time step of materials that relax, ``loads`` are further loads on the body.
+    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``solving``
+    may hold ``relaxation``, the coefficients of the time step of materials that relax, ``loads``, further loads on the body, and
+    whether Newton starts from the contact forces that belong to the guess, ``from_guess``, not from those of ``state``.
 
     Raises
     ------
@@ -106,7 +123,7 @@ def _equilibrium(
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = _moved(before, load - state.load, directions, regularisation)
         try:
-            solved = _solved(problem, guess, contacts, load_control, loads=loads, relaxation=relaxation, coarse=coarse)
+            solved = _solved(problem, guess, contacts, load_control, **solving, coarse=coarse)
         except ConvergenceError as error:
             error.solutions += iterations
             raise
@@ -140,12 +157,21 @@ def _equilibrium(
 
 
 def _solved(
-    problem: Problem, guess: Array, contacts: Sequence[PosedContact], load_control: PrescribedForce | None, **settings: Any
+    problem: Problem,
+    guess: Array,
+    contacts: Sequence[PosedContact],
+    load_control: PrescribedForce | None,
+    *,
+    from_guess: bool = False,
+    **settings: Any,
 ) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    begun, rigid_displacement = contacts, 0.0
+    begun, rigid_displacement = list(contacts), 0.0
+    if from_guess:
+        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
     for held_round in range(HELD_ROUNDS + 1):
         try:
             return problem.solve(

@@ -83,3 +83,14 @@ def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, 
         return np.clip(finest + growth * np.maximum(distance - reach, 0.0), finest, coarsest)
 
     return size
+
+
+def finer_at_surface(usual: Size, *, finest: float, growth: float, reach: float) -> Size:
+    """The usual size, but ``finest`` on the surface z = 0 within ``reach`` of the axis, growing by ``growth`` per distance."""
+
+    def size(points: Array) -> Array:
+        away = np.hypot(np.maximum(np.abs(points[:, 0]) - reach, 0.0), np.maximum(-points[:, 1], 0.0))
+        fine: Array = np.minimum(usual(points), finest + growth * away)
+        return fine
+
+    return size

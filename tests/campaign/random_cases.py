@@ -61,7 +61,7 @@ def contact(rng: Generator) -> Case:
 
 
 def indentation(rng: Generator) -> Case:
-    """An annulus, a ball, a flat punch or a cone pressed by up to a quarter of a specimen of 4 to 20 mm; coarse meshes."""
+    """An annulus, a ball or a flat punch pressed by up to a quarter of a specimen of 4 to 20 mm; coarse meshes."""
     outer = rng.uniform(1.5e-3, 5e-3)
     thickness = rng.uniform(4e-3, 20e-3)
     bodies: list[Callable[[], Case]] = [

@@ -1,19 +1,21 @@
-"""One trial: a case as a command in a process of its own, and what may be said of how it ended."""
+"""One trial: a case as a command in a process forked from this one, and what may be said of how it ended."""
 
 from __future__ import annotations
 
 import json
 import math
-import multiprocessing
 import os
+import shutil
+import signal
 import sys
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from campaign.random_cases import random_case
 from tactsim.case.writing import yaml_text
+from tactsim.code_identity import code_identity
 
 OUTCOMES = ("converged", "no threshold", "refused", "failed with reason", "stopped by time", "wrong", "hung")
 REASONS = {"took longer than": "stopped by time", "the threshold was not reached": "no threshold"}
@@ -39,45 +41,77 @@ class Trial:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a trial ended."""
+    """How a trial ended, after how many seconds by the clock and of the processor, and with which program."""
 
     kind: str
+    seed: int
     number: int
     outcome: str
     reason: str
     seconds: float
+    processor_seconds: float
+    program: str
+
+
+class Running:
+    """A case that runs in a child of this process, which has loaded what the child needs; its memory goes with it."""
+
+    def __init__(self, trial: Trial, folder: Path):
+        self.trial, self.place = trial, folder / f"{trial.kind}_{trial.number}"
+        shutil.rmtree(self.place, ignore_errors=True)
+        self.place.mkdir(parents=True)
+        case = self.place / "case.yaml"
+        case.write_text(yaml_text(random_case(trial.kind, trial.seed, trial.number)), encoding="utf-8")
+        self._begun = time.monotonic()
+        self._child = os.fork()
+        if not self._child:
+            _command(case.name, trial.seconds, self.place)
+
+    def ended(self) -> Ended | None:
+        """How it ended, the files in its folder judged; None as long as it runs. Past its limit and patience it is killed."""
+        child, status, used = os.wait4(self._child, os.WNOHANG)
+        seconds, limit = time.monotonic() - self._begun, self.trial.seconds + PATIENCE
+        if not child and seconds <= limit:
+            return None
+        if child:
+            outcome, reason = judged(os.waitstatus_to_exitcode(status), self.place)
+        else:
+            used = self.kill()
+            outcome, reason = "hung", f"no end after {limit:g} s"
+        processor = round(used.ru_utime + used.ru_stime, 2)
+        trial = self.trial
+        return Ended(trial.kind, trial.seed, trial.number, outcome, reason, round(seconds, 2), processor, code_identity())
+
+    def kill(self):
+        """Ends the child; what it used."""
+        os.kill(self._child, signal.SIGKILL)
+        return os.wait4(self._child, 0)[2]
 
 
 def tried(trial: Trial, folder: Path) -> Ended:
-    """Runs a case; what did not converge, or is wrong, is kept as a case file in the folder."""
-    place = folder / f"{trial.kind}_{trial.number}"
-    place.mkdir(parents=True)
-    case = place / "case.yaml"
-    case.write_text(yaml_text(random_case(trial.kind, trial.seed, trial.number)), encoding="utf-8")
-    begun = time.monotonic()
-    process = multiprocessing.get_context("fork").Process(target=_command, args=(case, trial.seconds, place))
-    process.start()
-    process.join(trial.seconds + PATIENCE)
-    if process.is_alive():
-        process.kill()
-        process.join()
-        return Ended(trial.kind, trial.number, "hung", f"no end after {trial.seconds + PATIENCE:g} s", time.monotonic() - begun)
-    outcome, reason = judged(process.exitcode or 0, place)
-    return Ended(trial.kind, trial.number, outcome, reason, round(time.monotonic() - begun, 2))
+    """Runs a case to its end; its case file and its result stay in the folder."""
+    running = Running(trial, folder)
+    while (ended := running.ended()) is None:
+        time.sleep(0.02)
+    return ended
 
 
-def _command(case: Path, seconds: float, place: Path) -> None:
-    """``tactsim run`` with its output in files; the life of a child."""
-    from tactsim.cli import main
+def _command(case: str, seconds: float, place: Path) -> None:
+    """``tactsim run`` with its output in files; the life of a child, which ends here whatever happens."""
+    code = 1
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    try:
+        from tactsim.cli import main
 
-    os.chdir(place)
-    with open("stderr", "w", encoding="utf-8") as errors:
-        os.dup2(errors.fileno(), 2)
-        sys.stderr = errors
-        arguments = ["run", case.name, "--out", "result", "--time-limit", f"{seconds:g} s", "--figures", "none", "--quiet"]
-        code = main(arguments)
-        errors.flush()
-    os._exit(code)
+        os.chdir(place)
+        with open("stderr", "w", encoding="utf-8") as errors:
+            os.dup2(errors.fileno(), 2)
+            sys.stderr = errors
+            arguments = ["run", case, "--out", "result", "--time-limit", f"{seconds:g} s", "--figures", "none", "--quiet"]
+            code = main(arguments)
+            errors.flush()
+    finally:
+        os._exit(code)
 
 
 def judged(code: int, place: Path) -> tuple[str, str]:
@@ -119,8 +153,3 @@ def contradictions(quantities: dict[str, Any]) -> list[str]:
     if isinstance(threshold, float) and threshold <= 0:
         faults.append("a threshold force that pulls")
     return faults
-
-
-def as_line(ended: Ended) -> str:
-    """A line of the record."""
-    return json.dumps(asdict(ended))

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.pressure import FollowerPressure
+from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.history_path import TimedPath, TimedState, smooth_intervals
+from tactsim.mechanics.history_path import EquilibriumProblem, TimedPath, TimedState, smooth_intervals
+from tactsim.mechanics.penetration_effect import bonded_block_rate
 from tactsim.mechanics.pressed_body import PressedBody
+from tactsim.mechanics.sufficient_contact import SufficientContact
 
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
@@ -17,11 +22,18 @@ FIRST_PART = 0.6
 
 
 def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
-    """The path through all histories of a grasp, from jaws that just touch."""
+    """The path through all histories of a grasp, from jaws that just touch.
+
+    Without a tolerance of its own, a grasp gets one at its largest closing or force with which it misses as little force as a
+    success may.
+    """
     course = smooth_intervals(experiment.histories(), experiment.duration)
     contact = model.start(experiment.contact, experiment.regularisation())
     start = TimedState.at_rest(model.body, contact, 1 + len(experiment.lumens))
-    return TimedPath(grasped_block(experiment, model), experiment.time.policy(experiment.materials), course, start)
+    problem: EquilibriumProblem = grasped_block(experiment, model)
+    if experiment.penetration_tolerance is None:
+        problem = SufficientContact(problem, experiment.loading.least_and_most()[1], stiffest_block(experiment))
+    return TimedPath(problem, experiment.time.policy(experiment.materials), course, start)
 
 
 def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:
@@ -39,3 +51,10 @@ def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:
         walls=[FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets],
         first_guess=None if hollow else lambda closing: model.compressed(FIRST_PART * closing),
     )
+
+
+def stiffest_block(experiment: GraspSetup) -> float:
+    """Bound of the growth of the contact pressure in Pa/m: needed where the pressure in a lumen presses against the jaws too."""
+    if not experiment.lumens:
+        return math.inf
+    return bonded_block_rate(shear_relaxation(experiment.block.tissue).instantaneous_modulus, experiment.block.size)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +11,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.overhang import overhang_warnings
+from tactsim.experiments.grasp.path import stiffest_block
 from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
 from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
@@ -21,12 +21,10 @@ from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readou
 from tactsim.experiments.grasp.warnings import finer, ragged, suction, uneven, unlikely
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.block_model import GraspModel
 from tactsim.mechanics.block_source import SourcedBlock
 from tactsim.mechanics.contact_record import ContactRecord
 from tactsim.mechanics.history_path import TimedPath, TimedState
-from tactsim.mechanics.penetration_effect import bonded_block_rate
 from tactsim.results.result import Quantity, Status
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
@@ -37,7 +35,7 @@ class GraspRecord(ContactRecord[GraspModel]):
 
     def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
         super().__init__(
-            model, path, tolerance=experiment.tolerance, stiffest=_stiffest(experiment), finer=finer(experiment.mesh.kind)
+            model, path, tolerance=experiment.tolerance, stiffest=stiffest_block(experiment), finer=finer(experiment.mesh.kind)
         )
         self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
@@ -130,6 +128,8 @@ class GraspRecord(ContactRecord[GraspModel]):
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
         assumptions.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
+        if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
+            assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
         if experiment.relaxes:
             assumptions.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
         if experiment.readout is not None:
@@ -182,10 +182,3 @@ class GraspRecord(ContactRecord[GraspModel]):
             return {side: self.model.touching_place(side).tolist() for side in JAWS}
         _, last = self._kept["last"]
         return {side: contact.place.tolist() for side, contact in zip(JAWS, last.contact.contacts, strict=True)}
-
-
-def _stiffest(experiment: GraspSetup) -> float:
-    """Bound of the growth of the contact pressure in Pa/m: needed where the pressure in a lumen presses against the jaws too."""
-    if not experiment.lumens:
-        return math.inf
-    return bonded_block_rate(shear_relaxation(experiment.block.tissue).instantaneous_modulus, experiment.block.size)

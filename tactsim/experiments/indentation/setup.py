@@ -20,7 +20,7 @@ from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.specimen import Specimen
 from tactsim.mechanics.step_policy import StepPolicy
-from tactsim.mesh.axisymmetric import Size, edge_graded
+from tactsim.mesh.axisymmetric import Size, edge_graded, finer_at_surface
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
@@ -207,13 +207,19 @@ class IndentationSetup(FrozenModel):
         return self.penetration_tolerance or default_penetration(1e-4 * self.contact_radius, self.prescribed)
 
     def size(self) -> Size:
-        """Wanted element size in m, at points in the frame of the body at first touch."""
-        settings, (rims, reach, finest) = self.mesh, self._focus()
-        finest = settings.finest or finest
+        """Wanted element size in m, at points in the frame of the body at first touch.
+
+        Around a round tip, elements finer than usual are wanted at the surface only: in the depth, stresses vary over a distance
+        like the radius of the contact, which the usual size resolves.
+        """
+        settings, (rims, reach, usual) = self.mesh, self._focus()
+        finest, n = settings.finest or usual, settings.refinement
         coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
         edges = np.array([(r, 0.0) for r in rims or [0.0]])
-        n = settings.refinement
-        return edge_graded(edges, finest=finest / n, growth=settings.growth / n, coarsest=coarsest / n, reach=reach)
+        growth, shallow = settings.growth / n, self.body.contact_shape.tip is not None and finest < usual
+        around = usual if shallow else finest
+        size = edge_graded(edges, finest=around / n, growth=growth, coarsest=max(coarsest, around) / n, reach=reach)
+        return finer_at_surface(size, finest=finest / n, growth=growth, reach=reach) if shallow else size
 
     def section(self) -> QuadraticMesh:
         """The mesh of the specimen's section."""

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 
 import pytest
 from campaign.random_cases import all_kinds, random_case
-from campaign.trials import Trial, contradictions, judged, tried
+from campaign.record import as_line, first_runs, last_runs, read_record
+from campaign.report import page
+from campaign.trials import PATIENCE, Ended, Trial, contradictions, judged, tried
 
 from tactsim.case import load_case
 from tactsim.case.writing import yaml_text
@@ -68,3 +71,48 @@ def test_a_trial_runs_the_command_and_keeps_its_case(tmp_path: Path) -> None:
     ended = tried(Trial("film_test", 1, 0, 60.0), tmp_path)
     assert (ended.outcome, ended.number) == ("converged", 0)
     assert (tmp_path / "film_test_0" / "case.yaml").is_file()
+
+
+def ended(number: int, outcome: str, kind: str = "grasp", program: str = "a") -> Ended:
+    return Ended(kind, 1, number, outcome, f"because of | {number}", 2.0, 1.5, program)
+
+
+def test_a_record_is_read_back_and_a_line_cut_short_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "trials.jsonl"
+    assert read_record(path) == []
+    path.write_text(as_line(ended(0, "converged")) + as_line(ended(1, "wrong")) + '{"kind": "gra', encoding="utf-8")
+    assert read_record(path) == [ended(0, "converged"), ended(1, "wrong")]
+    assert len(path.read_text(encoding="utf-8").splitlines()) == 2
+
+
+def test_first_and_last_runs_of_a_case_are_kept_apart() -> None:
+    record = [ended(0, "failed with reason"), ended(1, "converged"), ended(0, "converged", program="b")]
+    assert first_runs(record) == record[:2]
+    assert last_runs(record)["grasp", 0] == record[2]
+
+
+def test_the_page_shows_shares_with_intervals_reasons_and_what_came_of_the_failed_ones() -> None:
+    record = [ended(number, "converged") for number in range(9)] + [ended(9, "failed with reason"), ended(10, "refused")]
+    text = page(record, asked=1000, limit=300.0, patience=30.0)
+    assert "11 of 1000 asked of the kind `grasp`" in text
+    assert "| grasp | 11 | 9 | 0 | 1 | 1 | 0 | 0 | 0 | 90.0 % [59.6 %, 98.2 %] |" in text  # Wilson's by hand for 9 of 10
+    assert "| grasp 9 | failed with reason | 2 | because of \\| 9 |  |" in text
+    assert "run again\n" not in text
+    again = page([*record, ended(9, "converged", program="b")], asked=1000, limit=300.0, patience=30.0)
+    assert "| grasp 9 | failed with reason | 2 | because of \\| 9 | converged |" in again
+    assert "| grasp | 1 | 1 | 0 | 0 | 0 | 0 | 0 | 0 | 100.0 % [20.7 %, 100.0 %] |" in again
+    assert "`b` (1 cases)" in again
+
+
+def test_the_stored_page_is_that_of_the_stored_record() -> None:
+    folder = Path(__file__).parents[3] / "docs" / "verification"
+    text = (folder / "campaign.md").read_text(encoding="utf-8")
+    assert text == page(read_record(folder / "campaign.jsonl"), asked=1000, limit=300.0, patience=PATIENCE)
+
+
+def test_a_child_that_does_not_end_is_killed_and_counts_as_hung(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("campaign.trials.PATIENCE", 0.1)
+    monkeypatch.setattr("campaign.trials._command", lambda *_: time.sleep(60))
+    hung = tried(Trial("film_test", 1, 0, 0.1), tmp_path)
+    assert hung.outcome == "hung"
+    assert hung.seconds < 30

@@ -1,0 +1,39 @@
+"""Where no equilibrium is near, the body is followed to the next one."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.mechanics import contact_equilibrium
+from tactsim.results.result import Status
+
+PUNCH = {
+    "specimen": {"material": {"kind": "neo_hookean", "c10": 1668.0}, "thickness": 6.154e-3, "radius": 14.73e-3},
+    "body": {"kind": "punch", "radius": 4.96e-3, "fillet": 0.3722e-3},
+    "contact": {"kind": "coulomb", "friction": 0.0},
+    "displacement": 1.141e-3,
+    "mesh": {"growth": 0.6, "finest": 0.1984e-3},
+    "stop": "displacement",
+}
+"""Two elements on the fillet: near 1.12 mm one point of it opens and closes by turns, whatever the step."""
+
+
+def test_a_punch_goes_on_past_a_point_that_opens_and_closes(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = Indentation.model_validate(PUNCH).run()
+    assert result.status is Status.CONVERGED
+    forces = [step.values["reaction_force"] for step in result.steps]
+    assert forces == sorted(forces)
+    monkeypatch.setattr(contact_equilibrium, "SNAP_STEP", 0.0)
+    assert Indentation.model_validate(PUNCH).run().status is Status.FAILED
+
+
+def test_what_never_comes_to_rest_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stuck(*_: object, **__: object) -> None:
+        raise ConvergenceError("stuck", solutions=2)
+
+    body = Indentation.example().model().body
+    with pytest.raises(ConvergenceError, match="no equilibrium after a snap") as caught:
+        contact_equilibrium.after_snap(body, body.space.nodes.ravel(), stuck, lambda reached: reached)
+    assert caught.value.solutions > 0

@@ -1,0 +1,46 @@
+"""A grasp's own tolerance is never refused by the check of what penetration takes away: the last state is solved again."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.experiments.grasp import path, setup
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.mechanics.success import LARGEST_FORCE_ERROR
+from tactsim.results.result import Result, Status
+
+
+@pytest.fixture
+def coarse_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A default tolerance with which the example misses more of its force than a success may."""
+    monkeypatch.setattr(setup, "PENETRATION", 5e-3)
+    monkeypatch.setattr(setup, "PENETRATION_OF_CLOSING", 0.1)
+    monkeypatch.setattr(setup, "SOFTNESS_OF_HEIGHT", 0.05)  # or the contact would be stiffer than its tolerance asks
+
+
+def force(result: Result) -> float:
+    return float(result.quantities["reaction_force"].value)
+
+
+def test_the_last_state_is_solved_again_until_penetration_takes_away_little(
+    coarse_default: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(path, "SufficientContact", lambda problem, *_: problem)
+        refused = Grasp.example().run()
+    assert refused.status is Status.FAILED
+    assert refused.reason.startswith("penetration takes away")
+    tightened = Grasp.example().run()
+    assert tightened.status is Status.CONVERGED
+    assert tightened.quantities["penetration_force_error"].value <= LARGEST_FORCE_ERROR
+    assert any("at the end, for the error of the force" in line for line in tightened.assumptions)
+    monkeypatch.undo()
+    exact = Grasp.example().run()
+    assert abs(force(tightened) / force(exact) - 1) <= LARGEST_FORCE_ERROR  # what the estimate bounds
+    assert abs(force(refused) / force(exact) - 1) > LARGEST_FORCE_ERROR
+
+
+def test_a_tolerance_that_was_asked_for_stays(coarse_default: None) -> None:
+    example = Grasp.example()
+    asked = example.model_copy(update={"penetration_tolerance": example.tolerance})
+    assert asked.run().status is Status.FAILED
