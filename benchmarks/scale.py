@@ -1,6 +1,6 @@
 """A whole grasp with friction by the iterative solver, ever finer: unknowns, systems, iterations of each, seconds, peak memory.
 
-python benchmarks/scale.py [--scales 1 0.65 0.4] [--set KEY=VALUE ...]
+python benchmarks/scale.py [--factor] [--scales 1 0.65 0.4] [--set KEY=VALUE ...]
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.body import Body
 from tactsim.fem.linear import IterativeSolver, LinearSystem
+from tactsim.fem.pardiso import SinglePardiso
+from tactsim.fem.reused_factor import ReusedFactor
 
 CASE = Path(__file__).parents[1] / "cases" / "grasp_lump_icf.yaml"
 CELLS = {"size": 4.0, "inclusion_size": 2.0, "edge_size": 1.6}
@@ -33,12 +35,12 @@ SCALES = (1.0, 0.65, 0.4)
 
 
 class Counting(IterativeSolver):
-    """The iterative solver, which notes the iterations, the accuracy and the processor time of every solution."""
+    """A solver which notes the iterations, the accuracy and the processor time of every solution."""
 
     name = "counting"
 
-    def __init__(self, body: Body):
-        self._solver = BlockPreconditioned(body)
+    def __init__(self, body: Body, *, factor: bool = False):
+        self._solver = ReusedFactor(SinglePardiso()) if factor else BlockPreconditioned(body)
         self._begin = 0.0
         self.iterations: list[int] = []
         self.accuracies: list[float] = []
@@ -51,10 +53,11 @@ class Counting(IterativeSolver):
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,)."""
+        before = self._count() if isinstance(self._solver, ReusedFactor) else 0
         try:
             return self._solver.solve(right, accuracy)
         finally:
-            self.iterations.append(self._solver.iterations)
+            self.iterations.append(self._count() - before)
             self.accuracies.append(accuracy)
             self.seconds.append(time.process_time() - self._begin)
             sys.stderr.write(f"{len(right)} unknowns, {accuracy:.0e}: {self.iterations[-1]} in {self.seconds[-1]:.1f} s\n")
@@ -63,15 +66,19 @@ class Counting(IterativeSolver):
         """Release the preconditioner."""
         self._solver.close()
 
+    def _count(self) -> int:
+        """Steps of the last solution by iteration, or of all solutions with a factor."""
+        return self._solver.solutions if isinstance(self._solver, ReusedFactor) else self._solver.iterations
 
-def child(scale: float, settings: Sequence[str]) -> dict[str, float]:
+
+def child(scale: float, settings: Sequence[str], *, factor: bool = False) -> dict[str, float]:
     """Figures of one grasp in one step of time, in this process; memory in GiB."""
     sizes = ", ".join(f"{name}: {value * scale:g} mm" for name, value in CELLS.items())
     mesh = f"experiment.mesh={{kind: graded, {sizes}, growth: {max(GROWTH * scale, LEAST_GROWTH):g}}}"
     experiment = load_case(CASE, [mesh, "experiment.time.steps=1", *settings]).experiment
     begin, begin_processor = time.perf_counter(), time.process_time()
     model = experiment.model(experiment.sourced())
-    solver = Counting(model.body)
+    solver = Counting(model.body, factor=factor)
     model.problem.solver = solver
     figures = {"scale": scale, "unknowns": float(model.space.size), "finished": 1.0}
     try:
@@ -92,11 +99,13 @@ def child(scale: float, settings: Sequence[str]) -> dict[str, float]:
     }
 
 
-def measure(scales: Sequence[float] = SCALES, settings: Sequence[str] = ()) -> dict[str, float | list[dict[str, float]]]:
+def measure(
+    scales: Sequence[float] = SCALES, settings: Sequence[str] = (), *, factor: bool = False
+) -> dict[str, float | list[dict[str, float]]]:
     """Figures of every size, and the exponent of the processor time of one system over the unknowns."""
     runs = []
     for scale in scales:
-        command = [sys.executable, __file__, "--child", str(scale), "--set", *settings]
+        command = [sys.executable, __file__, "--child", str(scale), *(["--factor"] if factor else []), "--set", *settings]
         runs.append(json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout))
     return {"runs": runs} | exponents(runs)
 
@@ -119,9 +128,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scales", type=float, nargs="+", default=SCALES)
     parser.add_argument("--set", nargs="*", default=(), help="changes of the case")
+    parser.add_argument("--factor", action="store_true", help="by a factor that is reused instead")
     parser.add_argument("--child", type=float)
     arguments = parser.parse_args()
-    figures = child(arguments.child, arguments.set) if arguments.child else measure(arguments.scales, arguments.set)
+    chosen, sizes = (child, arguments.child) if arguments.child else (measure, arguments.scales)
+    figures = chosen(sizes, arguments.set, factor=arguments.factor)
     sys.stdout.write(json.dumps(figures, indent=2) + "\n")
 
 

@@ -2,11 +2,10 @@
 
 The nodes that a contact makes stiff and those of their elements stay in the coarse system: linear functions cannot follow an edge
 of contact inside a facet (110 754 unknowns: 39 iterations; without the neighbours none of 486 sufficed). The coarse system alone
-moves the stiff nodes. Relaxation is a contraction in the energy of a symmetric matrix; friction k (n + mu t) n' is none, and
-an error of pressure that one sweep leaves at a stiff node pushes its neighbours along: two sweeps did worse than one. So it
-is with curved jaws, whose pressure p adds -p / R along them: a node that gives way is left to the coarse system too.
-Source: hierarchies of degree, Rønquist & Patera 1987, doi:10.1007/BF01061297; block Gauss-Seidel, Trottenberg, Oosterlee &
-Schüller 2001, chapter 8.
+moves the nodes that contact rules. Relaxation contracts errors where a matrix is positive; a rigid body of radius R under a
+pressure p takes p / R from the stiffness along it, and there relaxation makes them grow (8 208 unknowns: 32 iterations; relaxed,
+none sufficed). Source: hierarchies of degree, Rønquist & Patera 1987, doi:10.1007/BF01061297; block Gauss-Seidel, Trottenberg,
+Oosterlee & Schüller 2001, chapter 8.
 """
 
 from __future__ import annotations
@@ -26,6 +25,8 @@ ELEMENTS = {2: (ElementTriP2, ElementTriP1), 3: (ElementTetP2, ElementTetP1)}
 """Quadratic and linear functions by dimension."""
 STIFF = 10.0
 """Diagonal over that of the stress-free tissue from which on contact rules a node; large strains stay below three."""
+SWEEPS = 2
+"""Relaxations before and after the correction: on a grasp of 82 832 unknowns 32 steps to 1e-6 instead of 45, in the same time."""
 YIELDING = 0.2
 """Smallest eigenvalue of a node's symmetric block over that of the stress-free tissue below which contact rules it too."""
 
@@ -74,9 +75,11 @@ class TwoLevel:
         """One cycle for a right-hand side (n d,), beginning at zero."""
         block, solution = self._block, np.zeros_like(right)
         entries = (block.indptr, block.indices, block.data, self._inverses, self._relaxed)
-        _sweep(*entries, right, solution, True)
+        for _ in range(SWEEPS):
+            _sweep(*entries, right, solution, True)
         solution += self._prolongation @ self._direct.solve(self._restriction @ (right - block @ solution))
-        _sweep(*entries, right, solution, False)
+        for _ in range(SWEEPS):
+            _sweep(*entries, right, solution, False)
         return solution
 
     def close(self) -> None:
