@@ -19,7 +19,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.body import Body
-from tactsim.fem.linear import LARGEST_RESIDUAL, IterativeSolver, LinearSystem, direct_solver
+from tactsim.fem.linear import LARGEST_RESIDUAL, LOOSENESS, IterativeSolver, LinearSystem, direct_solver
 from tactsim.fem.two_level import TwoLevel, free_rows
 
 RESTART = 80
@@ -91,16 +91,17 @@ class BlockPreconditioned(IterativeSolver):
         solution, left, self.iterations = np.zeros_like(right), right, 0
         size = float(np.linalg.norm(self._scale * right))
         goal = max(accuracy, FINEST) * size
+        largest = SHARE * max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max())
         operator = LinearOperator((len(right),) * 2, matvec=self._preconditioned, dtype=float)
         for _ in range(MOST_CYCLES):
-            if not self._above(left, right, goal):
+            if not self._above(left, goal, largest):
                 return solution
             now = float(np.linalg.norm(self._scale * left))
             target = goal if now > goal else SHARE * now
             y, _ = gmres(operator, self._scale * left, rtol=0.0, atol=target, restart=RESTART, maxiter=1)
             solution = solution + self._approximate(y / self._scale)
             left = right - self._matrix @ solution
-        if self._above(left, right, goal):
+        if self._above(left, goal, largest):
             raise ConvergenceError(
                 f"the iterative solver left {np.linalg.norm(self._scale * left) / size:.1e} of the residual after "
                 f"{self.iterations} iterations; is the body held against moving as a whole, and is the material stable?"
@@ -113,9 +114,8 @@ class BlockPreconditioned(IterativeSolver):
         self._schur.close()
         self._matrix = None
 
-    def _above(self, left: Array, right: Array, goal: float) -> bool:
+    def _above(self, left: Array, goal: float, largest: float) -> bool:
         """Whether a residual exceeds the goal, or its largest entry what a solution may leave."""
-        largest = SHARE * LARGEST_RESIDUAL * float(np.abs(right).max())
         return not (np.linalg.norm(self._scale * left) <= 1.01 * goal and np.abs(left).max() <= largest)
 
     def _preconditioned(self, y: Array) -> Array:

@@ -1,8 +1,11 @@
 """Two-level cycle for the displacement block of quadratic tissue: relaxation node by node, correction by the linear functions.
 
 The nodes that a contact makes stiff and those of their elements stay in the coarse system: linear functions cannot follow an edge
-of contact inside a facet (110 754 unknowns: 39 iterations; without the neighbours none of 486 sufficed). Source: hierarchies of
-degree, Rønquist & Patera 1987, doi:10.1007/BF01061297; block Gauss-Seidel, Trottenberg, Oosterlee & Schüller 2001, chapter 8.
+of contact inside a facet (110 754 unknowns: 39 iterations; without the neighbours none of 486 sufficed). The coarse system alone
+moves the nodes that contact rules. Relaxation contracts errors where a matrix is positive; a rigid body of radius R under a
+pressure p takes p / R from the stiffness along it, and there relaxation makes them grow (8 208 unknowns: 32 iterations; relaxed,
+none sufficed). Source: hierarchies of degree, Rønquist & Patera 1987, doi:10.1007/BF01061297; block Gauss-Seidel, Trottenberg,
+Oosterlee & Schüller 2001, chapter 8.
 """
 
 from __future__ import annotations
@@ -22,6 +25,10 @@ ELEMENTS = {2: (ElementTriP2, ElementTriP1), 3: (ElementTetP2, ElementTetP1)}
 """Quadratic and linear functions by dimension."""
 STIFF = 10.0
 """Diagonal over that of the stress-free tissue from which on contact rules a node; large strains stay below three."""
+SWEEPS = 2
+"""Relaxations before and after the correction: on a grasp of 82 832 unknowns 32 steps to 1e-6 instead of 45, in the same time."""
+YIELDING = 0.2
+"""Smallest eigenvalue of a node's symmetric block over that of the stress-free tissue below which contact rules it too."""
 
 
 class TwoLevel:
@@ -50,11 +57,12 @@ class TwoLevel:
             self._inverses = np.ascontiguousarray(np.linalg.inv(diagonal))
         except np.linalg.LinAlgError as error:
             raise ConvergenceError("the tangent of a node is singular; is the material stable?") from error
-        stiff = np.trace(diagonal, axis1=1, axis2=2) > STIFF * dim * self._diagonal
+        free = free_rows(block)
+        ruled = self._ruled_by_contact(diagonal, free)
+        self._relaxed = np.flatnonzero(~ruled)
         graph = csr_matrix((np.ones(len(block.indices)), block.indices, block.indptr), shape=(count, count))
-        stiff = graph @ stiff.astype(float) > 0
         self._block = block
-        prolongation = blocked(self._coarse_nodes(stiff), free_rows(block))
+        prolongation = blocked(self._coarse_nodes(graph @ ruled.astype(float) > 0), free)
         coarse = (prolongation.T.tobsr((dim, dim)) @ (block @ prolongation)).tocsr()
         coarse.sort_indices()
         self._prolongation, self._restriction = prolongation.tocsr(), prolongation.T.tocsr()
@@ -66,15 +74,28 @@ class TwoLevel:
     def __call__(self, right: Array) -> Array:
         """One cycle for a right-hand side (n d,), beginning at zero."""
         block, solution = self._block, np.zeros_like(right)
-        entries = (block.indptr, block.indices, block.data, self._inverses)
-        _sweep(*entries, right, solution, True)
+        entries = (block.indptr, block.indices, block.data, self._inverses, self._relaxed)
+        for _ in range(SWEEPS):
+            _sweep(*entries, right, solution, True)
         solution += self._prolongation @ self._direct.solve(self._restriction @ (right - block @ solution))
-        _sweep(*entries, right, solution, False)
+        for _ in range(SWEEPS):
+            _sweep(*entries, right, solution, False)
         return solution
 
     def close(self) -> None:
         """Release the coarse factor."""
         self._direct.close()
+
+    def _ruled_by_contact(self, diagonal: Array, free: Array) -> Array:
+        """Which nodes (n,) a contact makes much stiffer than their tissue, or takes stiffness from, where they are free (n, d).
+
+        ``diagonal`` (n, d, d) holds their own blocks.
+        """
+        relative = (diagonal + diagonal.swapaxes(1, 2)) / (2 * self._diagonal[:, None, None])
+        nodes, axes = np.nonzero(~free)
+        relative[nodes, axes, axes] = 1.0
+        eigenvalues = np.linalg.eigvalsh(relative)
+        return (eigenvalues.sum(axis=1) > STIFF * self._dim) | (eigenvalues[:, 0] < YIELDING)
 
     def _coarse_nodes(self, stiff: Array) -> csr_matrix:
         """Interpolation (n, m) from the corners and from the stiff nodes on edges, which stand for themselves."""
@@ -133,12 +154,12 @@ def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:
 
 
 @numba.njit(cache=True)
-def _sweep(indptr, indices, data, inverses, right, solution, forwards):  # type: ignore[no-untyped-def]
-    """Gauss-Seidel over the nodes, in place; ``inverses`` (n, d, d) of their own blocks."""
-    count, dim = len(inverses), inverses.shape[1]
+def _sweep(indptr, indices, data, inverses, nodes, right, solution, forwards):  # type: ignore[no-untyped-def]
+    """Gauss-Seidel over some ``nodes``, in place; ``inverses`` (n, d, d) of the own blocks of all."""
+    count, dim = len(nodes), inverses.shape[1]
     left = np.zeros(dim)
     for turn in range(count):
-        node = turn if forwards else count - 1 - turn
+        node = nodes[turn if forwards else count - 1 - turn]
         for i in range(dim):
             left[i] = right[dim * node + i]
         for k in range(indptr[node], indptr[node + 1]):

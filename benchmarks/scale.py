@@ -1,0 +1,140 @@
+"""A whole grasp with friction by the iterative solver, ever finer: unknowns, systems, iterations of each, seconds, peak memory.
+
+python benchmarks/scale.py [--factor] [--scales 1 0.65 0.4] [--set KEY=VALUE ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.case.loading import load_case
+from tactsim.errors import ConvergenceError
+from tactsim.experiments.grasp.path import grasp_path
+from tactsim.fem.block_preconditioner import BlockPreconditioned
+from tactsim.fem.body import Body
+from tactsim.fem.linear import IterativeSolver, LinearSystem
+from tactsim.fem.pardiso import SinglePardiso
+from tactsim.fem.reused_factor import ReusedFactor
+
+CASE = Path(__file__).parents[1] / "cases" / "grasp_lump_icf.yaml"
+CELLS = {"size": 4.0, "inclusion_size": 2.0, "edge_size": 1.6}
+"""Sizes in mm of the shipped case, and what each is multiplied by: the scale."""
+GROWTH, LEAST_GROWTH = 0.6, 0.15
+SCALES = (1.0, 0.65, 0.4)
+"""28 506, 82 832 and 278 506 unknowns; 0.24 gives a million."""
+
+
+class Counting(IterativeSolver):
+    """A solver which notes the iterations, the accuracy and the processor time of every solution."""
+
+    name = "counting"
+
+    def __init__(self, body: Body, *, factor: bool = False):
+        self._solver = ReusedFactor(SinglePardiso()) if factor else BlockPreconditioned(body)
+        self._begin = 0.0
+        self.iterations: list[int] = []
+        self.accuracies: list[float] = []
+        self.seconds: list[float] = []
+
+    def factor(self, system: LinearSystem) -> None:
+        """Make the preconditioner."""
+        self._begin = time.process_time()
+        self._solver.factor(system)
+
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,)."""
+        before = self._count() if isinstance(self._solver, ReusedFactor) else 0
+        try:
+            return self._solver.solve(right, accuracy)
+        finally:
+            self.iterations.append(self._count() - before)
+            self.accuracies.append(accuracy)
+            self.seconds.append(time.process_time() - self._begin)
+            sys.stderr.write(f"{len(right)} unknowns, {accuracy:.0e}: {self.iterations[-1]} in {self.seconds[-1]:.1f} s\n")
+
+    def close(self) -> None:
+        """Release the preconditioner."""
+        self._solver.close()
+
+    def _count(self) -> int:
+        """Steps of the last solution by iteration, or of all solutions with a factor."""
+        return self._solver.solutions if isinstance(self._solver, ReusedFactor) else self._solver.iterations
+
+
+def child(scale: float, settings: Sequence[str], *, factor: bool = False) -> dict[str, float]:
+    """Figures of one grasp in one step of time, in this process; memory in GiB."""
+    sizes = ", ".join(f"{name}: {value * scale:g} mm" for name, value in CELLS.items())
+    mesh = f"experiment.mesh={{kind: graded, {sizes}, growth: {max(GROWTH * scale, LEAST_GROWTH):g}}}"
+    experiment = load_case(CASE, [mesh, "experiment.time.steps=1", *settings]).experiment
+    begin, begin_processor = time.perf_counter(), time.process_time()
+    model = experiment.model(experiment.sourced())
+    solver = Counting(model.body, factor=factor)
+    model.problem.solver = solver
+    figures = {"scale": scale, "unknowns": float(model.space.size), "finished": 1.0}
+    try:
+        for _ in grasp_path(experiment, model).states():
+            pass
+    except ConvergenceError as error:
+        sys.stderr.write(f"{error}\n")
+        figures["finished"] = 0.0
+    return figures | {
+        "systems": float(len(solver.iterations)),
+        "mean_iterations": float(np.mean(solver.iterations)),
+        "most_iterations": float(max(solver.iterations)),
+        "finest_accuracy": min(solver.accuracies),
+        "seconds": time.perf_counter() - begin,
+        "processor_seconds": time.process_time() - begin_processor,
+        "linear_seconds": sum(solver.seconds),
+        "memory_gibibytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+    }
+
+
+def measure(
+    scales: Sequence[float] = SCALES, settings: Sequence[str] = (), *, factor: bool = False
+) -> dict[str, float | list[dict[str, float]]]:
+    """Figures of every size, and the exponent of the processor time of one system over the unknowns."""
+    runs = []
+    for scale in scales:
+        command = [sys.executable, __file__, "--child", str(scale), *(["--factor"] if factor else []), "--set", *settings]
+        runs.append(json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout))
+    return {"runs": runs} | exponents(runs)
+
+
+def exponents(runs: Sequence[dict[str, float]]) -> dict[str, float]:
+    """Slopes of the time of a grasp and of one of its systems over the unknowns, fitted in logarithms; none for one size."""
+    if len(runs) < 2:
+        return {}
+    unknowns = np.log([run["unknowns"] for run in runs])
+    seconds = np.log([run["processor_seconds"] for run in runs])
+    each = seconds - np.log([run["systems"] for run in runs])
+    return {
+        "exponent": float(np.polyfit(unknowns, seconds, 1)[0]),
+        "exponent_of_a_system": float(np.polyfit(unknowns, each, 1)[0]),
+    }
+
+
+def main() -> None:
+    """Measure one size in this process, or all in children."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scales", type=float, nargs="+", default=SCALES)
+    parser.add_argument("--set", nargs="*", default=(), help="changes of the case")
+    parser.add_argument("--factor", action="store_true", help="by a factor that is reused instead")
+    parser.add_argument("--child", type=float)
+    arguments = parser.parse_args()
+    chosen, sizes = (child, arguments.child) if arguments.child else (measure, arguments.scales)
+    figures = chosen(sizes, arguments.set, factor=arguments.factor)
+    sys.stdout.write(json.dumps(figures, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
