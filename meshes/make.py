@@ -71,7 +71,7 @@ def meshes_of_cases() -> dict[str, tuple[str, BlockMesh, str]]:
     meshes: dict[str, tuple[str, BlockMesh, str]] = {}
     for path in sorted(CASES.glob("grasp_*.yaml")):
         experiment = load_case(path).experiment
-        if not isinstance(experiment.mesh, TetrahedraSource):
+        if not isinstance(experiment.source, TetrahedraSource):
             continue
         sourced = experiment.sourced()
         meshes.setdefault(sourced.block.key, (path.stem, sourced.block, sourced.origin))

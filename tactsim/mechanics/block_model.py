@@ -28,6 +28,7 @@ from tactsim.mechanics.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.solid_fields import solid_frame
 from tactsim.mechanics.surface_forces import TaxelForces, taxel_forces
+from tactsim.mechanics.traction_recovery import recovered_forces
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
@@ -165,9 +166,9 @@ class GraspModel:
         jaw, surface = self.jaws[side], self.surfaces[side]
         traction = -jaw.rotation.T @ self._traction(state, side)
         count = len(FACET_POINTS)
-        forces = (traction * surface.points.weights).reshape(3, -1, count)
+        weights, facets = surface.points.weights.reshape(-1, count), self.touchable[side]
+        forces = recovered_forces(facets, traction.reshape(3, -1, count) * weights, weights, FACET_POINTS)
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0]
-        facets = self.touchable[side]
         place = state.contacts[JAWS.index(side)].place
         faces = jaw.face_coordinates(deformed[facets.ravel()].T - place[:, None])
         return taxel_forces(layout, faces.T.reshape(-1, 6, 2), forces, FACET_POINTS)

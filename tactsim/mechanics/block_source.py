@@ -16,7 +16,7 @@ from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
-from tactsim.mesh.graded_block import graded_block
+from tactsim.mesh.graded_block import graded_block, graded_misfit
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh
@@ -82,9 +82,9 @@ class LayersSource(BlockMeshSettings):
 
 
 class GradedSource(BlockMeshSettings):
-    """Few cells, thin at the faces and rounded around at most one sphere or ellipsoid: the fastest for its accuracy."""
+    """Few cells, thin at the faces and rounded around spheres and ellipsoids in a row: the fastest for its accuracy."""
 
-    kind: Literal["graded"]
+    kind: Literal["graded"] = "graded"
     size: Positive = 6e-3
     """Edge length far from the inclusion and the faces."""
     inclusion_size: Positive = 2e-3
@@ -100,16 +100,8 @@ class GradedSource(BlockMeshSettings):
         return GAP_SHARE * self.inclusion_size
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m around its only inclusion, if any.
-
-        Raises
-        ------
-        InputError
-            If there is more than one inclusion.
-        """
-        if len(inclusions) > 1:
-            raise InputError(f"mesh.kind: graded serves one inclusion or none, not {len(inclusions)}; take kind: tetrahedra")
-        block = graded_block(size, inclusions[0] if inclusions else None, _sizes(self))
+        """The mesh of a block of this size in m around its inclusions, if any."""
+        block = graded_block(size, inclusions, _sizes(self))
         return SourcedBlock(block, content_hash(block.mesh), "graded cells")
 
 
@@ -224,6 +216,23 @@ def _tag(name: str) -> int | str:
     return int(name) if name.lstrip("-").isdigit() else name
 
 
+class AutomaticSource(FrozenModel):
+    """Graded cells where they can follow the inclusions; tetrahedra around free forms and arteries, and for jaws smaller than the
+    block, at whose edges they are refined."""
+
+    kind: Literal["automatic"] = "automatic"
+    graded: GradedSource = GradedSource()
+    """The cells around spheres and ellipsoids in a row."""
+    tetrahedra: TetrahedraSource = TetrahedraSource()
+    """The tetrahedra otherwise."""
+
+    def chosen(self, size: Size, inclusions: Sequence[Inclusion], *, covered: bool) -> GradedSource | TetrahedraSource:
+        """What suits these inclusions in a block of this size in m, and jaws that cover it or not."""
+        return self.graded if covered and graded_misfit(size, inclusions) is None else self.tetrahedra
+
+
+AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource
+"""What gives a mesh."""
 AnyBlockSource = Annotated[
-    TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
+    AutomaticSource | TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
 ]

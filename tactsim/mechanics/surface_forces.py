@@ -14,6 +14,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.mechanics.traction_recovery import shape_functions
 
 AFFINE = 1e-9
 """A facet whose mid-side nodes are off the middles by less than this part of its size is taken as straight."""
@@ -91,7 +92,7 @@ def straight_pieces(places: Array) -> tuple[Array, Array]:
     for chosen, divisions in ((~curved, 1), (curved, SUBDIVISION)):
         reference = _divided(divisions)
         numbers = np.flatnonzero(chosen)
-        mapped = np.einsum("tca,fad->ftcd", _quadratic(reference), places[numbers])
+        mapped = np.einsum("tca,fad->ftcd", shape_functions(reference), places[numbers])
         both = np.concatenate([mapped, np.broadcast_to(reference, mapped.shape)], axis=-1)
         parts.append((both.reshape(-1, 3, 4), np.repeat(numbers, len(reference))))
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
@@ -140,16 +141,9 @@ def _divided(divisions: int) -> Array:
     return np.array(triangles)
 
 
-def _quadratic(x: Array) -> Array:
-    """Quadratic shape functions at reference points (..., 2): corners, then mid-sides 01, 12, 02, shape (..., 6)."""
-    r, s = x[..., 0], x[..., 1]
-    t = 1 - r - s
-    return np.stack([t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * t * r, 4 * r * s, 4 * s * t], axis=-1)
-
-
 def _densities(forces: Array, points: Array) -> Array:
     """Nodal values (3, F, 6), per reference triangle, of the polynomial whose weighted values at the points are ``forces``."""
-    values = _quadratic(points)
+    values = shape_functions(points)
     moments = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 6
     if points.shape != (6, 2) or np.linalg.matrix_rank(values) < 6:
         raise InputError("six points that determine a quadratic polynomial are needed on each facet")
@@ -162,7 +156,7 @@ def _integrals(reference: Array, facets: Array, densities: Array) -> Array:
     middles = (reference + np.roll(reference, -1, axis=1)) / 2
     (ux, uy), (vx, vy) = (np.moveaxis(reference[:, k] - reference[:, 0], -1, 0) for k in (1, 2))
     area = np.abs(ux * vy - uy * vx) / 2
-    mean = np.einsum("tma,cta->ct", _quadratic(middles), densities[:, facets]) / 3
+    mean = np.einsum("tma,cta->ct", shape_functions(middles), densities[:, facets]) / 3
     return area * mean
 
 

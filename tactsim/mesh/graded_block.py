@@ -1,4 +1,4 @@
-"""Blocks of few elements: a grid of cells that grow away from the faces, and around one lump a box of rounded cells.
+"""Blocks of few elements: a grid of cells that grow away from the faces, and around lumps boxes of rounded cells.
 
 Tissue that sticks to a jaw is strained without bound where its free face begins, so that thin cells at the faces are worth more
 than many cells (Apel 1999, Anisotropic Finite Elements: Local Estimates and Applications, for grading towards edges).
@@ -21,6 +21,7 @@ from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
+from tactsim.mesh.graded_row import Lump, in_a_row, row_cells, row_of
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
@@ -29,48 +30,83 @@ ATTEMPTS = 3
 
 
 def graded_block(
-    size: Sequence[float], inclusion: Inclusion | None = None, settings: BlockMeshSettings | None = None
+    size: Sequence[float], inclusions: Sequence[Inclusion] = (), settings: BlockMeshSettings | None = None
 ) -> BlockMesh:
-    """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the lump, if there is one.
+    """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the lumps in it.
 
-    A sphere or an ellipsoid may lie anywhere in the block. Cells are wanted ``edge_size`` thick at the faces (by default a third
-    of ``size``), each next one longer by ``growth`` up to ``size``; on the lump they are at most about ``inclusion_size`` long,
-    shorter where it comes so near to a face that longer ones would be badly curved.
+    A sphere or an ellipsoid may lie anywhere in the block, several in a row along one of its axes. Cells are wanted ``edge_size``
+    thick at the faces (by default a third of ``size``), each next one longer by ``growth`` up to ``size``; on a lump they are at
+    most about ``inclusion_size`` long, shorter where longer ones would be badly curved.
 
     Raises
     ------
     InputError
-        If the inclusion is of another kind or does not suit the block, or the cells are too many.
+        If an inclusion is of another kind, they do not stand in a row or do not suit the block, or the cells are too many.
     ConvergenceError
         If the mesh misses the volumes or the shape asked for.
     """
     started, extent, settings = time.perf_counter(), np.asarray(size, float), settings or BlockMeshSettings()
-    held = [] if inclusion is None else [inclusion]
-    check_inclusions(extent, held, 0.0)
-    key = f"graded-{mesh_key(size, held, settings)}"
-    finished = partial(fitted, size=extent, inclusions=held, key=key, started=started, slide=False, smooth=False)
-    if inclusion is None:
+    check_inclusions(extent, inclusions, 0.0)
+    key = f"graded-{mesh_key(size, inclusions, settings)}"
+    finished = partial(fitted, size=extent, inclusions=inclusions, key=key, started=started, slide=False, smooth=False)
+    if not inclusions:
         lines = [mirrored_line(float(length), settings) for length in extent]
         _check_size([len(line) - 1 for line in lines])
         corners, cells = product(lines), grid([len(line) - 1 for line in lines])
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
-    solid = inclusion.solids(extent)[0]
-    ball = solid.ball_image()
-    if ball is None:
-        raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
+    lumps = [_lump(inclusion, extent) for inclusion in inclusions]
     for finer in range(ATTEMPTS):
-        around = lines_around(ball, solid.bounds(), extent, settings, finer)
-        _check_size([len(line.near) - 1 for line in around])
-        corners, cells, labels = _around(ball, around)
-        simplices = _sixths(cells, _mirrored_places(corners, ball.center, ball.stretch))
+        corners, cells, labels = _cells(lumps, extent, settings, finer)
+        simplices = _sixths(cells, _places_about(corners, [lump.ball for lump in lumps]))
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
         except ConvergenceError as error:
             if finer == ATTEMPTS - 1:
-                name = inclusion_name(1, inclusion)
-                raise ConvergenceError(f"no graded cells suit {name}: {error}; take mesh.kind: tetrahedra") from None
+                names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))
+                verb = "suit" if len(inclusions) == 1 else "suit all of"
+                raise ConvergenceError(f"no graded cells {verb} {names}: {error}; take mesh.kind: tetrahedra") from None
     raise AssertionError("every attempt returns or raises")
+
+
+def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str | None:
+    """Why inclusions cannot have graded cells; None if they may."""
+    extent = np.asarray(size, float)
+    try:
+        lumps = [_lump(inclusion, extent) for inclusion in inclusions]
+        if len(lumps) > 1:
+            in_a_row(lumps)
+    except InputError as error:
+        return str(error)
+    return None
+
+
+def _lump(inclusion: Inclusion, extent: Array) -> Lump:
+    """The ball that an inclusion is, with its bounds.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    solid = inclusion.solids(extent)[0]
+    ball = solid.ball_image()
+    if ball is None:
+        raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
+    return Lump(ball, solid.bounds())
+
+
+def _cells(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> tuple[Array, Array, Array]:
+    """Corners (n, 3), cells (H, 8) and regions (H,) around one lump, or around several in a row."""
+    if len(lumps) == 1:
+        around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)
+        _check_size([len(line.near) - 1 for line in around])
+        return _around(lumps[0].ball, around)
+    row = row_of(lumps, extent, settings, finer)
+    _check_size([len(away) - 1 for away in row.away])
+    corners, cells, labels = row_cells(row)
+    numbers = np.array([0, *(1 + next(k for k, lump in enumerate(lumps) if lump is here) for here in row.lumps)])
+    return corners, cells, numbers[labels]
 
 
 def _check_size(cells: Sequence[int]) -> None:
@@ -112,13 +148,25 @@ def _around_box(lines: Sequence[Line]) -> tuple[Array, Array]:
     return corners, grid(counts)[~inside]
 
 
+def _places_about(corners: Array, balls: Sequence[BallImage]) -> Array:
+    """Places (n,) of corners as `_mirrored_places` gives them, each about the lump that is nearest to it."""
+    parts = [np.abs(np.linalg.solve(ball.stretch, (corners - ball.center).T).T) for ball in balls]
+    nearest = np.argmin([np.linalg.norm(part, axis=1).round(9) for part in parts], axis=0)
+    distances = np.choose(nearest[:, None], parts)
+    return _placed(distances)
+
+
 def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:
     """Places (n,) of corners in an order that is the same for a cell and for its mirror images about the centre.
 
     What is farther from the lump comes first, in lengths in which it is a ball, so that a curved side sees the tip of its
     tetrahedron; on the ball, what is nearest to a corner of the cube around it.
     """
-    distances = np.abs(np.linalg.solve(stretch, (corners - center).T).T)
+    return _placed(np.abs(np.linalg.solve(stretch, (corners - center).T).T))
+
+
+def _placed(distances: Array) -> Array:
+    """Places (n,) of corners by their distances (n, 3) from a middle, the farthest first."""
     distances = (distances / distances.max()).round(9)
     return ranks((*distances.T, distances.max(axis=1), -np.linalg.norm(distances, axis=1).round(9)))
 

@@ -69,27 +69,27 @@ def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockM
     lines = []
     check_along(np.pi / 2 * ball.longest / settings.inclusion_size, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
     wanted = round(np.pi / 2 * ball.longest / settings.inclusion_size)
-    along = _cells_along(bounds, float(extent[2]), wanted, finer)
+    along = cells_along(bounds, float(extent[2]), wanted, finer)
     for axis, ((low, high), center, length) in enumerate(zip(bounds.T, ball.center, extent, strict=True)):
         half = (high - low) / 2
         gaps = np.array([low, length - high])
-        left = np.maximum(np.array([center, length - center]) - REACH * half, _left(gaps, settings, pressed=axis == 2))
-        least = np.minimum(_edge(settings), np.array([center, length - center]) - CORE_ROOM * half)
+        left = np.maximum(np.array([center, length - center]) - REACH * half, room_left(gaps, settings, pressed=axis == 2))
+        least = np.minimum(edge_thickness(settings), np.array([center, length - center]) - CORE_ROOM * half)
         across = max(LEAST_BETWEEN, wanted) + finer if axis == 2 else along
-        shares = _shares(across, GATHER if along >= LEAST_ALONG_CLOSE and axis < 2 else 0.0)
+        shares = box_shares(across, GATHER if along >= LEAST_ALONG_CLOSE and axis < 2 else 0.0)
         near = _through(left, center, length, shares, settings)
         far = _through(np.where(left > 0, np.maximum(left, least), 0.0), center, length, shares, settings)
-        lines.append(Line(near, far, len(_spaced(left[0], settings)) - 1, across))
+        lines.append(Line(near, far, len(spaced(left[0], settings)) - 1, across))
     return lines
 
 
 def mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
     """Ascending places in m from face to face, those of one half the mirror image of the others."""
-    half = _spaced(length / 2, settings)
+    half = spaced(length / 2, settings)
     return np.concatenate([half, length - half[-2::-1]])
 
 
-def _shares(across: int, gather: float) -> Array:
+def box_shares(across: int, gather: float) -> Array:
     """Ascending relative positions, -1 to 1 from side to side of the box, at which its ``across`` cells end."""
     even = np.linspace(-1, 1, across + 1)
     return (1 - gather) * even + gather * even**3
@@ -97,18 +97,18 @@ def _shares(across: int, gather: float) -> Array:
 
 def _through(left: Array, center: float, length: float, shares: Array, settings: BlockMeshSettings) -> Array:
     """Ascending places in m from face to face: ``left`` (2,) in m before and after a box of cells around a centre."""
-    before, after = (_spaced(float(span), settings) for span in left)
+    before, after = (spaced(float(span), settings) for span in left)
     within = np.interp(shares, [-1, 0, 1], [left[0], center, length - left[1]])
     return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
 
 
-def _left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
+def room_left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
     """Distances in m of the box from faces ``gaps`` away from the lump; zero from a pressed face that is near."""
-    near = gaps < NEAR * _edge(settings)
+    near = gaps < NEAR * edge_thickness(settings)
     return np.where(pressed & near, 0.0, (1 - ROOM) * gaps)
 
 
-def _cells_along(bounds: Array, height: float, wanted: int, finer: int) -> int:
+def cells_along(bounds: Array, height: float, wanted: int, finer: int) -> int:
     """Number of cells across the box along the jaws around a lump between two corners (2, 3) in m, ``wanted`` at least."""
     gap, half = min(bounds[0, 2], height - bounds[1, 2]), np.diff(bounds[:, :2], axis=0).max() / 2
     if wanted <= LEAST_BETWEEN and gap > FAR * half and bounds[1, 2] - bounds[0, 2] < SMALL * height:
@@ -117,20 +117,20 @@ def _cells_along(bounds: Array, height: float, wanted: int, finer: int) -> int:
     return PAIRED * (-(-max(least, wanted) // PAIRED) + finer)
 
 
-def _edge(settings: BlockMeshSettings) -> float:
+def edge_thickness(settings: BlockMeshSettings) -> float:
     """Thickness of cells at the faces in m."""
     return min(settings.edge_size or EDGE_SHARE * settings.size, settings.size)
 
 
-def _spaced(length: float, settings: BlockMeshSettings) -> Array:
+def spaced(length: float, settings: BlockMeshSettings) -> Array:
     """Ascending places in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit; or
     one cell, if most of a second one would not find room."""
     if length <= 0:
         return np.zeros(1)
-    thickness = [_edge(settings)]
+    thickness = [edge_thickness(settings)]
     while sum(thickness) + NEAREST * (further := min(thickness[-1] * (1 + settings.growth), settings.size)) <= length:
         thickness.append(further)
-        check_along(len(thickness), f"mesh.size, mesh.edge_size and mesh.growth ({_edge(settings):.3g} m at the faces)")
+        check_along(len(thickness), f"mesh.size, mesh.edge_size and mesh.growth ({edge_thickness(settings):.3g} m at the faces)")
     steps = np.array(thickness)
     if len(steps) == 1:
         return np.array([0.0, length])

@@ -151,7 +151,7 @@ PASSING = 5e-6
 
 def beyond_the_jaw(faces, *, size=(20e-3, 20e-3, 10e-3), closing=0.85e-3, tolerance=PASSING):
     """How far in m free faces of a stuck block reach beyond the upper jaw; ``faces`` may touch the jaws, by name."""
-    block = graded_block(size, None, BlockMeshSettings(size=6e-3, edge_size=0.8e-3, growth=1.0))
+    block = graded_block(size, (), BlockMeshSettings(size=6e-3, edge_size=0.8e-3, growth=1.0))
     jaws = [Jaw(side=side, width=0.05, depth=0.05, fillet=1e-3) for side in ("upper", "lower")]
     touching = {name: block.facets[name] for name in faces}
     model = GraspModel(block.mesh, [RUBBER], touching, jaws=jaws, offsets=np.tile(np.array(size[:2]) / 2, (2, 1)))

@@ -15,13 +15,19 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
+from tactsim.experiments.grasp.mesh_choice import check_served, chosen_source, grasp_mesh
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_source import AnyBlockSource, SourcedBlock, TetrahedraSource
+from tactsim.mechanics.block_source import (
+    AnyBlockSource,
+    AnySource,
+    AutomaticSource,
+    SourcedBlock,
+)
 from tactsim.mechanics.loading import AnyLoading, check_periods
 from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
@@ -113,7 +119,7 @@ class GraspSetup(FrozenModel):
     penetration_tolerance: Positive | None = None
     """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height, at most 1e-2 of a prescribed
     closing. At most a tenth of that closing, of the block's height and of a jaw's fillet."""
-    mesh: AnyBlockSource = TetrahedraSource()
+    mesh: AnyBlockSource = AutomaticSource()
     """Where the mesh comes from."""
     time: GraspTimeSettings = GraspTimeSettings()
     """Steps of time."""
@@ -185,16 +191,15 @@ class GraspSetup(FrozenModel):
         softest = shear_relaxation(self.block.tissue).instantaneous_modulus
         return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=self.softness)
 
+    @property
+    def source(self) -> AnySource:
+        """Where the mesh comes from, as far as the case says without making it."""
+        return chosen_source(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS])
+
     def sourced(self) -> SourcedBlock:
-        """The mesh, finer at the edges of jaws that are smaller than the block and in its middle."""
-        source, size = self.mesh, self.block.size
-        jaws = [self.jaw(side) for side in JAWS]
-        widths = {(jaw.width, jaw.depth) for jaw in jaws}
-        covered = all(jaw.width >= size[0] and jaw.depth >= size[1] for jaw in jaws)
-        centred = len(widths) == 1 and not any(self.upper.offset + self.lower.offset)
-        if isinstance(source, TetrahedraSource) and source.jaw is None and centred and not covered:
-            source = source.model_copy(update={"jaw": widths.pop()})
-        return source.sourced(size, self.shapes)
+        """The mesh; tetrahedra are finer at the edges of jaws that are smaller than the block and in its middle."""
+        centred = not any(self.upper.offset + self.lower.offset)
+        return grasp_mesh(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS], centred=centred)
 
     def model(self, sourced: SourcedBlock) -> GraspModel:
         """The finite element model on a mesh."""
@@ -213,7 +218,7 @@ class GraspSetup(FrozenModel):
     def _embedded(self) -> Self:
         size = np.array(self.block.size)
         try:
-            check_inclusions(size, self.shapes, self.mesh.least_gap)
+            check_inclusions(size, self.shapes, self.source.least_gap)
         except InvalidQuantity as error:
             names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
             blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
@@ -222,13 +227,7 @@ class GraspSetup(FrozenModel):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
-            if hollow and self.mesh.kind == "structured":
-                raise ValueError(f"mesh.kind: structured cannot follow the wall of {name}; take kind: tetrahedra")
-        round_ones = all(shape.solids(size)[0].ball_image() is not None for shape in self.shapes)
-        if self.mesh.kind == "layers" and not (round_ones and len(self.shapes) == 1):
-            raise ValueError("mesh.kind: layers serves exactly one sphere or ellipsoid; take kind: tetrahedra")
-        if self.mesh.kind == "graded" and not (round_ones and len(self.shapes) <= 1):
-            raise ValueError("mesh.kind: graded serves at most one inclusion, a sphere or an ellipsoid; take kind: tetrahedra")
+        check_served(self.mesh, self.block.size, self.shapes)
         return self
 
     @model_validator(mode="after")

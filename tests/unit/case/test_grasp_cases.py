@@ -36,7 +36,7 @@ def test_the_mesh_is_shipped_or_repeats(path, monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     experiment = load_case(path).experiment
     sourced = experiment.sourced()
-    if not isinstance(experiment.mesh, TetrahedraSource):
+    if not isinstance(experiment.source, TetrahedraSource):
         assert experiment.sourced().content == sourced.content
         return
     assert sourced.origin == "shipped"

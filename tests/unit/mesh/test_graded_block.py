@@ -40,7 +40,7 @@ def random_lumps(count):
 
 def test_lumps_anywhere_are_meshed_soundly():
     for lump in random_lumps(12):
-        block = graded_block(SIZE, lump, COARSE)
+        block = graded_block(SIZE, [lump], COARSE)
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02
         assert block.quality.curvature > 0
@@ -48,7 +48,7 @@ def test_lumps_anywhere_are_meshed_soundly():
 
 
 def test_cells_are_thin_at_the_faces_and_thicker_inside():
-    block = graded_block(SIZE, None, COARSE)
+    block = graded_block(SIZE, (), COARSE)
     for axis in range(3):
         steps = np.diff(np.unique(block.mesh.nodes[:, axis].round(12)))[::2] * 2
         assert steps[0] == pytest.approx(COARSE.edge_size)
@@ -66,7 +66,7 @@ def first_corner(points, x):
 @pytest.mark.parametrize("gap", [0.7e-3, 1.2e-3, 1.4e-3, 1.9e-3])
 def test_no_layer_of_cells_at_the_edge_of_a_pressed_face_is_thinner_than_elsewhere(gap):
     lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
-    nodes = graded_block(SIZE, lump, COARSE).mesh.nodes
+    nodes = graded_block(SIZE, [lump], COARSE).mesh.nodes
     _, top = first_corner(nodes, 0.0)
     assert top > COARSE.edge_size - 1e-9
 
@@ -75,39 +75,85 @@ def test_no_layer_of_cells_at_the_edge_of_a_pressed_face_is_thinner_than_elsewhe
 def test_the_gap_between_a_jaw_and_a_lump_has_two_cells_unless_it_is_thin(gap, cells):
     lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
     even = COARSE.model_copy(update={"inclusion_size": 1.3e-3})  # six across, so that a corner lies on the pole
-    nodes = graded_block(SIZE, lump, even).mesh.nodes
+    nodes = graded_block(SIZE, [lump], even).mesh.nodes
     above = np.unique(nodes[(np.abs(nodes[:, :2] - 20e-3) < 1e-9).all(axis=1), 2].round(9))
     assert (above <= gap + 1e-9).sum() == 1 + 2 * cells  # corners and middles
 
 
 def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
-    even = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
+    even = graded_block(SIZE, [CENTRED], COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
     assert all(mirrored(even, axis) for axis in range(3))
-    odd = graded_block(SIZE, CENTRED, COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
+    odd = graded_block(SIZE, [CENTRED], COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
     assert not all(mirrored(odd, axis) for axis in range(3))
 
 
 def test_the_same_lump_has_the_same_mesh_and_another_has_another():
-    first, again = (graded_block(SIZE, CENTRED, COARSE) for _ in range(2))
-    other = graded_block(SIZE, Sphere(center=(20e-3, 20.1e-3, 10e-3), radius=5e-3), COARSE)
+    first, again = (graded_block(SIZE, [CENTRED], COARSE) for _ in range(2))
+    other = graded_block(SIZE, [Sphere(center=(20e-3, 20.1e-3, 10e-3), radius=5e-3)], COARSE)
     assert content_hash(first.mesh) == content_hash(again.mesh) != content_hash(other.mesh)
     assert first.key == again.key != other.key
 
 
 def test_a_turned_ellipsoid_is_followed():
     turned = Ellipsoid(center=(18e-3, 21e-3, 9e-3), semi_axes=(6e-3, 4e-3, 3e-3), rotation=(0.3, 0.2, 0.7))
-    block = graded_block(SIZE, turned, COARSE)
+    block = graded_block(SIZE, [turned], COARSE)
     assert abs(block.volume_errors[1]) < VOLUME_TOLERANCE
 
 
 def test_what_cannot_be_meshed_is_refused_by_name():
     tube = Tube(centre_line=((0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)), inner_radius=2e-3, wall=1e-3)
     with pytest.raises(InputError, match="a tube cannot be meshed in graded cells; allowed: sphere, ellipsoid"):
-        graded_block(SIZE, tube, COARSE)
+        graded_block(SIZE, [tube], COARSE)
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
     with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):
-        graded_block(SIZE, needle, COARSE)
-    with pytest.raises(InputError, match="one inclusion or none, not 2"):
-        GradedSource(kind="graded").sourced(SIZE, [CENTRED, CENTRED])
+        graded_block(SIZE, [needle], COARSE)
+    above_each_other = [
+        CENTRED,
+        Sphere(center=(27e-3, 27e-3, 14e-3), radius=3e-3),
+        Sphere(center=(27e-3, 13e-3, 6e-3), radius=3e-3),
+    ]
+    with pytest.raises(InputError, match="each must end before the next begins"):
+        GradedSource(kind="graded").sourced(SIZE, above_each_other)
     with pytest.raises(InvalidQuantity, match="protrudes"):
-        graded_block(SIZE, Sphere(center=(20e-3, 20e-3, 3e-3), radius=5e-3), COARSE)
+        graded_block(SIZE, [Sphere(center=(20e-3, 20e-3, 3e-3), radius=5e-3)], COARSE)
+
+
+def random_pairs(count):
+    generator = np.random.default_rng(3)
+    while count:
+        centers = generator.uniform((9e-3, 9e-3, 7e-3), (16e-3, 31e-3, 13e-3), (2, 3)) + np.outer([0, 1], [15e-3, 0, 0])
+        radii = generator.uniform(3e-3, 6e-3, 2)
+        if np.linalg.norm(centers[1] - centers[0]) - radii.sum() > 1.2e-3:
+            count -= 1
+            yield [Sphere(center=tuple(center), radius=radius) for center, radius in zip(centers, radii, strict=True)]
+
+
+SWEPT = BlockMeshSettings(size=8e-3, inclusion_size=4e-3, edge_size=2.2e-3, growth=1.0)
+
+
+def test_two_lumps_as_sweeps_draw_them_are_meshed_soundly():
+    for pair in random_pairs(12):
+        block = graded_block(SIZE, pair, SWEPT)
+        assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
+        assert block.quality.minimum > 0.02
+        assert block.quality.curvature > 0
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_lumps_in_a_row_keep_their_numbers_and_places(axis):
+    places = np.full((3, 3), [20e-3, 20e-3, 10e-3])
+    places[:, axis] = np.array([0.75, 0.2, 0.45]) * SIZE[axis]
+    lumps = [Sphere(center=tuple(place), radius=(1.5e-3, 2e-3, 1.8e-3)[k]) for k, place in enumerate(places)]
+    block = graded_block(SIZE, lumps, COARSE)
+    centres = block.mesh.nodes[block.mesh.elements[:, :4]].mean(axis=1)
+    for number, lump in enumerate(lumps, 1):
+        inside = np.linalg.norm(centres - lump.center, axis=1) < lump.radius
+        np.testing.assert_array_equal(block.mesh.regions == number, inside)
+
+
+@pytest.mark.parametrize("lean", [0.0, 6e-3])
+def test_a_row_across_which_a_plane_mirrors_has_a_mesh_that_it_mirrors(lean):
+    pair = [Sphere(center=(20e-3 + side * 9e-3, 20e-3 + side * lean, 10e-3), radius=4e-3) for side in (-1, 1)]
+    mesh = graded_block(SIZE, pair, COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
+    assert mirrored(mesh, 2)
+    assert mirrored(mesh, 1) == (lean == 0)

@@ -1,0 +1,299 @@
+"""Graded cells around several lumps in a row: a box of rounded cells around each, sheared from lump to lump.
+
+Along the row every lump has a box of its own. Across it all share their lines, which lead straight from the middle of one lump
+to that of the next, so that no cell is sheared by more than the way from one to the other leans.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.errors import InputError
+from tactsim.interfaces.solid import BallImage
+from tactsim.mesh.affordable import check_along
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded_lines import (
+    CORE_ROOM,
+    LEAST_BETWEEN,
+    NEAR,
+    REACH,
+    ROOM,
+    box_shares,
+    cells_along,
+    edge_thickness,
+    spaced,
+)
+from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
+
+STEEP = 1.0
+"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
+
+
+@dataclass(frozen=True)
+class Lump:
+    """A ball and its bounds (2, 3) in m."""
+
+    ball: BallImage
+    bounds: Array
+
+    @property
+    def half(self) -> Array:
+        """Half widths (3,) in m."""
+        return np.asarray(np.diff(self.bounds, axis=0)[0] / 2)
+
+    @property
+    def center(self) -> Array:
+        """Its middle (3,) in m."""
+        return self.ball.center
+
+
+@dataclass(frozen=True)
+class Row:
+    """Lumps in the order in which they stand along an axis, in a block of size ``extent`` (3,) in m.
+
+    Attributes
+    ----------
+    axis : along the row
+    lumps : n
+    shared : (3,) cells across every box
+    near, far : for each axis the coordinates in m of the planes of the grid, beside the boxes and at the faces: (planes,) along
+        the row, (p, planes) across it at the p planes along it
+    first : (n, 3) planes at which the boxes begin
+    away : for each axis the way (planes,) from the boxes as a part of that to the face
+    """
+
+    axis: int
+    lumps: tuple[Lump, ...]
+    shared: Array
+    near: tuple[Array, ...]
+    far: tuple[Array, ...]
+    first: Array
+    away: tuple[Array, ...]
+
+
+def in_a_row(lumps: Sequence[Lump]) -> tuple[int, tuple[Lump, ...]]:
+    """The axis along which the lumps stand apart most, and the lumps in their order along it.
+
+    Raises
+    ------
+    InputError
+        If along no axis each lump ends before the next begins.
+    """
+    best, gap = 0, -np.inf
+    for axis in range(3):
+        bounds = np.array(sorted(tuple(lump.bounds[:, axis]) for lump in lumps))
+        least = float((bounds[1:, 0] - bounds[:-1, 1]).min())
+        best, gap = (axis, least) if least > gap else (best, gap)
+    if gap <= 0:
+        raise InputError("graded cells serve lumps in a row: along x, y or z each must end before the next begins")
+    return best, tuple(sorted(lumps, key=lambda lump: float(lump.center[best])))
+
+
+def row_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> Row:
+    """The lines around lumps; ``finer`` counts how often cells across the boxes were added.
+
+    Raises
+    ------
+    InputError
+        If the lumps do not stand in a row, or the cells are too many.
+    """
+    axis, ordered = in_a_row(lumps)
+    shared = _cells_across(ordered, float(extent[2]), settings, finer)
+    line, firsts = _line_along(ordered, axis, float(extent[axis]), int(shared[axis]), settings)
+    near, far, first = [line] * 3, [line] * 3, np.tile(np.asarray(firsts)[:, None], (1, 3))
+    for other in (k for k in range(3) if k != axis):
+        planes, begin = _planes_across(ordered, other, float(extent[other]), int(shared[other]), settings)
+        knots, owner = _knots(ordered, axis, other, line, firsts, across=int(shared[axis]))
+        near[other], far[other] = (_between(knots, [lines[k] for k in owner], line) for lines in planes)
+        first[:, other] = begin
+    away = tuple(_away(near[k][0] if k != axis else line, first[:, k], int(shared[k])) for k in range(3))
+    return Row(axis, ordered, shared, tuple(near), tuple(far), first, away)
+
+
+def _knots(
+    lumps: Sequence[Lump], axis: int, other: int, line: Array, firsts: Sequence[int], *, across: int
+) -> tuple[list[float], list[int]]:
+    """Places in m along the row between which planes across it lead straight, and the lump whose planes hold at each.
+
+    Planes are level through the boxes where the rest of the way from lump to lump suffices for a slope of `STEEP`.
+    """
+    knots, owner = [float(line[0])], [0]
+    for k in range(len(lumps) - 1):
+        here, there = (float(lump.center[axis]) for lump in lumps[k : k + 2])
+        sides = np.array([line[firsts[k] + across] - here, there - line[firsts[k + 1]]])
+        rise = abs(float(lumps[k + 1].center[other] - lumps[k].center[other]))
+        level = np.clip((there - here - rise / STEEP) / sides.sum(), 0.0, 1.0)
+        knots += [here + level * float(sides[0]), there - level * float(sides[1])]
+        owner += [k, k + 1]
+    return [*knots, float(line[-1])], [*owner, len(lumps) - 1]
+
+
+def _cells_across(lumps: Sequence[Lump], height: float, settings: BlockMeshSettings, finer: int) -> Array:
+    """Cells (3,) across every box."""
+    cells = np.zeros(3, np.int64)
+    for lump in lumps:
+        arc = np.pi / 2 * lump.ball.longest / settings.inclusion_size
+        check_along(arc, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
+        along = cells_along(lump.bounds, height, round(arc), finer)
+        cells = np.maximum(cells, [along, along, max(LEAST_BETWEEN, round(arc)) + finer])
+    return cells
+
+
+def _line_along(
+    lumps: Sequence[Lump], axis: int, length: float, across: int, settings: BlockMeshSettings
+) -> tuple[Array, list[int]]:
+    """Ascending places in m along the row, and the number of that at which each box begins."""
+    places, firsts = np.zeros(1), []
+    for k, lump in enumerate(lumps):
+        low, high = (float(v) for v in lump.bounds[:, axis])
+        before = low if k == 0 else (low - float(lumps[k - 1].bounds[1, axis])) / 2
+        after = length - high if k == len(lumps) - 1 else (float(lumps[k + 1].bounds[0, axis]) - high) / 2
+        begin, end = (
+            _box_side(gap, float(lump.half[axis]), settings, inner=inner)
+            for gap, inner in ((before, k > 0), (after, k < len(lumps) - 1))
+        )
+        start = low - begin
+        if k == 0:
+            places = _outer(start, None, settings)
+        elif start > places[-1] + 1e-12:
+            count = max(1, round((start - places[-1]) / settings.size))
+            places = np.append(places, np.linspace(places[-1], start, count + 1)[1:])
+        firsts.append(len(places) - 1)
+        shares = box_shares(across, 0.0)
+        places = np.append(places, np.interp(shares, [-1, 0, 1], [places[-1], float(lump.center[axis]), high + end])[1:])
+    return np.append(places, (length - _outer(length - places[-1], None, settings))[-2::-1]), firsts
+
+
+def _box_side(gap: float, half: float, settings: BlockMeshSettings, *, inner: bool) -> float:
+    """Distance in m of the side of a box from its lump, ``gap`` in m away from a face or from where the next box may begin."""
+    if inner and (1 - ROOM) * 2 * gap < NEAR * edge_thickness(settings):
+        return gap
+    return min(ROOM * gap, (REACH - 1) * half)
+
+
+def _planes_across(
+    lumps: Sequence[Lump], axis: int, length: float, across: int, settings: BlockMeshSettings
+) -> tuple[tuple[list[Array], list[Array]], int]:
+    """Ascending places in m across the row at each lump, beside the boxes and at the faces, and the first plane of the boxes."""
+    gaps = np.array([[lump.bounds[0, axis], length - lump.bounds[1, axis]] for lump in lumps])
+    touching = (gaps < NEAR * edge_thickness(settings)).all(axis=0) if axis == 2 else np.zeros(2, bool)
+    half = np.array([lump.half[axis] for lump in lumps])[:, None]
+    center = np.array([[lump.center[axis], length - lump.center[axis]] for lump in lumps])
+    left = np.where(touching, 0.0, gaps - np.minimum(ROOM * gaps, (REACH - 1) * half))
+    least = np.minimum(edge_thickness(settings), center - CORE_ROOM * half)
+    far = np.where(left > 0, np.maximum(left, least), 0.0)
+    counts = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
+    shares = box_shares(across, 0.0)
+    planes = []
+    for spans in (left, far):
+        planes.append(
+            [
+                _across(span, float(c), length, shares, counts=counts, settings=settings)
+                for span, c in zip(spans, center[:, 0], strict=True)
+            ]
+        )
+    return (planes[0], planes[1]), counts[0]
+
+
+def _across(
+    span: Array, center: float, length: float, shares: Array, *, counts: Sequence[int], settings: BlockMeshSettings
+) -> Array:
+    """Ascending places in m from face to face through one box, with given numbers of cells before and after it."""
+    before, after = (_outer(float(s), count, settings) for s, count in zip(span, counts, strict=True))
+    within = np.interp(shares, [-1, 0, 1], [span[0], center, length - span[1]])
+    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
+
+
+def _outer(span: float, count: int | None, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells if one is given."""
+    if count is None:
+        return spaced(span, settings)
+    thickness = edge_thickness(settings)
+    steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
+    if count < 2 or thickness * count >= span:
+        return np.linspace(0.0, span, count + 1)
+    steps[1:] *= (span - steps[0]) / steps[1:].sum()
+    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
+
+
+def _between(knots: Sequence[float], values: Sequence[Array], line: Array) -> Array:
+    """Places (p, planes) in m at those (p,) along the row, straight from knot to knot."""
+    table = np.array(values)
+    return np.stack([np.interp(line, knots, column) for column in table.T], axis=1)
+
+
+def _away(line: Array, first: Array, across: int) -> Array:
+    """Way (planes,) from the boxes, as a part of that to the face: 0 in and between the boxes, 1 at the faces."""
+    begin, end = int(first.min()), int(first.max()) + across
+    away = np.zeros(len(line))
+    if begin:
+        away[:begin] = 1 - line[:begin] / line[begin]
+    if end < len(line) - 1:
+        away[end:] = (line[end:] - line[end]) / (line[-1] - line[end])
+    return away
+
+
+def row_cells(row: Row) -> tuple[Array, Array, Array]:
+    """Corners (n, 3), cells (H, 8) and regions (H,): of the lump k in the row k + 1, of the tissue 0."""
+    corners = _grid_corners(row)
+    shape = [len(away) for away in row.away]
+    counts = [planes - 1 for planes in shape]
+    place = product([np.arange(count) for count in counts])
+    inside = np.zeros(len(place), bool)
+    for first in row.first:
+        inside |= ((place >= first) & (place < first + row.shared)).all(axis=1)
+    cells, labels = [grid(counts)[~inside]], [np.zeros(int((~inside).sum()), np.int64)]
+    for number, (lump, first) in enumerate(zip(row.lumps, row.first, strict=True), 1):
+        corners, rounded, depth = _rounded(corners, lump, first, row, shape)
+        cells.append(rounded)
+        labels.append(np.where(depth < 1, number, 0))
+    used, compact = np.unique(np.vstack(cells), return_inverse=True)
+    return corners[used], compact.reshape(-1, 8), np.concatenate(labels)
+
+
+def _grid_corners(row: Row) -> Array:
+    """Corners (n, 3) of the whole grid, as if the boxes held plain cells."""
+    shape = [len(away) for away in row.away]
+    index = np.stack(np.meshgrid(*(np.arange(n) for n in shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    corners = np.empty(index.shape)
+    for axis in range(3):
+        others = np.max([row.away[k][index[:, k]] for k in range(3) if k != axis], axis=0)
+        if axis == row.axis:
+            corners[:, axis] = row.near[axis][index[:, axis]]
+        else:
+            near, far = (lines[axis][index[:, row.axis], index[:, axis]] for lines in (row.near, row.far))
+            corners[:, axis] = near + others * (far - near)
+    return corners
+
+
+def _rounded(corners: Array, lump: Lump, first: Array, row: Row, shape: Sequence[int]) -> tuple[Array, Array, Array]:
+    """All corners with those of a lump added, its cells (H, 8) and the depth (H,) of each, below 1 in the lump."""
+    logical = product([np.linspace(-1, 1, cells + 1) for cells in row.shared])
+    core = grid(list(row.shared))
+    shell, quads = skin(core, logical)
+    steps = np.stack(np.unravel_index(shell, [cells + 1 for cells in row.shared])) + first[:, None]
+    on_box = np.ravel_multi_index(tuple(steps), tuple(shape))
+    inner = lump.center + _leaning(blown(logical), lump, row) @ lump.ball.stretch
+    wall = lump.center + _leaning(directions(logical[shell]), lump, row) @ lump.ball.stretch
+    added, cells, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
+    fresh = len(inner) + len(shell)
+    numbers = np.concatenate([len(corners) + np.arange(fresh), on_box])
+    return np.vstack([corners, added[:fresh]]), numbers[cells], depth
+
+
+def _leaning(points: Array, lump: Lump, row: Row) -> Array:
+    """Points (n, 3) in the unit ball turned as the box leans, each as far from the middle as before."""
+    slopes = np.zeros((2, 3))
+    at = int(np.argmin(np.abs(row.near[row.axis] - lump.center[row.axis])))
+    for k in (k for k in range(3) if k != row.axis):
+        middle = row.first[0, k] + row.shared[k] // 2
+        lines = row.near[k][[at - 1, at, at + 1], middle]
+        slopes[:, k] = np.diff(lines) / np.diff(row.near[row.axis][[at - 1, at, at + 1]])
+    along = points[:, row.axis]
+    leaning = points + along[:, None] * np.where((along > 0)[:, None], slopes[1], slopes[0])
+    length = np.linalg.norm(leaning, axis=1, keepdims=True)
+    return np.asarray(leaning * np.linalg.norm(points, axis=1, keepdims=True) / np.maximum(length, 1e-300))
