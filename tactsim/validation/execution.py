@@ -22,6 +22,7 @@ from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results import Result
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
+from tactsim.validation.solver_identity import solver_identity
 from tactsim.validation.study import RunOutcome, Study
 
 MODULE = "tactsim.validation.execution"
@@ -101,7 +102,7 @@ class StudyRunner:
                     yield answer.key, outcome
 
     def _place(self, case_id: str) -> Path:
-        return (self.cache or user_cache("validation")) / f"{case_id}-{code_identity()}.json"
+        return (self.cache or user_cache("validation")) / f"{case_id}-{code_identity()}-{solver_identity()}.json"
 
     def _stored(self, case_id: str) -> RunOutcome | None:
         """What the cache holds, None if nothing that can be read."""
