@@ -10,7 +10,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import LOOSENESS, direct_solver, solved
-from tactsim.fem.solver_choice import solver_for
+from tactsim.fem.solver_choice import factor_seconds, iteration_seconds, solver_for
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -141,3 +141,11 @@ def test_the_size_decides():
     body, _, _ = system((2, 2, 2))
     assert not isinstance(solver_for(body), BlockPreconditioned)
     assert isinstance(solver_for(body, largest_factor=10), BlockPreconditioned)
+
+
+def test_a_factor_is_cheaper_for_small_bodies_and_the_iteration_for_large_ones():
+    sizes = np.geomspace(3e3, 3e6, 50)
+    cheaper = np.array([iteration_seconds(size) < factor_seconds(size) for size in sizes])
+    assert (np.diff(cheaper.astype(int)) >= 0).all()
+    assert not cheaper[sizes < 3e4].any()
+    assert cheaper[sizes > 1e6].all()
