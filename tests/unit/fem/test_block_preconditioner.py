@@ -90,7 +90,7 @@ def test_iterations_hardly_grow_with_refinement(contact):
 
 
 @pytest.mark.parametrize("giving_way", [0.003, 0.1])
-def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(giving_way):
+def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(giving_way, monkeypatch):
     body, matrix, right = system((8, 8, 4), giving_way=giving_way)
     solver, direct = BlockPreconditioned(body), direct_solver()
     expected, computed = solved(direct, matrix, right), solved(solver, matrix, right, 1e-8)
@@ -98,6 +98,7 @@ def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(givin
     for exact, mine in zip(body.space.split(expected), body.space.split(computed), strict=True):
         # 1e-6 of the largest: the residual is 1e-8 of the right-hand side, the nodes that give way make it grow
         np.testing.assert_allclose(mine, exact, rtol=0, atol=1e-6 * np.abs(exact).max())
+    monkeypatch.setattr("tactsim.fem.block_preconditioner.MOST_CYCLES", 2)  # 160 steps
     solver._displacements._relaxed = np.arange(len(body.space.nodes))
     with pytest.raises(ConvergenceError):
         solver.solve(right, 1e-8)
