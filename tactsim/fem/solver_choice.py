@@ -18,10 +18,11 @@ SOLUTION, SOLUTION_GROWTH = 0.09, 1.2
 """Those of a solution with it, 0.020 and 0.073; the limit is 4/3."""
 FACTORS, SOLUTIONS = 0.3, 10.0
 """Factors and solutions per system."""
-PREPARATION, STEP = 1.1, 0.14
+PREPARATION, STEP = 1.3, 0.16
 """Seconds of the preconditioner and of one step of the iteration; both grow with the unknowns."""
 STEPS = 15.0
-"""Steps per system: 14 at 28 506 unknowns, 16 in the first ten systems at 321 114."""
+"""Steps per system: 11 at 28 506 unknowns, 14 at 82 832, 16 in the first ten systems at 321 114. Whole systems took 0.86 and
+2.9 s by iteration there, 0.40 and 1.8 s by factor."""
 
 
 def factor_seconds(unknowns: float) -> float:
