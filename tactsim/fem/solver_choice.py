@@ -1,4 +1,4 @@
-"""Which linear solver a body in space gets: a factor that is reused, and an iteration where no factor fits."""
+"""Which linear solver a body in space gets: a factor that is reused, or an iteration where that costs less."""
 
 from __future__ import annotations
 
@@ -8,18 +8,42 @@ from tactsim.fem.linear import LinearSolver, direct_solver
 from tactsim.fem.pardiso import SinglePardiso
 from tactsim.fem.reused_factor import ReusedFactor
 
-LARGEST_FACTOR = 600_000
-"""Unknowns up to which a body is factored.
+REFERENCE = 1e5
+"""Unknowns at which the constants below hold. They are processor seconds of grasps with friction, on one core beside other work,
+of 28 506 and 82 832 unknowns (``benchmarks/scale.py``); only their ratios decide."""
+FACTOR, FACTOR_GROWTH = 5.4, 1.8
+"""Seconds of a factor in single precision, 0.58 and 3.9 as measured, and the power of the unknowns by which they grow; the
+limit is 2 (George 1973, doi:10.1137/0710032, nested dissection; in space)."""
+SOLUTION, SOLUTION_GROWTH = 0.09, 1.2
+"""Those of a solution with it, 0.020 and 0.073; the limit is 4/3."""
+FACTORS, SOLUTIONS = 0.3, 10.0
+"""Factors and solutions per system."""
+PREPARATION, STEP = 1.3, 0.16
+"""Seconds of the preconditioner and of one step of the iteration; both grow with the unknowns."""
+STEPS = 15.0
+"""Steps per system: 11 at 28 506 unknowns, 14 at 82 832, 16 in the first ten systems at 321 114. Whole systems took 0.86 and
+2.9 s by iteration there, 0.40 and 1.8 s by factor."""
 
-For one system the iteration is as fast from 110 000 unknowns on (28 s each) and 3.5 times faster at 295 000 (33 s and 2.4 GiB
-against 114 s and 5.1 GiB), but it may need hundreds of steps and fail (``benchmarks/solvers.py``); a grasp solves some
-thirteen systems with four factors. Memory is the bound: it grows like the unknowns to the power 1.2, to 12 GiB at this size. All
-this was measured with factors in double precision; those in single precision take half."""
+
+def factor_seconds(unknowns: float) -> float:
+    """Seconds per system of a body of this size by a factor that is reused, on one core."""
+    size = unknowns / REFERENCE
+    return FACTORS * FACTOR * size**FACTOR_GROWTH + SOLUTIONS * SOLUTION * size**SOLUTION_GROWTH
 
 
-def solver_for(body: Body, *, largest_factor: int = LARGEST_FACTOR) -> LinearSolver:
-    """A factor of the symmetric part that preconditions what follows, or the iteration above ``largest_factor`` unknowns."""
-    if body.space.size > largest_factor:
+def iteration_seconds(unknowns: float) -> float:
+    """Seconds per system of a body of this size by the iteration, on one core."""
+    return (PREPARATION + STEPS * STEP) * unknowns / REFERENCE
+
+
+def solver_for(body: Body, *, largest_factor: int | None = None) -> LinearSolver:
+    """A factor of the symmetric part that preconditions what follows, or the iteration, whichever costs less.
+
+    ``largest_factor`` unknowns, if given, decide instead: a larger body gets the iteration.
+    """
+    size = body.space.size
+    iterates = iteration_seconds(size) < factor_seconds(size) if largest_factor is None else size > largest_factor
+    if iterates:
         return BlockPreconditioned(body)
     solver = direct_solver()
     return ReusedFactor(direct_solver(SinglePardiso.name)) if solver.name == "pardiso" else solver

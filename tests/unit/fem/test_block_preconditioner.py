@@ -10,7 +10,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.block_preconditioner import BlockPreconditioned
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import LOOSENESS, direct_solver, solved
-from tactsim.fem.solver_choice import solver_for
+from tactsim.fem.solver_choice import factor_seconds, iteration_seconds, solver_for
 from tactsim.fem.surface import SurfaceAssembly
 from tactsim.fem.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -90,7 +90,7 @@ def test_iterations_hardly_grow_with_refinement(contact):
 
 
 @pytest.mark.parametrize("giving_way", [0.003, 0.1])
-def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(giving_way):
+def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(giving_way, monkeypatch):
     body, matrix, right = system((8, 8, 4), giving_way=giving_way)
     solver, direct = BlockPreconditioned(body), direct_solver()
     expected, computed = solved(direct, matrix, right), solved(solver, matrix, right, 1e-8)
@@ -98,6 +98,7 @@ def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(givin
     for exact, mine in zip(body.space.split(expected), body.space.split(computed), strict=True):
         # 1e-6 of the largest: the residual is 1e-8 of the right-hand side, the nodes that give way make it grow
         np.testing.assert_allclose(mine, exact, rtol=0, atol=1e-6 * np.abs(exact).max())
+    monkeypatch.setattr("tactsim.fem.block_preconditioner.MOST_CYCLES", 2)  # 160 steps
     solver._displacements._relaxed = np.arange(len(body.space.nodes))
     with pytest.raises(ConvergenceError):
         solver.solve(right, 1e-8)
@@ -141,3 +142,11 @@ def test_the_size_decides():
     body, _, _ = system((2, 2, 2))
     assert not isinstance(solver_for(body), BlockPreconditioned)
     assert isinstance(solver_for(body, largest_factor=10), BlockPreconditioned)
+
+
+def test_a_factor_is_cheaper_for_small_bodies_and_the_iteration_for_large_ones():
+    sizes = np.geomspace(3e3, 3e6, 50)
+    cheaper = np.array([iteration_seconds(size) < factor_seconds(size) for size in sizes])
+    assert (np.diff(cheaper.astype(int)) >= 0).all()
+    assert not cheaper[sizes < 3e4].any()
+    assert cheaper[sizes > 1e6].all()
