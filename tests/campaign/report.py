@@ -64,7 +64,7 @@ def page(record: Sequence[Ended], *, asked: int | None, limit: float, patience: 
     texts = [
         INTRODUCTION.format(patience=patience, wanted=WANTED).replace("99%", "99 %"),
         f"```text\n{command} {' '.join(kinds)}\n```\n",
-        f"Run so far: {ran}, each with a limit of {limit:g} s, one thread each. {_times(first)}\n",
+        f"Run so far: {ran}, with a limit of {limit:g} s and one thread each. {_times(first)}\n",
         "## First run\n",
         table_text(first),
         _programs(first),
@@ -93,6 +93,8 @@ def _failures(first: Sequence[Ended], last: dict[tuple[str, int], Ended]) -> str
     for one in sorted(rows, key=lambda one: (one.kind, one.outcome, one.number)):
         latest = last[one.kind, one.number]
         again = "" if latest is one else latest.outcome
+        if again and latest.outcome not in ANSWERS:
+            again += f": {_shown(latest.reason)}"
         lines.append(
             f"| {one.kind} {one.number} | {one.outcome} | {one.processor_seconds:.0f} | {_shown(one.reason)} | {again} |"
         )
