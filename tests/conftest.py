@@ -45,6 +45,16 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The browser's file first: it waits more than it computes, and as the last one it would leave a core idle."""
+    items.sort(key=lambda item: item.path.parent.name != "web")
+
+
+def pytest_xdist_auto_num_workers() -> int:
+    """One worker more than cores, for tests wait for files, sockets and children."""
+    return (os.cpu_count() or 1) + 1
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, Any]:
     """What a module of tests defines is known to nobody until a test registers it."""

@@ -62,7 +62,7 @@ def stability(size: float, *, linear: bool = False) -> float:
     Root of the second smallest eigenvalue of B A^-1 B' over the mass of the pressures (Chapelle & Bathe 1993,
     doi:10.1016/0045-7949(93)90340-J); the smallest is that of a uniform pressure. ``linear`` displacements are the mutant.
     """
-    mesh = graded_block(SIZE, None, BlockMeshSettings(size=size, edge_size=size / 2, growth=1.0)).mesh
+    mesh = graded_block(SIZE, [], BlockMeshSettings(size=size, edge_size=size / 2, growth=1.0)).mesh
     body = body_of(mesh, "solid", NeoHookean(c10=0.5), volume_stiffness=block_model.VOLUME_STIFFNESS)
     split = body.space.displacement_size
     tangent = body.pattern.matrix(body.tangent(np.zeros(body.space.size)))
