@@ -29,15 +29,15 @@ unstable body lets it move away fastest."""
 MOST_STEPS = 30
 """Steps in pseudo-time before a snap counts as failed."""
 
-Solved = TypeVar("Solved")
+State = TypeVar("State")
 
 
 def after_snap(
     body: Body,
     state: Array,
-    solve: Callable[[Array, Sequence[FollowerLoad]], Solved],
-    unknowns: Callable[[Solved], Array],
-) -> Solved:
+    solve: Callable[[Array, Sequence[FollowerLoad]], State],
+    unknowns: Callable[[State], Array],
+) -> State:
     """What ``solve`` gives without drag, reached from the unknowns (size,) of a ``state`` by steps with it.
 
     Parameters
