@@ -19,14 +19,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from data_sets import STANDARD
+
 ROOT = Path(__file__).parents[1]
 BASE = "26a5475"
 REPEATS = 5
 SAMPLES = 20
 """Of a sweep."""
-LUMPS = ("--set", "experiment.contact.friction=0.6", "--set", "experiment.loading.pieces.0.to=1 mm")
-EACH_ONCE = ("--set", "sweep.within_specimen=[]", "--set", "sweep.samples_per_specimen=1")
-"""Friction and closing of the figure that is asked for, each lump once; the sweeps themselves vary them."""
+STANDARD_OPTIONS = tuple(part for value in STANDARD for part in ("--set", value))
+"""Friction and closing of the figure that is asked for, each lump once; the sweep itself varies them."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ JOBS = {
     "annulus_icf": Job(_run("annulus_icf"), 5.0),
     "grasp_lump_icf": Job(_run("grasp_lump_icf"), 5.0),
     "atrial_annulus": Job(_run("atrial_annulus"), 15.0),
-    "sweep_lumps": Job(_sweep("sweep_lumps", *LUMPS, *EACH_ONCE), 4000.0, SAMPLES),
+    "sweep_lumps": Job(_sweep("sweep_lumps", *STANDARD_OPTIONS), 4000.0, SAMPLES),
     "sweep_classes": Job(_sweep("sweep_classes"), 1000.0, SAMPLES),
 }
 

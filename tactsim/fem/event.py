@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from tactsim.array import Array
 
@@ -17,6 +17,31 @@ class PathState(Protocol):
     @property
     def unknowns(self) -> Array:
         """Its unknowns."""
+
+
+State = TypeVar("State", bound=PathState)
+
+
+def located(
+    reach: Callable[[float, Array], State], value: Callable[[State], float], path: Mapping[float, State], tolerance: float
+) -> State:
+    """The state at which a value turns from negative to positive between the last two states of a path, given by their places.
+
+    Parameters
+    ----------
+    reach : (place, guess) -> the equilibrium there
+    value : of a state; negative before the event
+    path : the two states around the event, and what is known before them
+    tolerance : largest error of the place
+    """
+    states = dict(path)
+    low, high = sorted(states)[-2:]
+
+    def value_at(place: float) -> float:
+        states[place] = reach(place, between(states, place))
+        return value(states[place])
+
+    return states[crossing(value_at, {place: value(state) for place, state in states.items()}, (low, high), tolerance)]
 
 
 def between(states: Mapping[float, PathState], place: float) -> Array:

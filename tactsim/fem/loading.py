@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, Protocol, TypeVar
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
-from tactsim.fem.event import between, crossing
+from tactsim.fem.event import located
 from tactsim.fem.progress import Headway, check_steps
 from tactsim.units import format_quantity
 
@@ -97,7 +98,8 @@ class PathFollower(Generic[State]):
                 reached = self._advance(now, load, _predicted(before, now, load))
                 happened = event is not None and event.value(reached) >= 0
                 if event is not None and happened:
-                    reached = self._located(event, before, now, reached)
+                    path = {state.load: state for state in (before, now, reached) if state is not None}
+                    reached = located(partial(self._advance, now), event.value, path, event.tolerance)
             except ConvergenceError as error:
                 self.rejected += 1
                 step = (load - now.load) * self._control.cut
@@ -112,17 +114,6 @@ class PathFollower(Generic[State]):
             if happened:
                 return
             headway.spent(now.iterations, now.load, (target - now.load) / self._control.largest)
-
-    def _located(self, event: Event[State], earlier: State | None, before: State, after: State) -> State:
-        """The state at the event, which lies between the two; ``earlier`` is the one before both."""
-        states = {before.load: before, after.load: after}
-
-        def value(load: float) -> float:
-            states[load] = self._advance(before, load, between(states, load))
-            return event.value(states[load])
-
-        known = {state.load: event.value(state) for state in (earlier, before, after) if state is not None}
-        return states[crossing(value, known, (before.load, after.load), event.tolerance)]
 
 
 def _predicted(before: State | None, now: State, load: float) -> Array:

@@ -242,9 +242,8 @@ class _Solution:
         accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
         constraints, solver = self._balance.constraints, self._solver
-        residual, data = state.internal.copy(), body.tangent(state.unknowns, state.kinematics)
+        data = body.tangent(state.unknowns, state.kinematics)
         for interface, force in zip(interfaces, now, strict=True):
-            residual -= interface.surface.force(force.traction)
             interface.surface.add_stiffness(data, force.derivative)
         u, _ = body.space.split(state.unknowns)
         for load in self._forces.loads:
@@ -257,19 +256,23 @@ class _Solution:
                 interface.surface.add_stiffness(uncoupled, -force.coupling)
             return body.pattern.matrix(constraints.apply(uncoupled))
 
-        step = solved(solver, matrix, -constraints.free(residual), accuracy, nearby)
+        step = solved(solver, matrix, -constraints.free(self._residual(state, now)), accuracy, nearby)
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
         along = None if border is None else resolved(solver, matrix, constraints.free(border.column), accuracy)
         self.factored = Factored(along)
         return bordered(step, border, along)
 
+    def _residual(self, state: NewtonState, now: Sequence[LinearisedContact]) -> Array:
+        """Internal forces (size,) less those of the interfaces at the linearised tractions."""
+        residual = state.internal.copy()
+        for interface, force in zip(self._forces.interfaces, now, strict=True):
+            residual -= interface.surface.force(force.traction)
+        return residual
+
     def _step_with_last_factor(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Step by the last tangent, of which the solver holds the factor."""
         control, interfaces = self._forces.load_control, self._forces.interfaces
-        residual = state.internal.copy()
-        for interface, force in zip(interfaces, now, strict=True):
-            residual -= interface.surface.force(force.traction)
-        step = self._solver.solve(-self._balance.constraints.free(residual))
+        step = self._solver.solve(-self._balance.constraints.free(self._residual(state, now)))
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
         return bordered(step, border, None if self.factored is None else self.factored.along)
 

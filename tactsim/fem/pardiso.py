@@ -18,13 +18,11 @@ from tactsim.fem.threads import SERIAL_UNKNOWNS
 GENERAL, SYMMETRIC_INDEFINITE = 11, -2
 """Pardiso's kinds of matrices."""
 GENERAL_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1}
-"""MKL's defaults for nonsymmetric matrices but for the refinement, only after perturbed pivots: two rounds for every solution
+"""User settings, nested dissection, refinement only after perturbed pivots, perturbation 1e-13, scaling and matching: MKL's
+defaults for nonsymmetric matrices but for the refinement. Two rounds of it for every solution
 take a third of a factor in a section, and without them the residual is 4e-15 of the right-hand side already."""
-INDEFINITE_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1, 20: 1}
-"""User settings, nested dissection, refinement only after perturbed pivots, perturbation 1e-13, scaling, matching, and
-Bunch-Kaufman pivoting: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
-
-
+INDEFINITE_SETTINGS = GENERAL_SETTINGS | {20: 1}
+"""With Bunch-Kaufman pivoting: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
 SINGLE_PRECISION, PIVOTING = 27, 20
 """Which of Pardiso's settings ask for matrices and vectors in single precision, and for blocks of two by two as pivots."""
 NO_MEMORY = (-2, -9)

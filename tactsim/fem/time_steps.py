@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, Protocol, TypeVar
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
-from tactsim.fem.event import between, crossing
+from tactsim.fem.event import located
 from tactsim.fem.progress import Headway, check_steps
 
 
@@ -98,7 +99,10 @@ class TimeMarcher(Generic[State]):
                     if not self._control.accepts(error):
                         raise _TooLong(f"the error {error:.1e} of a step of {step:.3g} s is above {self._control.tolerance:g}")
                     happened = event is not None and event.value(reached) >= 0
-                    reached = self._located(event, before, now, reached) if event is not None and happened else reached
+                    if event is not None and happened:
+                        path = {state.time: state for state in (before, now, reached) if state is not None}
+                        width = event.tolerance * (reached.time - now.time)
+                        reached = located(partial(self._advance, now), event.value, path, width)
                 except ConvergenceError as failure:
                     self.rejected += 1
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance
@@ -115,17 +119,6 @@ class TimeMarcher(Generic[State]):
                 if happened:
                     return
                 headway.spent(now.iterations, now.time, len(stops) - number + (stops[-1] - now.time) / largest)
-
-    def _located(self, event: TimeEvent[State], earlier: State | None, before: State, after: State) -> State:
-        """The state at the event, which lies between the two; ``earlier`` is the one before both."""
-        states = {before.time: before, after.time: after}
-
-        def value(time: float) -> float:
-            states[time] = self._advance(before, time, between(states, time))
-            return event.value(states[time])
-
-        known = {state.time: event.value(state) for state in (earlier, before, after) if state is not None}
-        return states[crossing(value, known, (before.time, after.time), event.tolerance * (after.time - before.time))]
 
 
 class _TooLong(ConvergenceError):

@@ -168,10 +168,14 @@ def _solved(
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
     doi:10.1007/BF00534623, is Coulomb's)."""
-    begun, rigid_displacement = list(contacts), 0.0
-    if from_guess:
+
+    def warm_started() -> list[PosedContact]:
+        """The contacts with the forces that belong to the guess."""
         moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
-        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+        return [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+
+    rigid_displacement = 0.0
+    begun = warm_started() if from_guess else list(contacts)
     for held_round in range(HELD_ROUNDS + 1):
         try:
             return problem.solve(
@@ -186,8 +190,7 @@ def _solved(
             guess, interfaces=held, load_control=load_control, rigid_displacement=rigid_displacement, **settings
         )
         guess, rigid_displacement = between.unknowns, between.rigid_displacement
-        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
-        begun = [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+        begun = warm_started()
     raise AssertionError("the last round returns or raises")
 
 

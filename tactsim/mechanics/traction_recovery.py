@@ -17,6 +17,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
+from tactsim.fem.space import quadratic_values
 
 SMOOTHING = 0.1
 """c: a wave of one side of a facet, the shortest that its nodes follow, keeps half; one of two sides 88 %, one of four 99.3 %."""
@@ -40,7 +41,7 @@ def recovered_forces(facets: Array, forces: Array, weights: Array, points: Array
     smooth = np.zeros_like(forces)
     if not pressed.any():
         return smooth
-    values, gradients = shape_functions(points), shape_gradients(points)
+    values, gradients = quadratic_values(points.T)
     nodes, numbers = np.unique(facets[pressed], return_inverse=True)
     numbers, area = numbers.reshape(-1, facets.shape[1]), weights[pressed]
     mass = _assembled(np.einsum("fq,qa,qb->fab", area, values, values), numbers)
@@ -63,15 +64,5 @@ def _assembled(blocks: Array, numbers: Array) -> scipy.sparse.csc_matrix:
 
 def shape_functions(x: Array) -> Array:
     """Quadratic shape functions at reference points (..., 2): corners, then mid-sides 01, 12, 02, shape (..., 6)."""
-    r, s = x[..., 0], x[..., 1]
-    t = 1 - r - s
-    return np.stack([t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * t * r, 4 * r * s, 4 * s * t], axis=-1)
-
-
-def shape_gradients(x: Array) -> Array:
-    """Their derivatives (n, 6, 2) at reference points (n, 2)."""
-    r, s = x.T
-    t, none = 1 - r - s, np.zeros(len(x))
-    along_r = [1 - 4 * t, 4 * r - 1, none, 4 * (t - r), 4 * s, -4 * s]
-    along_s = [1 - 4 * t, none, 4 * s - 1, -4 * r, 4 * r, 4 * (t - s)]
-    return np.stack([np.stack(along_r, axis=-1), np.stack(along_s, axis=-1)], axis=-1)
+    values, _ = quadratic_values(x.reshape(-1, 2).T)
+    return values.reshape(*x.shape[:-1], -1)

@@ -158,14 +158,14 @@ def _line_along(
         )
         start = low - begin
         if k == 0:
-            places = _outer(start, None, settings)
+            places = spaced(start, settings)
         elif start > places[-1] + 1e-12:
             count = max(1, round((start - places[-1]) / settings.size))
             places = np.append(places, np.linspace(places[-1], start, count + 1)[1:])
         firsts.append(len(places) - 1)
         shares = box_shares(across, 0.0)
         places = np.append(places, np.interp(shares, [-1, 0, 1], [places[-1], float(lump.center[axis]), high + end])[1:])
-    return np.append(places, (length - _outer(length - places[-1], None, settings))[-2::-1]), firsts
+    return np.append(places, (length - spaced(length - places[-1], settings))[-2::-1]), firsts
 
 
 def _box_side(gap: float, half: float, settings: BlockMeshSettings, *, inner: bool) -> float:
@@ -208,10 +208,8 @@ def _across(
     return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
 
 
-def _outer(span: float, count: int | None, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells if one is given."""
-    if count is None:
-        return spaced(span, settings)
+def _outer(span: float, count: int, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
     thickness = edge_thickness(settings)
     steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
     if count < 2 or thickness * count >= span:

@@ -14,13 +14,13 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.code_identity import installed_version
 from tactsim.deadline import check_time, seconds_left
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.interfaces import Inclusion
@@ -112,10 +112,7 @@ def mesh_key(size: Sequence[float], inclusions: Sequence[Inclusion], settings: B
 
 def mesher_version() -> str:
     """Version of pytetwild, "absent" if it is not installed."""
-    try:
-        return version("pytetwild")
-    except PackageNotFoundError:
-        return "absent"
+    return installed_version("pytetwild")
 
 
 def input_surface(size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> Triangles:

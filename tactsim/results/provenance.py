@@ -5,11 +5,10 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
 
-from tactsim.code_identity import code_identity
+from tactsim.code_identity import code_identity, installed_versions
 from tactsim.version import __version__
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "numba", "pypardiso", "pydantic", "ruamel.yaml", "pint")
@@ -41,13 +40,7 @@ def provenance(
 
 @cache
 def _package_versions() -> dict[str, str]:
-    versions = {}
-    for package in PACKAGES:
-        try:
-            versions[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return versions
+    return installed_versions(PACKAGES)
 
 
 def _without_folders(value: Any) -> Any:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import platform
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from tactsim.code_identity import code_identity
+from tactsim.code_identity import code_identity, installed_versions
 from tactsim.dataset.sampling.distributions import Listed
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.sweep import Place, Sweep, sweep_of_text
@@ -85,13 +84,7 @@ def _shown(option: Any) -> str:
 @cache
 def _versions() -> dict[str, str]:
     """The versions of what data rest on; to ask for them reads a file for each package."""
-    versions = {"python": platform.python_version()}
-    for package in (*PACKAGES, "zarr", "xarray"):
-        try:
-            versions[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return versions
+    return {"python": platform.python_version(), **installed_versions((*PACKAGES, "zarr", "xarray"))}
 
 
 def stored_sweep(store: Store) -> Sweep:

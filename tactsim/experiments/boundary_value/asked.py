@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -31,10 +31,8 @@ class AskedDisplacement(Asked):
     component: Literal["x", "y", "z", "r"]
     """Along which axis."""
 
-    @property
-    def unit(self) -> str:
-        """Metres."""
-        return "m"
+    unit: ClassVar[str] = "m"
+    """Metres."""
 
     @property
     def words(self) -> str:
@@ -54,10 +52,8 @@ class AskedStress(Asked):
     component: StressComponent
     """Which one."""
 
-    @property
-    def unit(self) -> str:
-        """Pascal."""
-        return "Pa"
+    unit: ClassVar[str] = "Pa"
+    """Pascal."""
 
     @property
     def words(self) -> str:
@@ -74,10 +70,8 @@ class AskedForce(Asked):
     component: Literal["x", "y", "z", "r"]
     """Along which axis."""
 
-    @property
-    def unit(self) -> str:
-        """Newton; per metre of depth in plane strain."""
-        return "N"
+    unit: ClassVar[str] = "N"
+    """Newton; per metre of depth in plane strain."""
 
     @property
     def words(self) -> str:
@@ -92,10 +86,8 @@ class AskedTorque(Asked):
     face: str
     """Name of the face."""
 
-    @property
-    def unit(self) -> str:
-        """Newton metre."""
-        return "N*m"
+    unit: ClassVar[str] = "N*m"
+    """Newton metre."""
 
     @property
     def words(self) -> str:
@@ -112,10 +104,8 @@ class AskedContactForce(Asked):
     component: Literal["x", "y", "z", "r"]
     """Along which axis."""
 
-    @property
-    def unit(self) -> str:
-        """Newton; per metre of depth in plane strain."""
-        return "N"
+    unit: ClassVar[str] = "N"
+    """Newton; per metre of depth in plane strain."""
 
     @property
     def words(self) -> str:
@@ -128,10 +118,8 @@ class AskedEnergy(Asked):
 
     kind: Literal["energy"]
 
-    @property
-    def unit(self) -> str:
-        """Joule; per metre of depth in plane strain."""
-        return "J"
+    unit: ClassVar[str] = "J"
+    """Joule; per metre of depth in plane strain."""
 
     @property
     def words(self) -> str:
@@ -144,10 +132,8 @@ class AskedVolume(Asked):
 
     kind: Literal["volume"]
 
-    @property
-    def unit(self) -> str:
-        """Cubic metres; square metres in plane strain."""
-        return "m^3"
+    unit: ClassVar[str] = "m^3"
+    """Cubic metres; square metres in plane strain."""
 
     @property
     def words(self) -> str:

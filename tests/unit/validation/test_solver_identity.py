@@ -14,7 +14,7 @@ def identity(monkeypatch, tmp_path):
     def of(versions=(), manifest="{}"):
         (tmp_path / "manifest.json").write_text(manifest, encoding="utf-8")
         monkeypatch.setattr(module, "shipped_folders", lambda: (tmp_path,))
-        monkeypatch.setattr(module, "installed", lambda package: dict(versions).get(package, "1.0"))
+        monkeypatch.setattr(module, "installed_version", lambda package: dict(versions).get(package, "1.0"))
         return module.solver_identity.__wrapped__()
 
     return of
@@ -30,4 +30,4 @@ def test_another_mesh_is_another_identity(identity):
 
 
 def test_a_missing_package_is_absent():
-    assert module.installed("no-such-package-anywhere") == "absent"
+    assert module.installed_version("no-such-package-anywhere") == "absent"
