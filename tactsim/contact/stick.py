@@ -9,9 +9,17 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.interfaces import ContactLaw
 
+STRONGEST = 100.0
+"""Largest tangential traction of a sticking contact over its pressure.
+
+Why: without any limit a point that touches or lifts takes or loses its whole tangential traction at once, and where that opens
+or closes it again there is no equilibrium: six of some 35 random grasps with sticking jaws ended there. With a limit of 10, 30,
+100 and 1000 all of them converge; from 100 to 1000 no taxel changes by more than 0.7 % of its force on coarse cells where edges
+roll, most by 1e-5."""
+
 
 class Stick(ContactLaw):
-    """Any tangential traction while the contact is closed; it opens freely.
+    """Hardly any slip while the contact is closed: the tangential traction may be a hundred times the pressure; it opens freely.
 
     Source: the limit of infinite friction (thesis errata E16: part of the bracket of Table 3.2).
     """
@@ -24,9 +32,9 @@ class Stick(ContactLaw):
         return cls()
 
     def traction_limit(self, pressure: Array) -> Array:
-        """Infinite where the pressure is positive."""
-        return np.where(pressure > 0, np.inf, 0.0)
+        """``STRONGEST`` times the pressure, where it is positive."""
+        return np.asarray(STRONGEST * np.maximum(pressure, 0.0))
 
     def traction_limit_slope(self, pressure: Array) -> Array:
-        """Zero."""
-        return np.zeros_like(pressure)
+        """``STRONGEST`` where the pressure is positive."""
+        return np.where(pressure > 0, STRONGEST, 0.0)
