@@ -46,3 +46,22 @@ def test_what_never_comes_to_rest_is_an_error(monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(ConvergenceError, match="no equilibrium after a snap") as caught:
         contact_equilibrium.after_snap(body, body.space.nodes.ravel(), stuck, lambda reached: reached)
     assert caught.value.solutions > 0
+
+
+DEEP = {
+    "specimen": {"material": {"kind": "neo_hookean", "c10": 2936.0}, "thickness": 17.98e-3, "radius": 10.16e-3},
+    "body": {"kind": "annulus", "inner_radius": 1.338e-3, "outer_radius": 3.523e-3, "fillet": 0.3376e-3},
+    "contact": {"kind": "coulomb", "friction": 0.0},
+    "displacement": 3.675e-3,
+    "mesh": {"growth": 0.6, "finest": 0.1409e-3},
+    "recess": 0.4873e-3,
+    "stop": "displacement",
+}
+"""A random case in which a point of the outer edge opens at 3.43 mm."""
+
+
+@pytest.mark.slow
+def test_a_snap_under_a_whole_step_crushes_what_the_drag_holds(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Indentation.model_validate(DEEP).run().status is Status.CONVERGED
+    monkeypatch.setattr(contact_equilibrium, "SNAP_LENGTH", contact_equilibrium.SNAP_STEP)
+    assert Indentation.model_validate(DEEP).run().status is Status.FAILED
