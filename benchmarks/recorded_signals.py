@@ -25,6 +25,8 @@ def signals(result: Path) -> list[list[float]]:
 def write(result: Path) -> None:
     """The recorded file, with how it was made."""
     document = json.loads((result / "result.json").read_text(encoding="utf-8"))
+    if document["status"] != "converged":
+        sys.exit(f"{result}: {document['status']}, {document['reason']}; nothing is recorded")
     touch = 1e3 * document["quantities"]["threshold_displacement"]["value"]
     lines = [
         f"# Annular hardness sensor on ICF: forces on filler plate and small sensor over displacement, touch at {touch:.4f} mm.",

@@ -94,3 +94,13 @@ def finer_at_surface(usual: Size, *, finest: float, growth: float, reach: float)
         return fine
 
     return size
+
+
+def graded_to_peak(usual: Size, *, finest: float, growth: float) -> Size:
+    """The usual size, but ``finest`` where the axis meets the surface z = 0, growing by ``growth`` per distance."""
+
+    def size(points: Array) -> Array:
+        fine: Array = np.minimum(usual(points), finest + growth * np.linalg.norm(points, axis=1))
+        return fine
+
+    return size
