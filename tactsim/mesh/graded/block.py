@@ -20,8 +20,8 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
-from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
-from tactsim.mesh.graded_row import Lump, in_a_row, row_cells, row_of
+from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
+from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 

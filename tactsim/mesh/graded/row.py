@@ -16,7 +16,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded_lines import (
+from tactsim.mesh.graded.lines import (
     CORE_ROOM,
     LEAST_BETWEEN,
     NEAR,
