@@ -17,7 +17,6 @@ from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.lines import (
-    CORE_ROOM,
     LEAST_BETWEEN,
     NEAR,
     REACH,
@@ -25,6 +24,7 @@ from tactsim.mesh.graded.lines import (
     box_shares,
     cells_along,
     edge_thickness,
+    planes_across,
     spaced,
 )
 from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
@@ -106,7 +106,8 @@ def row_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, fi
     line, firsts = _line_along(ordered, axis, float(extent[axis]), int(shared[axis]), settings)
     near, far, first = [line] * 3, [line] * 3, np.tile(np.asarray(firsts)[:, None], (1, 3))
     for other in (k for k in range(3) if k != axis):
-        planes, begin = _planes_across(ordered, other, float(extent[other]), int(shared[other]), settings)
+        middles, sides = (np.array([getattr(lump, name)[..., other] for lump in ordered]) for name in ("center", "bounds"))
+        planes, begin = planes_across(middles, sides, float(extent[other]), int(shared[other]), settings, pressed=other == 2)
         knots, owner = _knots(ordered, axis, other, line, firsts, across=int(shared[axis]))
         near[other], far[other] = (_between(knots, [lines[k] for k in owner], line) for lines in planes)
         first[:, other] = begin
@@ -173,49 +174,6 @@ def _box_side(gap: float, half: float, settings: BlockMeshSettings, *, inner: bo
     if inner and (1 - ROOM) * 2 * gap < NEAR * edge_thickness(settings):
         return gap
     return min(ROOM * gap, (REACH - 1) * half)
-
-
-def _planes_across(
-    lumps: Sequence[Lump], axis: int, length: float, across: int, settings: BlockMeshSettings
-) -> tuple[tuple[list[Array], list[Array]], int]:
-    """Ascending places in m across the row at each lump, beside the boxes and at the faces, and the first plane of the boxes."""
-    gaps = np.array([[lump.bounds[0, axis], length - lump.bounds[1, axis]] for lump in lumps])
-    touching = (gaps < NEAR * edge_thickness(settings)).all(axis=0) if axis == 2 else np.zeros(2, bool)
-    half = np.array([lump.half[axis] for lump in lumps])[:, None]
-    center = np.array([[lump.center[axis], length - lump.center[axis]] for lump in lumps])
-    left = np.where(touching, 0.0, gaps - np.minimum(ROOM * gaps, (REACH - 1) * half))
-    least = np.minimum(edge_thickness(settings), center - CORE_ROOM * half)
-    far = np.where(left > 0, np.maximum(left, least), 0.0)
-    counts = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
-    shares = box_shares(across, 0.0)
-    planes = []
-    for spans in (left, far):
-        planes.append(
-            [
-                _across(span, float(c), length, shares, counts=counts, settings=settings)
-                for span, c in zip(spans, center[:, 0], strict=True)
-            ]
-        )
-    return (planes[0], planes[1]), counts[0]
-
-
-def _across(
-    span: Array, center: float, length: float, shares: Array, *, counts: Sequence[int], settings: BlockMeshSettings
-) -> Array:
-    """Ascending places in m from face to face through one box, with given numbers of cells before and after it."""
-    before, after = (_outer(float(s), count, settings) for s, count in zip(span, counts, strict=True))
-    within = np.interp(shares, [-1, 0, 1], [span[0], center, length - span[1]])
-    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
-
-
-def _outer(span: float, count: int, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
-    thickness = edge_thickness(settings)
-    steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
-    if count < 2 or thickness * count >= span:
-        return np.linspace(0.0, span, count + 1)
-    steps[1:] *= (span - steps[0]) / steps[1:].sum()
-    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
 
 
 def _between(knots: Sequence[float], values: Sequence[Array], line: Array) -> Array:
