@@ -21,9 +21,10 @@ from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
 from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
-from tactsim.mesh.graded.rings import bundle_of, swept_cells
+from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
 from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
-from tactsim.mesh.graded.sections import Hollow, as_hollow, leading_axis
+from tactsim.mesh.graded.sections import Hollow, as_hollow
+from tactsim.mesh.graded.side_by_side import bundle_of
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
@@ -75,10 +76,10 @@ def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str
     extent = np.asarray(size, float)
     try:
         lumps, tubes = _sorted(inclusions, extent)
-        if len(lumps) > 1:
-            in_a_row(lumps)
         if tubes:
-            leading_axis(tubes, extent)
+            bundle_of(tubes, lumps[0] if lumps else None, extent, BlockMeshSettings(), 0)
+        elif len(lumps) > 1:
+            in_a_row(lumps)
     except InputError as error:
         return str(error)
     return None
@@ -102,8 +103,8 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
             tubes.append(tube)
         else:
             raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid, tube")
-    if tubes and (lumps or len(tubes) > 1):
-        raise InputError("graded cells serve a single tube, or lumps")
+    if tubes and len(lumps) > 1:
+        raise InputError("graded cells serve one lump beside tubes, or several lumps without")
     return lumps, tubes
 
 
@@ -113,12 +114,22 @@ def _cells(
     """Corners (n, 3), cells (H, 8), their regions (H,) and the places (n,) in the order by which cells are split."""
     lumps, tubes = _sorted(inclusions, extent)
     if tubes:
-        bundle, _ = bundle_of(tubes, extent, settings, finer)
+        bundle, order = bundle_of(tubes, lumps[0] if lumps else None, extent, settings, finer)
         _check_size([count - 1 for count in bundle.grid.shape[:3]])
-        corners, cells, labels, distances = swept_cells(bundle)
-        return corners, cells, labels, _placed(distances)
+        corners, cells, regions, distances = swept_cells(bundle)
+        return corners, cells, _numbered(regions, order, inclusions, extent), _placed(distances)
     corners, cells, labels = _cells_of_lumps(lumps, extent, settings, finer)
     return corners, cells, labels, _places_about(corners, [lump.ball for lump in lumps])
+
+
+def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], extent: Array) -> Array:
+    """Regions (H,) as `swept_cells` gives them by the numbers of the inclusions; ``order`` holds those of the tubes."""
+    tubes = [k for k, inclusion in enumerate(inclusions, 1) if as_hollow(inclusion.solids(extent)) is not None]
+    labels = np.zeros_like(regions)
+    labels[regions == BALL_REGION] = next((k for k in range(1, len(inclusions) + 1) if k not in tubes), 0)
+    for place, tube in enumerate(order, 1):
+        labels[regions == place], labels[regions == -1 - place] = tubes[tube], -1 - tubes[tube]
+    return labels
 
 
 def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> tuple[Array, Array, Array]:

@@ -36,6 +36,8 @@ SMALL, FAR = 1 / 3, 0.9
 """Height over the block's below which, and gap over the half width above which three cells suffice: the lump is felt little."""
 GATHER = 0.2
 """How much the lines around a close lump crowd at its centre, where the pressure is largest; 0 is even spacing."""
+STEEP = 1.0
+"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
 NEAREST = 0.5
 """Least fraction of a cell that must remain for another cell between a face and the box."""
 
@@ -183,3 +185,20 @@ def outer_places(span: float, count: int, settings: BlockMeshSettings) -> Array:
         return np.linspace(0.0, span, count + 1)
     steps[1:] *= (span - steps[0]) / steps[1:].sum()
     return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
+
+
+def knots_between(along: Array, other: Array, sides: Array, *, length: float) -> tuple[list[float], list[int]]:
+    """Places in m along a row between which planes across it lead straight, and the box whose planes hold at each.
+
+    The boxes have their middles at ``along`` (k,), ascending, and at ``other`` (k,) across the row, and their sides at ``sides``
+    (k, 2), all in m. Planes are level through the boxes where the rest of the way suffices for a slope of `STEEP`.
+    """
+    knots, owner = [0.0], [0]
+    for k in range(len(along) - 1):
+        here, there = (float(place) for place in along[k : k + 2])
+        reach = np.array([sides[k, 1] - here, there - sides[k + 1, 0]])
+        rise = abs(float(other[k + 1] - other[k]))
+        level = np.clip((there - here - rise / STEEP) / reach.sum(), 0.0, 1.0)
+        knots += [here + level * float(reach[0]), there - level * float(reach[1])]
+        owner += [k, k + 1]
+    return [*knots, length], [*owner, len(along) - 1]

@@ -24,13 +24,11 @@ from tactsim.mesh.graded.lines import (
     box_shares,
     cells_along,
     edge_thickness,
+    knots_between,
     planes_across,
     spaced,
 )
 from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
-
-STEEP = 1.0
-"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
 
 
 @dataclass(frozen=True)
@@ -108,29 +106,14 @@ def row_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, fi
     for other in (k for k in range(3) if k != axis):
         middles, sides = (np.array([getattr(lump, name)[..., other] for lump in ordered]) for name in ("center", "bounds"))
         planes, begin = planes_across(middles, sides, float(extent[other]), int(shared[other]), settings, pressed=other == 2)
-        knots, owner = _knots(ordered, axis, other, line, firsts, across=int(shared[axis]))
+        begins = np.array(firsts)
+        sides = np.stack([line[begins], line[begins + shared[axis]]], axis=1)
+        alongs, others = (np.array([lump.center[k] for lump in ordered]) for k in (axis, other))
+        knots, owner = knots_between(alongs, others, sides, length=float(line[-1]))
         near[other], far[other] = (_between(knots, [lines[k] for k in owner], line) for lines in planes)
         first[:, other] = begin
     away = tuple(_away(near[k][0] if k != axis else line, first[:, k], int(shared[k])) for k in range(3))
     return Row(axis, ordered, shared, tuple(near), tuple(far), first, away)
-
-
-def _knots(
-    lumps: Sequence[Lump], axis: int, other: int, line: Array, firsts: Sequence[int], *, across: int
-) -> tuple[list[float], list[int]]:
-    """Places in m along the row between which planes across it lead straight, and the lump whose planes hold at each.
-
-    Planes are level through the boxes where the rest of the way from lump to lump suffices for a slope of `STEEP`.
-    """
-    knots, owner = [float(line[0])], [0]
-    for k in range(len(lumps) - 1):
-        here, there = (float(lump.center[axis]) for lump in lumps[k : k + 2])
-        sides = np.array([line[firsts[k] + across] - here, there - line[firsts[k + 1]]])
-        rise = abs(float(lumps[k + 1].center[other] - lumps[k].center[other]))
-        level = np.clip((there - here - rise / STEEP) / sides.sum(), 0.0, 1.0)
-        knots += [here + level * float(sides[0]), there - level * float(sides[1])]
-        owner += [k, k + 1]
-    return [*knots, float(line[-1])], [*owner, len(lumps) - 1]
 
 
 def _cells_across(lumps: Sequence[Lump], height: float, settings: BlockMeshSettings, finer: int) -> Array:

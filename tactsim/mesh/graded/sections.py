@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,12 @@ class Hollow:
         points, tangents = self.line.derivatives(parameter)[0], self.line.tangents(parameter)
         points[:, axis] = places
         return points, tangents
+
+    @property
+    def tightest(self) -> float:
+        """Least radius in m of its bends, infinite if it is straight."""
+        bends = np.linalg.norm(self.line.curvature(self.line.stations), axis=1)
+        return float(1 / bends.max()) if bends.max() > 0 else np.inf
 
     def leads(self, axis: int, size: Array) -> bool:
         """Whether it goes along an axis all the way, its sections between the other faces."""
@@ -95,11 +101,11 @@ def section_stretches(inside: Array) -> Array:
 
 @dataclass(frozen=True)
 class Sections:
-    """k tubes side by side in n planes across an axis.
+    """k tubes in n planes across an axis.
 
     Attributes
     ----------
-    axes : that along which the tubes lead, that along which they stand side by side, and the third
+    axes : that along which the tubes lead, and the two in the planes
     places : (n,) of the planes along the first axis in m
     ends : (k, 2) first and last plane of each tube
     centers, tangents : (n, k, 3) in m and unit vectors, by the order of ``axes``
@@ -124,31 +130,26 @@ class Sections:
         reach = np.linalg.norm(self.stretches, axis=3) * self.radii[:, :1]
         return np.stack([self.centers[..., 1:] - reach, self.centers[..., 1:] + reach], axis=-1)
 
-    def least_gap(self) -> float:
-        """Least distance in m along the second axis between neighbours, in any plane; infinite if there are none."""
-        low, high = np.moveaxis(self.bounds[:, :, 0], -1, 0)
-        return float((low[:, 1:] - high[:, :-1]).min(initial=np.inf))
+    def turned(self) -> Sections:
+        """The same with the second and the third axis exchanged."""
+        (a, b, c), order = self.axes, [0, 2, 1]
+        return replace(self, axes=(a, c, b), centers=self.centers[..., order], tangents=self.tangents[..., order])
+
+    def taken(self, order: Array) -> Sections:
+        """Some of the tubes in another order."""
+        return replace(
+            self,
+            ends=self.ends[order],
+            centers=self.centers[:, order],
+            tangents=self.tangents[:, order],
+            radii=self.radii[order],
+        )
 
 
-def sections_of(tubes: Sequence[Hollow], axis: int, places: Array, size: Array) -> tuple[Sections, Array]:
-    """Tubes in planes across an axis at places (n,) in m, those of their ends among them; and their numbers (k,) in order.
-
-    Raises
-    ------
-    InputError
-        If the tubes do not stand side by side.
-    """
+def sections_of(tubes: Sequence[Hollow], axis: int, places: Array, size: Array) -> Sections:
+    """Tubes in planes across an axis at places (n,) in m, those of their ends among them; in a block of size (3,) in m."""
+    axes = (axis, (axis + 1) % 3, (axis + 2) % 3)
     ends = np.array([[np.abs(places - end).argmin() for end in tube.ends(axis, size)] for tube in tubes])
     found = [tube.crossing(axis, places) for tube in tubes]
-    points, tangents = (np.stack([pair[k] for pair in found], axis=1) for k in range(2))
-    radii = np.array([[tube.outer, tube.inner] for tube in tubes])
-    best, numbers = None, np.arange(len(tubes))
-    for beside, third in (((axis + 1) % 3, (axis + 2) % 3), ((axis + 2) % 3, (axis + 1) % 3)):
-        axes = (axis, beside, third)
-        order = np.argsort(points[..., beside].mean(axis=0), kind="stable")
-        seen = Sections(axes, places, ends[order], points[:, order][..., axes], tangents[:, order][..., axes], radii[order])
-        if best is None or seen.least_gap() > best.least_gap():
-            best, numbers = seen, order
-    if best is None or best.least_gap() <= 0:
-        raise InputError("graded cells serve tubes side by side: along an axis each must end before the next begins")
-    return best, numbers
+    centers, tangents = (np.stack([pair[k] for pair in found], axis=1)[..., axes] for k in range(2))
+    return Sections(axes, places, ends, centers, tangents, np.array([[tube.outer, tube.inner] for tube in tubes]))
