@@ -16,7 +16,7 @@ from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import assembled
-from tactsim.mesh.graded_block import graded_block, graded_misfit
+from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.labelling import Surfaces
 from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
 from tactsim.mesh.reading import read_mesh

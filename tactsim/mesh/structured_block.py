@@ -119,8 +119,8 @@ def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Ar
 
 
 def product(lines: Sequence[Array]) -> Array:
-    """Points (n, 3) of a grid of coordinates, the last one running fastest."""
-    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    """Points (n, d) of a grid of d coordinates, the last one running fastest."""
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines))
 
 
 def grid(cells: Sequence[int]) -> Array:

@@ -7,7 +7,7 @@ import functools
 import numpy as np
 
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.mesh import graded_lines
+from tactsim.mesh.graded import lines as graded_lines
 
 SHARE = 0.03
 """Difference allowed of a taxel's force over the largest taxel's."""

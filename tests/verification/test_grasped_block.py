@@ -18,7 +18,7 @@ from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.block_model import GraspModel
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded_block import graded_block
+from tactsim.mesh.graded.block import graded_block
 from tactsim.mesh.quadratic import QuadraticMesh
 
 SIZE = np.array([0.04, 0.03, 0.02])

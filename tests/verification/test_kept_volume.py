@@ -18,7 +18,7 @@ from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics import block_model
 from tactsim.mechanics.volume_ratios import volume_error
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded_block import graded_block
+from tactsim.mesh.graded.block import graded_block
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (24e-3, 24e-3, 12e-3)

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
-from tactsim.mesh.mapped import Domain, grid_domain, polar, quarter_disc, spaced
+from tactsim.mesh.graded.mapped import Domain, grid_domain, polar, quarter_disc, spaced
 from tactsim.mesh.revolved import SweepSymmetry, swept
 from tactsim.model import FrozenModel
 from tactsim.units import Length

@@ -38,7 +38,7 @@ from tactsim.mechanics.first_touch import first_touch
 from tactsim.mechanics.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
 from tactsim.mechanics.posed_contact import PosedContact
 from tactsim.mechanics.prescribed_motion import PrescribedMotion, PrescribedMotions, Rotation, Translation
-from tactsim.mesh.mapped import Domain
+from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
 
 MEASURES: dict[str, Measure] = {"3d": "solid", "plane_strain": "plane_strain", "axisymmetric": "axisymmetric"}

@@ -11,7 +11,7 @@ from tactsim.errors import ConvergenceError
 from tactsim.interfaces import Inclusion
 from tactsim.mechanics.block_source import AnyBlockSource, AnySource, AutomaticSource, Size, SourcedBlock, TetrahedraSource
 from tactsim.mesh.any_inclusion import inclusion_name
-from tactsim.mesh.graded_block import graded_misfit
+from tactsim.mesh.graded.block import graded_misfit
 
 
 def chosen_source(mesh: AnyBlockSource, size: Size, shapes: Sequence[Inclusion], jaws: Sequence[Jaw]) -> AnySource:

@@ -16,8 +16,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded_lines import (
-    CORE_ROOM,
+from tactsim.mesh.graded.lines import (
     LEAST_BETWEEN,
     NEAR,
     REACH,
@@ -25,12 +24,11 @@ from tactsim.mesh.graded_lines import (
     box_shares,
     cells_along,
     edge_thickness,
+    knots_between,
+    planes_across,
     spaced,
 )
 from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
-
-STEEP = 1.0
-"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
 
 
 @dataclass(frozen=True)
@@ -106,30 +104,16 @@ def row_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, fi
     line, firsts = _line_along(ordered, axis, float(extent[axis]), int(shared[axis]), settings)
     near, far, first = [line] * 3, [line] * 3, np.tile(np.asarray(firsts)[:, None], (1, 3))
     for other in (k for k in range(3) if k != axis):
-        planes, begin = _planes_across(ordered, other, float(extent[other]), int(shared[other]), settings)
-        knots, owner = _knots(ordered, axis, other, line, firsts, across=int(shared[axis]))
+        middles, sides = (np.array([getattr(lump, name)[..., other] for lump in ordered]) for name in ("center", "bounds"))
+        planes, begin = planes_across(middles, sides, float(extent[other]), int(shared[other]), settings, pressed=other == 2)
+        begins = np.array(firsts)
+        sides = np.stack([line[begins], line[begins + shared[axis]]], axis=1)
+        alongs, others = (np.array([lump.center[k] for lump in ordered]) for k in (axis, other))
+        knots, owner = knots_between(alongs, others, sides, length=float(line[-1]))
         near[other], far[other] = (_between(knots, [lines[k] for k in owner], line) for lines in planes)
         first[:, other] = begin
     away = tuple(_away(near[k][0] if k != axis else line, first[:, k], int(shared[k])) for k in range(3))
     return Row(axis, ordered, shared, tuple(near), tuple(far), first, away)
-
-
-def _knots(
-    lumps: Sequence[Lump], axis: int, other: int, line: Array, firsts: Sequence[int], *, across: int
-) -> tuple[list[float], list[int]]:
-    """Places in m along the row between which planes across it lead straight, and the lump whose planes hold at each.
-
-    Planes are level through the boxes where the rest of the way from lump to lump suffices for a slope of `STEEP`.
-    """
-    knots, owner = [float(line[0])], [0]
-    for k in range(len(lumps) - 1):
-        here, there = (float(lump.center[axis]) for lump in lumps[k : k + 2])
-        sides = np.array([line[firsts[k] + across] - here, there - line[firsts[k + 1]]])
-        rise = abs(float(lumps[k + 1].center[other] - lumps[k].center[other]))
-        level = np.clip((there - here - rise / STEEP) / sides.sum(), 0.0, 1.0)
-        knots += [here + level * float(sides[0]), there - level * float(sides[1])]
-        owner += [k, k + 1]
-    return [*knots, float(line[-1])], [*owner, len(lumps) - 1]
 
 
 def _cells_across(lumps: Sequence[Lump], height: float, settings: BlockMeshSettings, finer: int) -> Array:
@@ -173,49 +157,6 @@ def _box_side(gap: float, half: float, settings: BlockMeshSettings, *, inner: bo
     if inner and (1 - ROOM) * 2 * gap < NEAR * edge_thickness(settings):
         return gap
     return min(ROOM * gap, (REACH - 1) * half)
-
-
-def _planes_across(
-    lumps: Sequence[Lump], axis: int, length: float, across: int, settings: BlockMeshSettings
-) -> tuple[tuple[list[Array], list[Array]], int]:
-    """Ascending places in m across the row at each lump, beside the boxes and at the faces, and the first plane of the boxes."""
-    gaps = np.array([[lump.bounds[0, axis], length - lump.bounds[1, axis]] for lump in lumps])
-    touching = (gaps < NEAR * edge_thickness(settings)).all(axis=0) if axis == 2 else np.zeros(2, bool)
-    half = np.array([lump.half[axis] for lump in lumps])[:, None]
-    center = np.array([[lump.center[axis], length - lump.center[axis]] for lump in lumps])
-    left = np.where(touching, 0.0, gaps - np.minimum(ROOM * gaps, (REACH - 1) * half))
-    least = np.minimum(edge_thickness(settings), center - CORE_ROOM * half)
-    far = np.where(left > 0, np.maximum(left, least), 0.0)
-    counts = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
-    shares = box_shares(across, 0.0)
-    planes = []
-    for spans in (left, far):
-        planes.append(
-            [
-                _across(span, float(c), length, shares, counts=counts, settings=settings)
-                for span, c in zip(spans, center[:, 0], strict=True)
-            ]
-        )
-    return (planes[0], planes[1]), counts[0]
-
-
-def _across(
-    span: Array, center: float, length: float, shares: Array, *, counts: Sequence[int], settings: BlockMeshSettings
-) -> Array:
-    """Ascending places in m from face to face through one box, with given numbers of cells before and after it."""
-    before, after = (_outer(float(s), count, settings) for s, count in zip(span, counts, strict=True))
-    within = np.interp(shares, [-1, 0, 1], [span[0], center, length - span[1]])
-    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
-
-
-def _outer(span: float, count: int, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
-    thickness = edge_thickness(settings)
-    steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
-    if count < 2 or thickness * count >= span:
-        return np.linspace(0.0, span, count + 1)
-    steps[1:] *= (span - steps[0]) / steps[1:].sum()
-    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
 
 
 def _between(knots: Sequence[float], values: Sequence[Array], line: Array) -> Array:

@@ -8,7 +8,7 @@ import pytest
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
-from tactsim.mesh.graded_block import graded_block
+from tactsim.mesh.graded.block import graded_block
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube

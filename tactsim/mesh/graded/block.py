@@ -20,8 +20,11 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
-from tactsim.mesh.graded_lines import Line, lines_around, mirrored_line
-from tactsim.mesh.graded_row import Lump, in_a_row, row_cells, row_of
+from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
+from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
+from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
+from tactsim.mesh.graded.sections import Hollow, as_hollow
+from tactsim.mesh.graded.side_by_side import bundle_of
 from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
 from tactsim.mesh.tetrahedra import mesh_key
 
@@ -55,10 +58,9 @@ def graded_block(
         corners, cells = product(lines), grid([len(line) - 1 for line in lines])
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
-    lumps = [_lump(inclusion, extent) for inclusion in inclusions]
     for finer in range(ATTEMPTS):
-        corners, cells, labels = _cells(lumps, extent, settings, finer)
-        simplices = _sixths(cells, _places_about(corners, [lump.ball for lump in lumps]))
+        corners, cells, labels, places = _cells(inclusions, extent, settings, finer)
+        simplices = _sixths(cells, places)
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
         except ConvergenceError as error:
@@ -73,30 +75,64 @@ def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str
     """Why inclusions cannot have graded cells; None if they may."""
     extent = np.asarray(size, float)
     try:
-        lumps = [_lump(inclusion, extent) for inclusion in inclusions]
-        if len(lumps) > 1:
+        lumps, tubes = _sorted(inclusions, extent)
+        if tubes:
+            bundle_of(tubes, lumps[0] if lumps else None, extent, BlockMeshSettings(), 0)
+        elif len(lumps) > 1:
             in_a_row(lumps)
     except InputError as error:
         return str(error)
     return None
 
 
-def _lump(inclusion: Inclusion, extent: Array) -> Lump:
-    """The ball that an inclusion is, with its bounds.
+def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump], list[Hollow]]:
+    """The lumps and the tubes that inclusions are.
 
     Raises
     ------
     InputError
-        If it is none.
+        If one is neither, or there are both.
     """
-    solid = inclusion.solids(extent)[0]
-    ball = solid.ball_image()
-    if ball is None:
-        raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid")
-    return Lump(ball, solid.bounds())
+    lumps, tubes = [], []
+    for inclusion in inclusions:
+        solids = inclusion.solids(extent)
+        ball, tube = solids[0].ball_image(), as_hollow(solids)
+        if ball is not None:
+            lumps.append(Lump(ball, solids[0].bounds()))
+        elif tube is not None:
+            tubes.append(tube)
+        else:
+            raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid, tube")
+    if tubes and len(lumps) > 1:
+        raise InputError("graded cells serve one lump beside tubes, or several lumps without")
+    return lumps, tubes
 
 
-def _cells(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> tuple[Array, Array, Array]:
+def _cells(
+    inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int
+) -> tuple[Array, Array, Array, Array]:
+    """Corners (n, 3), cells (H, 8), their regions (H,) and the places (n,) in the order by which cells are split."""
+    lumps, tubes = _sorted(inclusions, extent)
+    if tubes:
+        bundle, order = bundle_of(tubes, lumps[0] if lumps else None, extent, settings, finer)
+        _check_size([count - 1 for count in bundle.grid.shape[:3]])
+        corners, cells, regions, distances = swept_cells(bundle)
+        return corners, cells, _numbered(regions, order, inclusions, extent), _placed(distances)
+    corners, cells, labels = _cells_of_lumps(lumps, extent, settings, finer)
+    return corners, cells, labels, _places_about(corners, [lump.ball for lump in lumps])
+
+
+def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], extent: Array) -> Array:
+    """Regions (H,) as `swept_cells` gives them by the numbers of the inclusions; ``order`` holds those of the tubes."""
+    tubes = [k for k, inclusion in enumerate(inclusions, 1) if as_hollow(inclusion.solids(extent)) is not None]
+    labels = np.zeros_like(regions)
+    labels[regions == BALL_REGION] = next((k for k in range(1, len(inclusions) + 1) if k not in tubes), 0)
+    for place, tube in enumerate(order, 1):
+        labels[regions == place], labels[regions == -1 - place] = tubes[tube], -1 - tubes[tube]
+    return labels
+
+
+def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) around one lump, or around several in a row."""
     if len(lumps) == 1:
         around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)

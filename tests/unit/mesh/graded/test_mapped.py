@@ -14,7 +14,7 @@ from tactsim.experiments.boundary_value.geometry import (
     Span,
 )
 from tactsim.fem.space import TaylorHood
-from tactsim.mesh.mapped import grid_domain, spaced
+from tactsim.mesh.graded.mapped import grid_domain, spaced
 
 MEASURES = {"3d": "solid", "plane_strain": "plane_strain", "axisymmetric": "axisymmetric"}
 

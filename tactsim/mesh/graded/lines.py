@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +36,8 @@ SMALL, FAR = 1 / 3, 0.9
 """Height over the block's below which, and gap over the half width above which three cells suffice: the lump is felt little."""
 GATHER = 0.2
 """How much the lines around a close lump crowd at its centre, where the pressure is largest; 0 is even spacing."""
+STEEP = 1.0
+"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
 NEAREST = 0.5
 """Least fraction of a cell that must remain for another cell between a face and the box."""
 
@@ -136,3 +139,66 @@ def spaced(length: float, settings: BlockMeshSettings) -> Array:
         return np.array([0.0, length])
     steps[1:] *= (length - steps[0]) / steps[1:].sum()
     return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), length)
+
+
+def planes_across(
+    centers: Array, bounds: Array, length: float, across: int, settings: BlockMeshSettings, *, pressed: bool
+) -> tuple[tuple[list[Array], list[Array]], int]:
+    """Ascending places in m from face to face through each of several boxes, and the first plane of the boxes.
+
+    The boxes are those around lumps with middles (n,) and bounds (n, 2) in m; all have as many planes. The first list holds
+    beside the boxes, the second one at the faces along the planes; ``pressed`` says whether the planes lie between jaws.
+    """
+    edge = edge_thickness(settings)
+    gaps = np.stack([bounds[:, 0], length - bounds[:, 1]], axis=1)
+    touching = (gaps < NEAR * edge).all(axis=0) & pressed
+    half = np.diff(bounds, axis=1) / 2
+    left = np.where(touching, 0.0, gaps - np.minimum(ROOM * gaps, (REACH - 1) * half))
+    least = np.minimum(edge, np.stack([centers, length - centers], axis=1) - CORE_ROOM * half)
+    far = np.where(left > 0, np.maximum(left, least), 0.0)
+    counts = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
+    shares = box_shares(across, 0.0)
+    near, outer = (
+        [
+            _across(span, float(center), length, shares, counts=counts, settings=settings)
+            for span, center in zip(spans, centers, strict=True)
+        ]
+        for spans in (left, far)
+    )
+    return (near, outer), counts[0]
+
+
+def _across(
+    span: Array, center: float, length: float, shares: Array, *, counts: Sequence[int], settings: BlockMeshSettings
+) -> Array:
+    """Ascending places in m from face to face through one box, with given numbers of cells before and after it."""
+    before, after = (outer_places(float(s), count, settings) for s, count in zip(span, counts, strict=True))
+    within = np.interp(shares, [-1, 0, 1], [span[0], center, length - span[1]])
+    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
+
+
+def outer_places(span: float, count: int, settings: BlockMeshSettings) -> Array:
+    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
+    thickness = edge_thickness(settings)
+    steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
+    if count < 2 or thickness * count >= span:
+        return np.linspace(0.0, span, count + 1)
+    steps[1:] *= (span - steps[0]) / steps[1:].sum()
+    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
+
+
+def knots_between(along: Array, other: Array, sides: Array, *, length: float) -> tuple[list[float], list[int]]:
+    """Places in m along a row between which planes across it lead straight, and the box whose planes hold at each.
+
+    The boxes have their middles at ``along`` (k,), ascending, and at ``other`` (k,) across the row, and their sides at ``sides``
+    (k, 2), all in m. Planes are level through the boxes where the rest of the way suffices for a slope of `STEEP`.
+    """
+    knots, owner = [0.0], [0]
+    for k in range(len(along) - 1):
+        here, there = (float(place) for place in along[k : k + 2])
+        reach = np.array([sides[k, 1] - here, there - sides[k + 1, 0]])
+        rise = abs(float(other[k + 1] - other[k]))
+        level = np.clip((there - here - rise / STEEP) / reach.sum(), 0.0, 1.0)
+        knots += [here + level * float(reach[0]), there - level * float(reach[1])]
+        owner += [k, k + 1]
+    return [*knots, length], [*owner, len(along) - 1]
