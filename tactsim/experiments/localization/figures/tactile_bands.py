@@ -31,7 +31,7 @@ class TactileBandsFigures(ResultFigures):
 
 
 def bands_figure(result: Result) -> Figure:
-    """Each array as its elements and interpolated, and the section between two, whose brightest level is its largest intensity."""
+    """Each array as its elements and interpolated; the section between two, white at its largest intensity."""
     scene, section = result.scene_as(BandsScene), None
     white, pictures = format_quantity(scene.normalising, "N"), list[tuple[str, Array]]()
     for name in scene.arrays:
