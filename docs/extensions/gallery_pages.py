@@ -33,6 +33,7 @@ ORDER = (
     "localization",
     "detectability",
     "confusion",
+    "tactile_bands",
 )
 RESOLUTION = 130
 """In dots per inch."""

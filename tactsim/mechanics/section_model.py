@@ -11,12 +11,16 @@ from tactsim.array import Array
 from tactsim.fem.space import Measure
 from tactsim.interfaces import Material
 from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.point_values import cauchy_stress
 from tactsim.mechanics.pressed_model import PressedModel
 from tactsim.mechanics.section_fields import section_frame
 from tactsim.mesh.adaptation import Refinement, refined
 from tactsim.mesh.axisymmetric import Size
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
+
+AXIAL_STRESS = "axial_stress [Pa]"
+"""Name of the Cauchy stress normal to planes across the axis, tension positive, among the fields of a section."""
 
 
 class SectionModel(PressedModel):
@@ -36,8 +40,10 @@ class SectionModel(PressedModel):
         return np.ones(2)
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView."""
-        return section_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
+        """Fields of a state for ParaView, with the normal stress along the motion, the mean of each element."""
+        frame = section_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
+        stress = cauchy_stress(self.body, state.unknowns, state.kinematics, isochoric)[1, 1]
+        return replace(frame, cell_data={**frame.cell_data, AXIAL_STRESS: stress.mean(axis=1)})
 
     def rise(self, state: ContactEquilibrium, radius: float) -> tuple[float, float]:
         """Largest height in m of the tissue within ``radius`` of the axis above the first body's face, and that on the axis."""

@@ -75,6 +75,7 @@ class BlockMesh:
     volumes : (R, 2) volume in m^3 of each region in the mesh, and the exact one
     seconds : time that meshing took
     key : hash of what was asked for
+    part : of the element size at inclusions that was asked for, with which the mesh was made: with longer ones it missed a bound
     """
 
     mesh: QuadraticMesh
@@ -84,6 +85,7 @@ class BlockMesh:
     volumes: Array
     seconds: float
     key: str
+    part: float = 1.0
 
     @property
     def volume_errors(self) -> Array:

@@ -39,6 +39,7 @@ def fitted(
     inclusions: Sequence[Inclusion],
     key: str,
     started: float,
+    part: float = 1.0,
     slide: bool = True,
     smooth: bool = True,
 ) -> BlockMesh:
@@ -48,6 +49,7 @@ def fitted(
     ----------
     corners, simplices, labels : (n, 3) in m, (E, 4), (E,) as in ``labelling``
     started : what ``time.perf_counter`` gave when meshing began
+    part : of the element size at inclusions that was asked for
     slide : whether nodes may move along curved surfaces for better shapes
     smooth : whether nodes may move for better shapes at all, and edges of the block that roll onto a jaw get two elements
 
@@ -75,7 +77,7 @@ def fitted(
         raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios.min():.2g}; allowed: {LEAST_QUALITY}")
     mesh, straightened = curved(quadratic_mesh(corners, simplices, labels), walls, constraints)
     seconds = time.perf_counter() - started
-    return assembled(mesh, surfaces, inclusions, key=key, seconds=seconds, straightened=straightened)
+    return assembled(mesh, surfaces, inclusions, key=key, seconds=seconds, straightened=straightened, part=part)
 
 
 def assembled(
@@ -86,6 +88,7 @@ def assembled(
     key: str,
     seconds: float,
     straightened: int,
+    part: float = 1.0,
     fitting: bool = True,
 ) -> BlockMesh:
     """The block mesh of a mesh, measured; and checked if it is ``fitting``, that is made to follow the surfaces."""
@@ -99,6 +102,7 @@ def assembled(
         volumes=np.stack([region_volumes(mesh, len(inclusions) + 1), exact_volumes(surfaces)], axis=1),
         seconds=seconds,
         key=key,
+        part=part,
     )
     if fitting:
         check(block, surfaces.size)

@@ -124,6 +124,7 @@ def write_block_mesh(block: BlockMesh, place: Path) -> None:
                 regions=block.mesh.regions.astype(np.int64),
                 straightened=np.array(block.quality.straightened),
                 seconds=np.array(block.seconds),
+                part=np.array(block.part),
                 content=np.array(content_hash(block.mesh)),
             )
             file.flush()
@@ -150,6 +151,7 @@ def _read(place: Path, size: Array, inclusions: Sequence[Inclusion], key: str) -
     surfaces = Surfaces(size, [inclusion.solids(size) for inclusion in inclusions])
     mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
     made = {"seconds": float(arrays["seconds"]), "straightened": int(arrays["straightened"])}
+    made["part"] = float(arrays["part"]) if "part" in arrays else 1.0  # files of before do not say
     try:
         block = assembled(mesh, surfaces, inclusions, key=key, **made)  # type: ignore[arg-type]
     except (*_DAMAGE, IndexError, ConvergenceError, InputError):

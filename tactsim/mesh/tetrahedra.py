@@ -75,7 +75,7 @@ def block_mesh(
         corners, simplices = tetrahedra_in_child(_request(extent, inclusions, finer), settings.time_limit)
         labels = tidied(simplices, surfaces.labels(corners[simplices].mean(axis=1)))
         try:
-            return fitted(corners, simplices, labels, size=extent, inclusions=inclusions, key=key, started=started)
+            return fitted(corners, simplices, labels, size=extent, inclusions=inclusions, key=key, started=started, part=part)
         except ConvergenceError as error:
             missed = error
     raise missed

@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tactsim.errors import UnknownName
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled, weighted_percentiles
 from tactsim.plotting.colours import PRESSURE_COLOURS
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import RowOutcome
@@ -22,6 +22,8 @@ from tactsim.validation.comparison import RowOutcome
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
 POINTS_SHOWN = 40
+SHOWN_REACH = 2.4
+"""Radius up to which a section is shown, in radii of the body: farther out the tissue is at rest."""
 WIDTH_OF_CHAPTER = 0.8
 """Part of the distance of two chapters that the points of one take."""
 
@@ -34,7 +36,14 @@ def validation_figure(data: dict[str, Any]) -> bytes:
     UnknownName
         If no figure has this form.
     """
-    forms = {"ranges": ranges_figure, "curves": curves_figure, "maps": maps_figure, "images": images_figure}
+    forms = {
+        "ranges": ranges_figure,
+        "curves": curves_figure,
+        "maps": maps_figure,
+        "images": images_figure,
+        "surfaces": surfaces_figure,
+        "sections": sections_figure,
+    }
     if data["form"] not in forms:
         raise UnknownName("form of a figure", str(data["form"]), forms)
     with styled():
@@ -208,6 +217,49 @@ def images_figure(data: dict[str, Any]) -> Figure:
         axis.set_yticks([])
         axis.set_title(panel["title"], fontsize=9, loc="left")
     axes[-1].set_xlabel(data["axis"])
+    entitle(figure, data["title"])
+    return figure
+
+
+def surfaces_figure(data: dict[str, Any]) -> Figure:
+    """A value over two axes, a panel in space for each surface."""
+    panels = data["panels"]
+    x, y = np.meshgrid(data["x"], data["y"])
+    figure = new_figure(1.0 + 4.6 * len(panels), 4.6)
+    for place, panel in enumerate(panels, 1):
+        axis: Any = figure.add_subplot(1, len(panels), place, projection="3d")
+        z = np.array(panel["z"])
+        factor, unit = scale_of(float(np.abs(z).max()), data["unit"])
+        axis.plot_surface(x, y, factor * z, cmap=PRESSURE_COLOURS, linewidth=0, rcount=len(x), ccount=len(x))
+        axis.set(xlabel=data["x_axis"], ylabel=data["y_axis"], zlabel=f"{data['z_axis']} in {unit}", title=panel["title"])
+    entitle(figure, data["title"])
+    return figure
+
+
+def sections_figure(data: dict[str, Any]) -> Figure:
+    """Deformed sections in mm in the colours of an element's value, with lines of the body; each panel has colours of its own."""
+    panels = data["panels"]
+    figure = new_figure(1.0 + 4.6 * len(panels), 3.9)
+    axes = figure.subplots(1, len(panels), squeeze=False)[0]
+    for axis, panel in zip(axes, panels, strict=True):
+        points, triangles = 1e3 * np.array(panel["points"]), np.array(panel["triangles"])
+        corners = points[triangles]
+        (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+        lines = 1e3 * np.array(panel["lines"])
+        reach = SHOWN_REACH * lines[..., 0].max()
+        seen = corners[..., 0].max(axis=1) <= max(reach, corners[..., 0].min())
+        values = np.array(panel["values"])
+        low, high = weighted_percentiles(values[seen], np.abs(ax * by - ay * bx)[seen], (1, 99))
+        factor, unit = scale_of(max(abs(low), abs(high)), data["unit"])
+        style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "vmin": factor * low, "vmax": factor * high, "rasterized": True}
+        drawn = axis.tripcolor(*points.T, triangles=triangles, facecolors=factor * values, **style)
+        for line, colour in zip(lines, ("k", "#d62728"), strict=False):
+            axis.plot(*line.T, color=colour, linewidth=2)
+        axis.set(xlim=(0, min(reach, points[:, 0].max())), aspect="equal", xlabel="radius in mm", ylabel="height in mm")
+        axis.set_title(panel["title"], loc="left", fontsize=9)
+        label = f"{data['label']} in {unit}\n(colours: 1st to 99th percentile of the area)"
+        figure.colorbar(drawn, ax=axis, location="bottom", extend="both", label=label)
+        despined(axis)
     entitle(figure, data["title"])
     return figure
 

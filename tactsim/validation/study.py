@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Self
 
 from pydantic import Field, model_validator
@@ -42,7 +43,7 @@ class Study(FrozenModel):
 
     def overrides(self, run: StudyRun) -> tuple[str, ...]:
         """What a run sets, as ``path.to.key=value``."""
-        return tuple(_override(*item) for item in {**self.common, **run.set}.items())
+        return overrides({**self.common, **run.set})
 
 
 class RunOutcome(FrozenModel):
@@ -71,5 +72,6 @@ class RunOutcome(FrozenModel):
         return self.status == "converged"
 
 
-def _override(key: str, value: Override) -> str:
-    return f"{key}={value if isinstance(value, str) else json.dumps(value)}"
+def overrides(values: Mapping[str, Override]) -> tuple[str, ...]:
+    """Key paths with their values as ``path.to.key=value``."""
+    return tuple(f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in values.items())

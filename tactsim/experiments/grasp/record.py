@@ -18,7 +18,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import finer, ragged, suction, uneven, unlikely
+from tactsim.experiments.grasp.warnings import finer, ragged, smaller_elements, suction, uneven, unlikely
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.block_model import GraspModel
@@ -127,6 +127,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             f"mesh {self._sourced.content} ({self._sourced.origin}): {self.model.space.size} unknowns, "
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
+        assumptions += smaller_elements(block)
         assumptions.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")

@@ -30,6 +30,16 @@ def ragged(block: BlockMesh) -> list[str]:
     ]
 
 
+def smaller_elements(block: BlockMesh) -> list[str]:
+    """That elements had to be smaller than asked for to follow the inclusions, if they had."""
+    if block.part == 1:
+        return []
+    return [
+        f"elements at inclusions {block.part:g} times as long as mesh.inclusion_size: with longer ones the mesh missed the "
+        "volume or the shape of an inclusion"
+    ]
+
+
 def finer(kind: str) -> str:
     """What makes a mesh of a kind finer where its elements lose their volume, in the words of the case."""
     edges = "take a smaller mesh.edge_size at the edges of the jaws, a smaller mesh.inclusion_size at an inclusion"

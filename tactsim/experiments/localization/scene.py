@@ -86,3 +86,13 @@ class DetectabilityScene(Scene):
     """Standard deviation of a reading in N."""
     side: float
     """Side of the matrices in m."""
+
+
+class BandsScene(Scene):
+    """Arrays of sensors that were drawn as bands."""
+
+    kind: Literal["tactile_bands"] = "tactile_bands"
+    arrays: tuple[str, ...]
+    """``upper``, and ``lower`` if there are two."""
+    normalising: float
+    """Force in N of the brightest level."""

@@ -112,3 +112,37 @@ def film_curves(
         curves = [series(f"{force:g} N", x, each / each[0]) for force, each in zip(forces, resistances, strict=True)]
         panels.append(panel(f"R over its first value, {name.removeprefix('lingstat_')}", "", curves))
     return curves_figure(title, "time", "s", panels, even_panels=True)
+
+
+@drawing
+def film_surface(
+    title: Title,
+    composites: tuple[str, ...] = ("lingstat_literal", "lingstat_identified"),
+    largest_force: Positive[Force] = 8.0,
+    duration: Positive[Time] = 60.0,
+) -> Data:
+    """Form ``surfaces``: resistance of films in ohm over force and time, a panel each.
+
+    Parameters
+    ----------
+    composites : names of shipped composites
+    largest_force : end of the axis of force
+    duration : end of the axis of time
+    """
+    force, time = np.linspace(FIRST_FORCE, largest_force, POINTS), np.linspace(0.0, duration, POINTS)
+    panels = [
+        {
+            "title": name.removeprefix("lingstat_"),
+            "z": [np.asarray(resistance_of(named_composite(name), each, time)).tolist() for each in force],
+        }
+        for name in composites
+    ]
+    axes = {
+        "x": time.tolist(),
+        "x_axis": "time in s",
+        "y": force.tolist(),
+        "y_axis": "force in N",
+        "z_axis": "resistance",
+        "unit": "ohm",
+    }
+    return {"form": "surfaces", "title": title, **axes, "panels": panels}

@@ -15,6 +15,8 @@ from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.interfaces import drawing, quantity
 from tactsim.interfaces.taxel_layout import JAWS, JawName
+from tactsim.localization.bands import band_intensities
+from tactsim.localization.views import SHAPE, views, volume
 from tactsim.units import Length, NonNegative, Time, format_quantity
 from tactsim.validation.curves import Data, Title
 from tactsim.validation.inputs import Inputs, RunName, StudyName
@@ -233,3 +235,51 @@ def taxel_maps(inputs: Inputs, title: Title, studies: Annotated[tuple[str, ...],
         {"title": study.replace("figure_", "Fig. ").replace("_", "."), **{s: forces(study, s) for s in JAWS}} for study in studies
     ]
     return {"form": "maps", "title": title, "unit": "N", "columns": columns}
+
+
+@drawing
+def tactile_pictures(
+    inputs: Inputs,
+    title: Title,
+    study: StudyName,
+    pictures: Literal["views", "layers"],
+    *,
+    reference: StudyName | None = None,
+    shape: tuple[int, int] = SHAPE,
+    layers: Annotated[int, Field(ge=2, le=9)] = 5,
+) -> Data:
+    """Form ``images``: what both matrices read at the end of the first run of a study, as the display of section 6.3 draws it.
+
+    Parameters
+    ----------
+    pictures : front, left and top view, or the image in space cut at equal depths from the upper jaw to the lower
+    reference : study of plain tissue, whose readings are taken off: without that, tissue under even jaws is all that is seen
+    shape : rows and columns of each picture
+    layers : cuts of the image in space
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such study, or its run did not converge or has no taxels.
+    """
+
+    def read(name: str) -> Array:
+        return np.stack([_taxels_at(inputs, (name, inputs.study(name)[0].id), side) for side in JAWS])
+
+    forces = read(study) if reference is None else np.maximum(read(study) - read(reference), 0.0)
+    if pictures == "views":
+        seen = views(forces, shape)
+        images = {"front view, upper jaw above": seen.front, "left view, the back at the left": seen.left, "top view": seen.top}
+    else:
+        cuts = volume(forces, (layers, *shape))[:, ::-1]  # the back above, as in the top view
+        depths = [
+            f"{round(100 * k / (layers - 1))} % of the thickness below the upper jaw, seen from above" for k in range(layers)
+        ]
+        images = dict(zip(depths, cuts, strict=True))
+    largest = {words: float(image.max()) for words, image in images.items()}
+    common = max(largest.values()) if pictures == "layers" else None  # layers are compared, views are not
+    panels = [
+        {"title": words, "grey": band_intensities(image, common or largest[words] or 1.0).tolist()}
+        for words, image in images.items()
+    ]
+    return {"form": "images", "title": title, "axis": "pixel", "panels": panels}

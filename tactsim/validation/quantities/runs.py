@@ -9,7 +9,7 @@ from pydantic import Field
 
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.array import Array
-from tactsim.errors import InputError
+from tactsim.errors import InputError, UnknownName
 from tactsim.interfaces import drawing, quantity
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.model import FrozenModel
@@ -47,6 +47,32 @@ def run_quantity(inputs: Inputs, study: StudyName, run: RunName, quantity: str, 
         If there is no such run, or it did not converge or has no such quantity.
     """
     return _value(inputs, (study, run), quantity)
+
+
+@drawing
+def run_history(
+    inputs: Inputs, title: Title, study: StudyName, run: RunName, curves: dict[str, str], *, y_axis: str, si_unit: str
+) -> Data:
+    """Values of a simulation over its time.
+
+    Parameters
+    ----------
+    curves : name of the history value by what it is called in the figure
+    y_axis : what they are
+    si_unit : their SI unit
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run or no such value, or the run did not converge.
+    """
+    history = inputs.converged(study, run).history
+    for name in ("time", *curves.values()):
+        if name not in history:
+            raise UnknownName(f"history value of {study}, {run}", name, history)
+    time = np.array(history["time"])
+    drawn = [series(words, time, np.array(history[name])) for words, name in curves.items()]
+    return curves_figure(title, "time", "s", [panel(y_axis, si_unit, drawn)])
 
 
 @quantity(unit="1")

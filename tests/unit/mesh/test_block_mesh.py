@@ -185,12 +185,13 @@ def test_a_mesher_that_dies_is_reported(program, reason, mesher):
 
 @pytest.mark.parametrize("misses", [0, 1, 4, len(tetrahedra.ATTEMPTS)])
 def test_a_mesh_that_misses_a_bound_is_made_again_on_finer_elements(misses, monkeypatch):
-    finest, fitted = [], []
+    finest, fitted, parts = [], [], []
     monkeypatch.setattr(tetrahedra, "background", lambda *given: finest.append(given[-1].inclusion_size) or (0, 0, 0))
     monkeypatch.setattr(tetrahedra, "tetrahedra_in_child", lambda request, limit: (np.zeros((4, 3)), np.zeros((1, 4), int)))
 
-    def fit(*given, key, **settings):
+    def fit(*given, key, part, **settings):
         fitted.append(key)
+        parts.append(part)
         if len(fitted) <= misses:
             raise ConvergenceError(f"the mesh misses its volume, {len(fitted)}")
         return "mesh"
@@ -201,6 +202,7 @@ def test_a_mesh_that_misses_a_bound_is_made_again_on_finer_elements(misses, monk
             block_mesh(SIZE, [LUMP], COARSE)
     else:
         assert block_mesh(SIZE, [LUMP], COARSE) == "mesh"
+    assert parts == list(tetrahedra.ATTEMPTS[: misses + 1])
     assert fitted == [tetrahedra.mesh_key(SIZE, [LUMP], COARSE)] * min(misses + 1, 5)
     assert_close(finest, [part * COARSE.inclusion_size for part in tetrahedra.ATTEMPTS[: len(fitted)]], 1e-12)
 

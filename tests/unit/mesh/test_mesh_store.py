@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -66,6 +67,17 @@ def test_the_second_call_reads_the_same_mesh(mesher, tmp_path):
         assert (facets == second.block.facets[name]).all()
     assert_close(second.block.quality.minimum, first.block.quality.minimum, 1e-6)  # the pretended mesher moves a node by 1e-9 m
     assert first.block.key == second.block.key
+
+
+def test_a_kept_mesh_says_with_what_part_of_the_size_it_was_made(mesher, tmp_path):
+    block = replace(stored(tmp_path).block, part=0.64)
+    (place,) = (tmp_path / "cache").glob("*.npz")
+    write_block_mesh(block, place)
+    assert stored(tmp_path).block.part == 0.64
+    with np.load(place) as file:
+        arrays = {name: file[name] for name in file.files if name != "part"}
+    np.savez(place, **arrays)  # as before it was written
+    assert stored(tmp_path).block.part == 1.0
 
 
 def test_another_geometry_or_setting_is_another_mesh(mesher, tmp_path):

@@ -20,6 +20,15 @@ RANGES = {
     "unit": "Pa",
     "panels": [{"title": "a", "bars": BARS, "lines": [LINE]}],
 }
+SURFACES = {
+    "form": "surfaces", "title": "t", "x": [0.0, 1.0, 2.0], "x_axis": "time in s", "y": [1.0, 2.0], "y_axis": "force in N",
+    "z_axis": "resistance", "unit": "ohm", "panels": [{"title": "a", "z": [[3e3, 2e3, 1e3], [2e3, 1e3, 5e2]]}] * 2,
+}  # fmt: skip
+SECTION = {
+    "title": "a", "points": [[0, 0], [6e-3, 0], [0, 6e-3], [6e-3, 6e-3]], "triangles": [[0, 1, 2], [1, 3, 2]],
+    "values": [-2e3, 1e3], "lines": [[[1e-3, 5e-3], [3e-3, 5e-3]], [[0, 6e-3], [1e-3, 6e-3]]],
+}  # fmt: skip
+SECTIONS = {"form": "sections", "title": "t", "unit": "Pa", "label": "stress", "panels": [SECTION, SECTION]}
 CURVES = {"form": "curves", "title": "t", "x_axis": "stretch", "x_unit": "", "panels": [PANEL, {**PANEL, "unit": ""}]}
 
 
@@ -31,6 +40,8 @@ CURVES = {"form": "curves", "title": "t", "x_axis": "stretch", "x_unit": "", "pa
         {**CURVES, "x_logarithmic": True, "even_panels": True},
         {**CURVES, "panels": [PANEL]},
         {**RANGES, "panels": RANGES["panels"] * 2},
+        SURFACES,
+        SECTIONS,
     ],
 )  # type: ignore[operator]
 def test_figures_are_drawn(data: dict[str, Any]) -> None:

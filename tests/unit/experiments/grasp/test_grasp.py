@@ -16,6 +16,7 @@ from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
 from tactsim.experiments.grasp.readings import JawReading, check_sums
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.block_model import GraspModel
+from tactsim.mechanics.block_source import StructuredSource
 from tactsim.mechanics.history_path import smooth_intervals
 from tactsim.mechanics.surface_forces import TaxelForces
 from tactsim.mesh.inclusions.tube import Tube
@@ -296,6 +297,20 @@ def test_touching_lumps_are_refused_in_cells_too():
     touching = [BALL | {"center": (x, 20e-3, 10e-3)} for x in (15e-3, 25e-3)]
     with pytest.raises(ValidationError, match=r"sphere 1 and sphere 2 (are|overlap by) .*; allowed: at least 10 µm between"):
         grasp(inclusions=[{"shape": ball, "material": "lump"} for ball in touching])
+
+
+@pytest.mark.parametrize("part", [1.0, 0.64])
+def test_a_mesh_of_smaller_elements_than_asked_for_says_so(part, monkeypatch):
+    made = StructuredSource.sourced
+
+    def smaller(self, size, inclusions):
+        sourced = made(self, size, inclusions)
+        return replace(sourced, block=replace(sourced.block, part=part))
+
+    monkeypatch.setattr(StructuredSource, "sourced", smaller)
+    result = run(mesh={"kind": "structured", "cells": (4, 4, 4)})
+    said = [words for words in result.assumptions if "mesh.inclusion_size" in words]
+    assert [words.split()[3] for words in said] == ([] if part == 1 else ["0.64"])
 
 
 def test_a_ragged_lump_is_reported():
