@@ -9,7 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
-from text_blocks import blocks_of, execute, file_names, provide_command
+from text_blocks import blocks_of, execute, file_names, provide_command, without_missing
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -39,9 +39,17 @@ def test_every_block_is_executed_or_shown():
     assert len(PAGES) >= 5
 
 
+def test_a_block_that_needs_an_absent_package_is_left_out():
+    text = (
+        "a\n<!-- needs no_such_package -->\n```python\nimport no_such_package\n```\nb\n<!-- needs json -->\n```python\n1\n```\n"
+    )
+    assert blocks_of(text) == [("python", "import no_such_package\n"), ("python", "1\n")]
+    assert blocks_of(without_missing(text)) == [("python", "1\n")]
+
+
 @pytest.mark.parametrize("page", [pytest.param(one, marks=pytest.mark.slow) if one in LONG else one for one in PAGES])
 def test_blocks_of_a_page(page, tmp_path):
-    text = (DOCS / page).read_text(encoding="utf-8")
+    text = without_missing((DOCS / page).read_text(encoding="utf-8"))
     blocks = blocks_of(text)
     names = file_names(text, blocks)
     if any(language == "sh" for language, _ in blocks):

@@ -13,7 +13,9 @@ import pytest
 
 import tactsim as ts
 from tactsim.case.writing import case_text
+from tactsim.contact.jaw import Jaw
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
+from tactsim.experiments.grasp.scene import ReadGrasp
 from tactsim.results import FieldFrame
 from tactsim.shipped import shipped_cases
 
@@ -107,6 +109,38 @@ def test_axes_of_an_array_have_the_names_that_its_description_gives(
     quantities = {name: ts.Quantity(np.zeros(shape).tolist(), "1", words)}
     array = ts.Result(kind="grasp", status=result.status, reason="", quantities=quantities)[name].array
     assert array.dims == axes
+
+
+def test_taxels_lie_in_their_places_and_steps_at_their_times(result: ts.Result) -> None:
+    """Taxels 10 mm apart; the upper jaw stands 2 mm beside the middle of the block along x, the lower one 1 mm along y."""
+    scene = ReadGrasp(
+        block_size=(0.04, 0.04, 0.02),
+        inclusions=(),
+        jaws={side: Jaw(width=0.05, depth=0.05) for side in ("upper", "lower")},
+        jaw_places={"upper": (0.022, 0.02, 0.02), "lower": (0.02, 0.021, 0.0)},
+        matrix=ts.TaxelLayout(rows=2, columns=3, pitch="10 mm", size="9 mm"),
+    )
+    quantities = {
+        "taxel_force_upper": ts.Quantity(np.zeros((2, 3)).tolist(), "N", "forces [row][column]"),
+        "taxel_shear_lower": ts.Quantity(np.zeros((2, 3, 2)).tolist(), "N", "force (x, y), [row][column]"),
+        "taxel_force_lower_history": ts.Quantity(np.zeros((2, 2, 3)).tolist(), "N", "forces [time][row][column]"),
+        "taxel_force_upper_odd": ts.Quantity(np.zeros((4, 3)).tolist(), "N", "of another matrix [row][column]"),
+        "time_history": ts.Quantity([0.5, 1.0], "s", "time, at each accepted step [time]"),
+        "displacement_history": ts.Quantity([5e-4, 1e-3], "m", "closing of each jaw, at each accepted step [time]"),
+    }
+    readings = ts.Result(kind="matrix_readout", status=result.status, reason="", quantities=quantities, scene=scene)
+    upper = readings["taxel_force_upper"].to("mN").array
+    np.testing.assert_allclose(upper["column"], [0.012, 0.022, 0.032], rtol=1e-12)
+    np.testing.assert_allclose(upper["row"], [0.015, 0.025], rtol=1e-12)
+    assert upper["row"].attrs["units"] == "m"
+    shear = readings["taxel_shear_lower"].array
+    np.testing.assert_allclose(shear["row"], [0.016, 0.026], rtol=1e-12)
+    assert list(shear["component"].values) == ["x", "y"]
+    over_time = readings["taxel_force_lower_history"].array
+    assert over_time.sel(time=1.0).dims == ("row", "column")
+    assert over_time["displacement"].dims == ("time",)
+    np.testing.assert_array_equal(over_time["displacement"], [5e-4, 1e-3])
+    assert "row" not in readings["taxel_force_upper_odd"].array.coords  # never places of another number of taxels
 
 
 def test_the_history_is_a_dataset_with_units(result: ts.Result) -> None:

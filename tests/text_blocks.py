@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 import shlex
@@ -20,6 +21,15 @@ UNTOLD = "block.yaml"
 def blocks_of(text: str) -> list[Block]:
     """Every block of a Markdown text, in order."""
     return re.findall(r"^```(\w+)\n(.*?)^```", text, re.M | re.S)
+
+
+def without_missing(text: str) -> str:
+    """The text less its blocks below a comment ``<!-- needs PACKAGE -->`` whose package is not installed."""
+    parts = re.split(r"^<!-- needs (\w+) -->\n(```.*?^```)", text, flags=re.M | re.S)
+    kept = [parts[0]]
+    for package, block, rest in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        kept += [block if importlib.util.find_spec(package) else "", rest]
+    return "".join(kept)
 
 
 def file_names(text: str, blocks: list[Block]) -> list[str]:

@@ -20,7 +20,7 @@ Without an argument lists the materials that ship with tactsim. With a name, or 
 prints the constants, the small-strain moduli and the range of stretch in which each material
 is stable. With --fit reads a uniaxial curve (CSV with a header such as
 "stretch,nominal_stress_kPa"), fits every form of the energy, and prints the lines to put into
-a case file. --save draws the curves. With --relaxation reads what relaxes at a held
+a case file, each constant with its interval of 95 %. --save draws the curves. With --relaxation reads what relaxes at a held
 deformation (CSV with a header such as "time [s], stress [kPa]") and prints its Prony series.
 """
 EXAMPLES = """\
@@ -31,10 +31,6 @@ examples:
   tactsim material --fit my_rubber.csv --form stable --save fit.png
   tactsim material --relaxation held.csv --rise "0.2 s"
 """
-BARELY_STRETCHED = 1.05
-"""A curve that ends below this stretch holds no tension to speak of."""
-IN_TENSION = 1.5
-"""Assumption: a moderate stretch at which fits are compared in tension."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--fit", metavar="CURVE.csv", type=Path, help="fit a measured uniaxial curve")
     what.add_argument("--relaxation", metavar="CURVE.csv", type=Path, help="fit a Prony series to a measured relaxation")
     parser.add_argument("--rise", metavar="TIME", help="with --relaxation: how long the deformation rose; a step without it")
+    parser.add_argument("--absolute", action="store_true", help="with --fit: noise of one size, not in proportion to the stress")
     parser.add_argument("--form", metavar="FORM", help="with --fit: report this form of the energy only")
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the curves")
 
@@ -59,14 +56,14 @@ def run(arguments: argparse.Namespace) -> int:
     _check_image(arguments.save)
     if arguments.rise is not None and arguments.relaxation is None:
         raise InputError("--rise goes with --relaxation")
-    if arguments.relaxation is not None and (arguments.form, arguments.save) != (None, None):
-        raise InputError("--form and --save go with --fit; --relaxation prints its Prony series")
+    if arguments.relaxation is not None and (arguments.form or arguments.save or arguments.absolute):
+        raise InputError("--form, --absolute and --save go with --fit; --relaxation prints its Prony series")
     if arguments.relaxation is not None:
         return _relaxation(arguments)
     if arguments.fit is not None:
         return _fit(arguments)
-    if arguments.form is not None:
-        raise InputError("--form goes with --fit")
+    if arguments.form is not None or arguments.absolute:
+        raise InputError(f"{'--form' if arguments.form else '--absolute'} goes with --fit")
     if arguments.material is None:
         if arguments.save is not None:
             raise InputError("--save needs a material to draw")
@@ -103,14 +100,15 @@ def _relaxation(arguments: argparse.Namespace) -> int:
 
     rise = 0.0 if arguments.rise is None else parse_quantity(arguments.rise, "s")
     fit = fit_relaxation(arguments.relaxation, rise=rise)
-    errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
-    console.out(f"{len(fit.relaxation.times)} relaxation times: {errors}\n  {fit.case_line}")
+    console.out(str(fit))
+    for warning in fit.warnings:
+        console.note(f"note: {warning}")
     return 0
 
 
 def _fit(arguments: argparse.Namespace) -> int:
     from tactsim.errors import ConvergenceError, InvalidQuantity
-    from tactsim.identification.uniaxial import FORMS, fit_uniaxial
+    from tactsim.identification.uniaxial import FORMS, fit_uniaxial, spread_of_forms
     from tactsim.identification.uniaxial_data import read_uniaxial_curve
 
     curve = read_uniaxial_curve(arguments.fit)
@@ -118,51 +116,25 @@ def _fit(arguments: argparse.Namespace) -> int:
     refused: list[str] = []
     for form in [arguments.form] if arguments.form else FORMS:
         try:
-            fits.append(fit_uniaxial(curve, form))
+            fits.append(fit_uniaxial(curve, form, relative=not arguments.absolute))
         except (ConvergenceError, InvalidQuantity) as error:
             if arguments.form:
                 raise
             refused.append(f"{form}: no fit: {error}")
     for fit in fits:
-        console.out(_fit_lines(fit))
+        console.out(str(fit))
     for line in refused:
         console.out(line)
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")
-    if curve.stretch.max() < BARELY_STRETCHED:
-        console.note(_left_open(fits))
+    left_open = fits[0].certainty.warnings(fits[0].max_relative_error) if arguments.form else ()
+    for warning in (*left_open, *spread_of_forms(fits)):
+        console.note(f"note: {warning}")
     if arguments.save is not None:
         from tactsim.cli.figures.material_curves import fit_figure, png
 
         _save(png(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
     return 0
-
-
-def _left_open(fits: list[UniaxialFit]) -> str:
-    """What a curve in compression alone does not say: by how much the stable fits differ in tension."""
-    import numpy as np
-
-    from tactsim.materials.homogeneous import nominal_stress
-
-    note = "note: this curve is compression alone, which says nothing of tension; a threshold pressure depends on it"
-    stable = [fit.material for fit in fits if fit.form.startswith("stable")]
-    if len(stable) < 2:
-        return note
-    stresses = [nominal_stress(material, "uniaxial", np.array(IN_TENSION)).item() for material in stable]
-    return f"{note}: at a stretch of {IN_TENSION:g} the stable fits differ by a factor of {max(stresses) / min(stresses):.2g}"
-
-
-def _fit_lines(fit: UniaxialFit) -> str:
-    """The errors of a fit and its line of a case file."""
-    from tactsim.units import format_quantity
-
-    errors = f"largest relative error {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
-    stable = "strongly elliptic" if fit.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
-    named = {f"c{i}{j}": value for (i, j), value in fit.material.terms.items()}
-    entries = ", ".join(f"{name}: {format_quantity(value, 'Pa')}" for name, value in named.items())
-    if "coefficients" in type(fit.material).model_fields:
-        entries = f"coefficients: {{{entries}}}"
-    return f"{fit.form}: {errors}; {stable}\n  {{kind: {fit.material.kind}, {entries}}}"
 
 
 def _materials(name: str) -> dict[str, Material]:

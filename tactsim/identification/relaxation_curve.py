@@ -10,8 +10,10 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.identification.certainty import COVERED, DRAWS, SEED, intervals, noise_of
 from tactsim.identification.columns import read_columns
-from tactsim.identification.dma_spectrum import POINTS_PER_DECADE, nonnegative_spectrum
+from tactsim.identification.dma_least_squares import PRIOR_DEVIATION
+from tactsim.identification.dma_spectrum import POINTS_PER_DECADE, ROUND_OFF, nonnegative_spectrum
 from tactsim.outside.text import one_line
 from tactsim.relaxation import Relaxation
 
@@ -21,6 +23,10 @@ FEWEST_SAMPLES = 6
 NEGLIGIBLE = 1e-3
 """Assumption: a unit with a smaller part of the response at once is left out; no load cell resolves it."""
 MOST_EVALUATIONS = 2000
+STEP = 1e-5
+"""Of a log constant: central differences then are right to 1e-10."""
+LARGEST_RATIO = 4.0
+"""Assumption: a curve determines a part whose interval of 95 % is not wider than this from end to end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +67,36 @@ class RelaxationFit:
     """Response to the same deformation at once, in the unit of the curve."""
     max_relative_error: float
     rms_relative_error: float
+    fraction_intervals: Array
+    """Lower and upper ends (2, units) of the intervals of 95 % of the fractions, if the material has so many units."""
+    time_intervals: Array
+    """The same of the times in s."""
+    equilibrium_interval: tuple[float, float]
+    """The same of the part of the response that stays."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the curve leaves open."""
+        ratios = np.vstack([self.time_intervals, self.fraction_intervals]).reshape(2, 2, -1)
+        wide = (ratios[:, 1] > LARGEST_RATIO * ratios[:, 0]).any(axis=0)
+        if not wide.any():
+            return ()
+        times = ", ".join(f"{self.relaxation.times[k]:.3g} s" for k in np.flatnonzero(wide))
+        return (
+            f"the curve does not determine the part that relaxes in {times}: other data as noisy would have given another "
+            f"fraction or time by more than a factor of {LARGEST_RATIO:g} from end to end; trust the curve where it was measured",
+        )
+
+    def __str__(self) -> str:
+        """Errors, line of a case file and intervals."""
+        errors = f"largest relative error {self.max_relative_error:.1%}, rms {self.rms_relative_error:.1%}"
+        fractions, times = (
+            ", ".join(f"{low:.3g} to {high:.3g}" for low, high in ends.T)
+            for ends in (self.fraction_intervals, self.time_intervals)
+        )
+        low, high = self.equilibrium_interval
+        ranges = f"{COVERED:.0%} intervals: fractions {fractions}; times in s {times}; part that stays {low:.3g} to {high:.3g}"
+        return f"{len(self.relaxation.times)} relaxation times: {errors}\n  {self.case_line}\n  {ranges}"
 
     @property
     def case_line(self) -> str:
@@ -131,11 +167,53 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
     order = np.argsort(times)
     whole = float(amplitudes.sum())
     fractions = tuple(float(value) for value in (amplitudes[1:] / whole)[order])
+    drawn_parts, drawn_times = _drawn(logarithms, time, response, rise)
+    stays = intervals(drawn_parts[:, 0])
     return RelaxationFit(
         Relaxation(fractions=fractions, times=tuple(float(value) for value in times[order])),
         whole,
         float(np.abs(errors).max()),
         float(np.sqrt(np.mean(errors**2))),
+        intervals(drawn_parts[:, 1:][:, order]),
+        intervals(drawn_times[:, order]),
+        (float(stays[0]), float(stays[1])),
+    )
+
+
+def _drawn(logarithms: Array, time: Array, response: Array, rise: float) -> tuple[Array, Array]:
+    r"""Parts (draws, 1 + units), equilibrium first, and times (draws, units) that other data of the same noise would have given.
+
+    To first order in the logarithms of constants and parts: :math:`\delta = A^{-1} (S^T e / \sigma^2 + z / \ln 10)` with
+    :math:`A = S^T S / \sigma^2 + 1 / (\ln 10)^2`, the slopes S of the relative errors, their noise e of the mean square
+    :math:`\sigma^2`, and z a draw of the prior, a factor of ten about the fit, for what the data do not say.
+    """
+    slopes = _slopes(logarithms, time, response, rise)
+    noise = noise_of(_relative_errors(logarithms, time, response, rise), np.linalg.qr(slopes)[0])
+    if not noise.known:
+        raise InvalidQuantity(f"{time.size} samples leave nothing to judge {logarithms.size} constants by; measure more of them")
+    size = max(float(np.sqrt(np.mean(noise.deviations**2))), ROUND_OFF)
+    precision = slopes.T @ slopes / size**2 + np.eye(logarithms.size) / PRIOR_DEVIATION**2
+    prior = np.random.default_rng(SEED + 1).standard_normal((DRAWS, logarithms.size)) / PRIOR_DEVIATION
+    changes = np.linalg.solve(precision, (noise.drawn(slopes) / size**2 + prior).T).T
+    count = logarithms.size // 2 + 1
+    parts = np.exp(logarithms[:count]) / np.exp(logarithms[:count]).sum()
+    of_parts = changes[:, :count] - (changes[:, :count] @ parts)[:, None]
+    return np.minimum(parts * np.exp(of_parts), 1.0), np.exp(logarithms[count:] + changes[:, count:])
+
+
+def _slopes(logarithms: Array, time: Array, response: Array, rise: float) -> Array:
+    """Derivatives (n, m) of the relative errors by the log constants, by central differences."""
+    steps = STEP * np.eye(logarithms.size)
+    return np.stack(
+        [
+            (
+                _relative_errors(logarithms + step, time, response, rise)
+                - _relative_errors(logarithms - step, time, response, rise)
+            )
+            / (2 * STEP)
+            for step in steps
+        ],
+        axis=-1,
     )
 
 

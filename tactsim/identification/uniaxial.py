@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from pydantic import ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
+from tactsim.identification.uniaxial_certainty import BARELY_STRETCHED, UniaxialCertainty, certainty, one_sided
 from tactsim.identification.uniaxial_data import UniaxialCurve
+from tactsim.identification.uniaxial_least_squares import LeastSquares
 from tactsim.materials.homogeneous import cauchy_stress, nominal_stress, principal_invariants, uniaxial
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.invariant_polynomial import InvariantPolynomial, monomial_derivative, powers_of
@@ -18,8 +20,8 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
 from tactsim.materials.polynomial import Polynomial
-from tactsim.materials.stability import PAIRS, shear_conditions
 from tactsim.materials.stability_range import SCANNED, StabilityReport, stability_range
+from tactsim.units import format_quantity
 
 
 @dataclass(frozen=True)
@@ -44,15 +46,8 @@ FORMS = {
 """Fits by name. ``stable`` is the thesis's own three-term energy, held strongly elliptic. The others that begin so fit a
 compression curve as well and differ in every other deformation: their spread is what such a curve leaves open."""
 
-SMALLEST_SHEAR_FRACTION = 0.1
-"""Assumption: a stable fit keeps every shear modulus of the ellipticity conditions above this part of its value at rest."""
-
-NEGLIGIBLE = 1e-9
-"""Part of the data that a stable fit must explain to be distinguished from round-off."""
-
-STRETCH_STATES = 31
-"""Values per principal stretch at which a stable fit imposes its conditions, even in the logarithm."""
-
+IN_TENSION, IN_COMPRESSION = 1.5, 0.7
+"""Assumption: moderate stretches at which fits are compared on the side that a curve leaves out."""
 
 STRESS_FLOOR = 1e-4
 """Assumption: a relative error is taken of at least this part of the largest stress: what a load cell resolves."""
@@ -70,6 +65,27 @@ class UniaxialFit:
     rms_relative_error: float
     """Root mean square of the relative errors, dimensionless."""
     stability: StabilityReport
+    certainty: UniaxialCertainty
+    """How well the curve determines the constants of this form."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the curve leaves open of this form."""
+        return (*self.certainty.warnings(self.max_relative_error), *one_sided(self.curve))
+
+    @property
+    def case_line(self) -> str:
+        """The material of a case file."""
+        entries = ", ".join(f"{name}: {format_quantity(value, 'Pa')}" for name, value in named_terms(self.material).items())
+        if "coefficients" in type(self.material).model_fields:
+            entries = f"coefficients: {{{entries}}}"
+        return f"{{kind: {self.material.kind}, {entries}}}"
+
+    def __str__(self) -> str:
+        """Errors, line of a case file and intervals."""
+        errors = f"largest relative error {self.max_relative_error:.1%}, rms {self.rms_relative_error:.1%}"
+        stable = "strongly elliptic" if self.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
+        return f"{self.form}: {errors}; {stable}\n  {self.case_line}\n  {self.certainty}"
 
 
 def uniaxial_nominal_stress(material: Hyperelastic, stretch: Array) -> Array:
@@ -118,22 +134,48 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
     design, target = weight[:, None] * unit_stresses(stretch, names), weight * stress
     if np.linalg.matrix_rank(design) < len(names):
         raise InvalidQuantity(f"{curve.source}: {stretch.size} points do not determine {len(names)} constants")
-    fit = _elliptic_least_squares if FORMS[form].strongly_elliptic else _least_squares
-    values = fit(design, target, names)
-    material = _material(FORMS[form], values, curve.source)
+    squares = LeastSquares.of(design, names, strongly_elliptic=FORMS[form].strongly_elliptic)
+    nearest = squares.nearest(squares.basis.T @ target)
+    material = _material(FORMS[form], squares.constants(nearest), curve.source)
     error = relative_errors(material, curve)[loaded]
     report = stability_range(material)
     if FORMS[form].strongly_elliptic and not report.strongly_elliptic:
         raise ConvergenceError(
             f"{curve.source}: the {form} fit is not strongly elliptic for all stretches {SCANNED[0]:g} to {SCANNED[1]:g}"
         )
-    return UniaxialFit(form, material, curve, float(np.abs(error).max()), float(np.sqrt(np.mean(error**2))), report)
+    return UniaxialFit(
+        form,
+        material,
+        curve,
+        float(np.abs(error).max()),
+        float(np.sqrt(np.mean(error**2))),
+        report,
+        certainty(squares, design, target, names),
+    )
+
+
+def spread_of_forms(fits: Sequence[UniaxialFit]) -> tuple[str, ...]:
+    """What fits of one curve say of the side that it leaves out: nothing, and by how much the stable forms differ there."""
+    if not fits or not (open_side := one_sided(fits[0].curve)):
+        return ()
+    where = IN_TENSION if fits[0].curve.stretch.max() < 1 + BARELY_STRETCHED else IN_COMPRESSION
+    stable = [fit.material for fit in fits if fit.form.startswith("stable")]
+    if len(stable) < 2:
+        return open_side
+    sizes = [abs(uniaxial_nominal_stress(material, np.array(where)).item()) for material in stable]
+    factor = f"{max(sizes) / min(sizes):.2g}"
+    return (f"{open_side[0]}: at a stretch of {where:g} the stable fits differ by a factor of {factor}",)
 
 
 def stress_size(curve: UniaxialCurve) -> Array:
     """Stress in Pa that an error is relative to: |P|, at least ``STRESS_FLOOR`` of the largest, of the shape of the curve."""
     size = np.abs(curve.nominal_stress)
     return np.maximum(size, STRESS_FLOOR * size.max())
+
+
+def named_terms(material: InvariantPolynomial) -> dict[str, float]:
+    """Coefficients in Pa by name, such as c10."""
+    return {f"c{i}{j}": value for (i, j), value in material.terms.items()}
 
 
 def relative_errors(material: Hyperelastic, curve: UniaxialCurve) -> Array:
@@ -150,53 +192,6 @@ def unit_stresses(stretch: Array, names: tuple[str, ...]) -> Array:
         for power in powers_of(dict.fromkeys(names, 1.0))
     ]
     return np.stack(columns, axis=-1) / stretch[:, None]
-
-
-def _least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:
-    """Free coefficients in Pa."""
-    return np.linalg.lstsq(design, target, rcond=None)[0]
-
-
-def _elliptic_least_squares(design: Array, target: Array, names: tuple[str, ...]) -> Array:
-    r"""Coefficients in Pa under the linear conditions of strong ellipticity, exactly, as a projection on their cone.
-
-    With D = QR, z = Rc and the conditions A z >= 0, the nearest z to y = Q^T target is y + A^T u, where u >= 0 makes
-    |A^T u + y| smallest.
-
-    Source: Moreau 1962 (decomposition by a cone and its polar); Lawson & Hanson 1974, Solving Least Squares Problems, chapter 23.
-    """
-    Q, R = np.linalg.qr(design)
-    free = Q.T @ target
-    normals = np.linalg.solve(R.T, _ellipticity_rows(names).T)
-    normals /= np.linalg.norm(normals, axis=0)
-    try:
-        multipliers, _ = scipy.optimize.nnls(normals, -free)
-    except RuntimeError as error:
-        raise ConvergenceError(f"stable fit: {error}") from None
-    nearest = free + normals @ multipliers
-    if np.linalg.norm(nearest) <= NEGLIGIBLE * np.linalg.norm(free):
-        raise ConvergenceError(
-            "stable fit: no strongly elliptic material of this form is nearer to the data than no stress at all"
-        )
-    return np.linalg.solve(R, nearest)
-
-
-def _ellipticity_rows(names: tuple[str, ...]) -> Array:
-    """Rows r with r . c >= 0: every g_k, and every d_k over (l_i + l_j)^2, at least a fraction of its value at rest."""
-    axis = np.geomspace(*SCANNED, STRETCH_STATES)
-    first, second = (side.ravel() for side in np.meshgrid(axis, axis))
-    states = np.stack([first, second, 1 / (first * second)])
-    states = states[:, (first <= second) & (second <= states[2]) & (states[2] <= SCANNED[1])]
-    I1, I2 = principal_invariants(states)
-    perimeter = np.stack([(states[i] + states[j]) ** 2 for i, j, _ in PAIRS])
-    rows = []
-    for power in powers_of(dict.fromkeys(names, 1.0)):
-        derivatives = [monomial_derivative(I1, I2, power, order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))]
-        shear, opposite, _ = shear_conditions((*derivatives,), states)  # type: ignore[arg-type]
-        at_rest = 1.0 if sum(power) == 1 else 0.0
-        rows.append(np.concatenate([shear.ravel(), (opposite / perimeter).ravel()]) - SMALLEST_SHEAR_FRACTION * at_rest)
-    matrix = np.stack(rows, axis=-1)
-    return matrix / np.abs(matrix).max(axis=1, keepdims=True)
 
 
 def _material(form: Form, values: Array, source: str) -> InvariantPolynomial:

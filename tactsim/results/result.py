@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import StrEnum
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 import numpy as np
 
 from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, UnknownName, shown
+from tactsim.results.axes import Coordinate, coordinates, dimensions
 from tactsim.results.scene import Scene, UnreadableScene
 from tactsim.units import conversion
 
@@ -46,12 +46,14 @@ class Quantity:
     value : number, or nested lists of numbers
     unit : such as ``Pa``; ``1`` for a plain number
     dims : names of the axes of an array, as `array` has them
+    coordinates : what lies along them, by name
     """
 
     value: Any
     unit: str
     description: str
     dims: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    coordinates: Mapping[str, Coordinate] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def numbers(self) -> np.ndarray:
@@ -60,11 +62,18 @@ class Quantity:
 
     @property
     def array(self) -> xarray.DataArray:
-        """The value as a `xarray.DataArray` with its unit and description in ``attrs``; a number has no dimensions."""
+        """The value as a `xarray.DataArray` with its unit and description in ``attrs``; a number has no dimensions.
+
+        Coordinates are in SI: the places of rows and columns of taxels in the block, the times of steps.
+        """
         import xarray
 
         attributes = {"units": self.unit, "long_name": self.description}
-        return xarray.DataArray(self.numbers, dims=self.dims or None, attrs=attributes)
+        along = {
+            name: (one.axis, list(one.values), {"units": one.unit, "long_name": one.description} if one.unit else {})
+            for name, one in self.coordinates.items()
+        }
+        return xarray.DataArray(self.numbers, along, self.dims or None, attrs=attributes)
 
     def to(self, unit: str) -> Quantity:
         """The same quantity in another unit.
@@ -163,7 +172,10 @@ class Result:
         if name not in self.quantities:
             raise UnknownName("quantity", str(name), self.quantities)
         quantity = self.quantities[name]
-        return replace(quantity, dims=dimensions(name, quantity))
+        dims, shape = dimensions(name, quantity), quantity.numbers.shape
+        placed = self.scene.coordinates(name) if isinstance(self.scene, Scene) else {}
+        along = coordinates(self.quantities, placed, dict(zip(dims, shape, strict=True))) if dims else {}
+        return replace(quantity, dims=dims, coordinates=along)
 
     def __contains__(self, name: object) -> bool:
         return name in self.quantities
@@ -178,7 +190,10 @@ class Result:
 
     @property
     def history(self) -> xarray.Dataset:
-        """Every history value over the accepted steps, unit in ``attrs``, with what each step took."""
+        """Every history value over the accepted steps, unit in ``attrs``, with what each step took.
+
+        The times and displacements of the steps are coordinates, so that whatever is plotted or selected has them.
+        """
         import xarray
 
         names = dict.fromkeys(name for record in self.steps for name in record.values)
@@ -188,7 +203,8 @@ class Result:
         columns["newton_iterations"] = ("step", [record.newton_iterations for record in self.steps], {"units": "1"})
         columns["residual"] = ("step", [record.residual for record in self.steps], {"units": "1"})
         attributes = {"kind": self.kind, "status": str(self.status), "title": self.title}
-        return xarray.Dataset(columns, {"step": [record.step for record in self.steps]}, attributes)
+        history = xarray.Dataset(columns, {"step": [record.step for record in self.steps]}, attributes)
+        return history.set_coords([name for name in ("time", "displacement") if name in names])
 
     def history_values(self, name: str) -> np.ndarray:
         """A history value at every accepted step, shape (steps,) in SI, NaN where a step has none."""
@@ -259,23 +275,6 @@ class Result:
         if isinstance(self.scene, UnreadableScene):
             raise StorageError(f"the scene of the result cannot be read: {self.scene.reason}; run the case again")
         raise InputError(f"the result of {shown(self.kind)} holds no {model.__name__}")
-
-
-def dimensions(name: str, quantity: Quantity) -> tuple[str, ...]:
-    """Names of the axes of a quantity's array, empty where only their number is known.
-
-    They stand in the description: ``[row][column]`` or ``[ratio, force]``, and ``(x, y, z)`` for components, which come last.
-    """
-    count, bracketed = quantity.numbers.ndim, re.findall(r"\[([^\[\]]+)\]", quantity.description)
-    stated = [axis.strip().replace(" ", "_") for axes in bracketed for axis in axes.split(",")]
-    components = ["component"] if re.search(r"\(x, y(, z)?\)", quantity.description) else []
-    by_name = ["row", "column"] if name.partition("_")[0] in ("taxel", "voltage", "read") else []
-    if name.endswith("_history"):
-        by_name.insert(0, "time")
-    for named in (stated, [*stated, *components], by_name):
-        if named and len(named) == count:
-            return tuple(named)
-    return ()
 
 
 def identical(one: Any, other: Any) -> bool:

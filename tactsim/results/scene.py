@@ -12,6 +12,7 @@ from tactsim.kind import Kind
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
 from tactsim.registry import kind_class
+from tactsim.results.axes import Coordinate
 
 EARLIER = "it was written by an earlier version of tactsim (schema_version 1), which described it in another form"
 
@@ -24,6 +25,10 @@ class Scene(Kind):
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.scene"
+
+    def coordinates(self, quantity: str) -> dict[str, Coordinate]:
+        """What lies along the axes of a quantity of the result, by name, where its quantities do not hold it."""
+        return {}
 
 
 class SolverReport(FrozenModel):

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.model import FrozenModel
+from tactsim.results.axes import Coordinate
 from tactsim.results.scene import Scene
 from tactsim.units import Force, Length, Time
 
@@ -47,3 +48,15 @@ class AnnulusDesignScene(Scene):
     """The sensor that is judged beside the map."""
     small_displacement: float
     """Displacement over the outer radius up to which linear theory is meant."""
+    forces: tuple[float, ...] = ()
+    """Constant forces of the map; empty in results of earlier versions."""
+
+    def coordinates(self, quantity: str) -> dict[str, Coordinate]:
+        """The axes of the map."""
+        axes = {
+            "ratio": (self.ratios, "1"),
+            "recess": (self.recesses, "m"),
+            "force": (self.forces, "N"),
+            "time": (self.times, "s"),
+        }
+        return {name: Coordinate(name, values, unit) for name, (values, unit) in axes.items()}

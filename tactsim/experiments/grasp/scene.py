@@ -13,6 +13,7 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
 from tactsim.model import FrozenModel
+from tactsim.results.axes import Coordinate, centred
 from tactsim.results.scene import Scene, SolverReport
 
 Point = tuple[float, float, float]
@@ -79,6 +80,15 @@ class GraspScene(Scene):
         if number > len(self.inclusions):
             return f"inclusion {number}"
         return inclusion_name(number, self.inclusions[number - 1].shape)
+
+    def coordinates(self, quantity: str) -> dict[str, Coordinate]:
+        """The middles of rows and columns of the jaw that the quantity's name ends with; of both if it names none."""
+        x, y, _ = next((self.place(side) for side in JAWS if side in quantity.split("_")), np.append(self.middle, 0))
+        rows, columns = self.matrix.borders("y"), self.matrix.borders("x")
+        return {
+            "row": centred("row", rows, y, "y of the middle of the taxels, from the front"),
+            "column": centred("column", columns, x, "x of the middle of the taxels"),
+        }
 
     def borders(self, along: str) -> Array:
         """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels in the block."""

@@ -107,7 +107,10 @@ def test_a_relaxation_gives_the_line_of_a_material(stack_file: Path, tmp_path: P
     rows = "\n".join(f"{t},{2 + 2 * 0.5 ** (t / 0.1)}" for t in (0.2 + 0.02 * k for k in range(100)))
     held.write_text(f"time [s], stress [kPa]\n{rows}\n", encoding="utf-8")
     assert main(["material", "--relaxation", str(held), "--rise", "0.2 s"]) == 0
-    first, second = capsys.readouterr().out.splitlines()
+    first, second, third = capsys.readouterr().out.splitlines()
+    assert (
+        "95% intervals: fractions 0.316 to 0.316" in third
+    )  # the response at once, of a rise of 0.2 s, is 3.2 kPa of relaxing part
     assert first.startswith("1 relaxation times: largest relative error 0.0%")
     case = load_case(stack_file, [f"experiment.skin={{kind: neo_hookean, c10: 3 kPa, {second.strip()}}}"])
     assert case.experiment.skin.relaxation.times == pytest.approx([0.1 / 0.693147], rel=1e-4)  # halves in 0.1 s
@@ -145,13 +148,14 @@ def test_a_curve_in_compression_alone_leaves_tension_open(
         (["missing.yaml"], 5, "cannot read the case file"),
         (["--save", "x.png"], 2, "--save needs a material"),
         (["icf_stable", "--save", "x.pdf"], 2, "must end in .png"),
+        (["--absolute"], 2, "--absolute goes with --fit"),
         (["--form", "stable"], 2, "--form goes with --fit"),
         (["--fit", "missing.csv"], 5, "missing.csv"),
         (["icf_stable", "--fit", "x.csv"], 2, "not allowed with"),
         (["--relaxation", "missing.csv"], 5, "missing.csv"),
         (["icf_stable", "--rise", "1 s"], 2, "--rise goes with --relaxation"),
         (["--relaxation", "x.csv", "--rise", "1 mm"], 2, "'1 mm'"),
-        (["--relaxation", "x.csv", "--save", "x.png"], 2, "--form and --save go with --fit"),
+        (["--relaxation", "x.csv", "--save", "x.png"], 2, "--form, --absolute and --save go with --fit"),
     ],
 )
 def test_what_cannot_be_answered(

@@ -94,3 +94,39 @@ def test_columns_and_rise_are_checked(tmp_path: Path) -> None:
         ts.fit_relaxation(curve, rise=-1.0)
     with pytest.raises(InvalidQuantity, match="fewer than 6 samples after a rise"):
         ts.fit_relaxation(curve, rise=59.0)
+
+
+def noisy(seed: int, noise: float = 0.005) -> RelaxationCurve:
+    return RelaxationCurve(SAMPLES, relaxed(SAMPLES) * (1 + noise * np.random.default_rng(seed).standard_normal(SAMPLES.size)))
+
+
+def test_intervals_hold_the_true_series_as_often_as_they_say() -> None:
+    """Of 40 noisy curves that are fitted with the two units they have; the mutant's intervals are half as wide."""
+    fits = [fit for fit in map(ts.fit_relaxation, map(noisy, range(40))) if len(fit.relaxation.times) == 2]
+    assert len(fits) > 5
+
+    def held(narrowed: float) -> float:
+        hits = []
+        for fit in fits:
+            for (low, high), true in zip(
+                [*fit.fraction_intervals.T, *fit.time_intervals.T, fit.equilibrium_interval],
+                [*FRACTIONS, *TIMES, 0.5],
+                strict=True,
+            ):
+                middle, half = (low + high) / 2, narrowed * (high - low) / 2
+                hits.append(abs(true - middle) < half)
+        return float(np.mean(hits))
+
+    assert held(1.0) > 0.85  # 0.95 of some fifty numbers that go together in fives
+    assert held(0.4) < 0.75
+
+
+def test_a_part_that_noise_splits_in_two_is_named() -> None:
+    fit = ts.fit_relaxation(noisy(1, 0.01))
+    assert len(fit.relaxation.times) == 3
+    assert "does not determine the part that relaxes in 0.09" in fit.warnings[0]
+    low, high = fit.equilibrium_interval
+    assert low < 0.5 < high  # what stays is known all the same
+    assert high - low < 0.05
+    assert "95% intervals: fractions" in str(fit)
+    assert ts.fit_relaxation(noisy(1, 0.0005)).warnings == ()

@@ -9,7 +9,6 @@ from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.uniaxial import (
     FORMS,
     STRESS_FLOOR,
-    _ellipticity_rows,
     fit_uniaxial,
     relative_errors,
     uniaxial_nominal_stress,
@@ -17,6 +16,7 @@ from tactsim.identification.uniaxial import (
     unit_stresses,
 )
 from tactsim.identification.uniaxial_data import UniaxialCurve
+from tactsim.identification.uniaxial_least_squares import ellipticity_rows
 from tactsim.materials.library import LIBRARY, named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
@@ -170,7 +170,7 @@ def test_the_stable_fit_is_the_nearest_of_the_stable_ones():
     design = unit_stresses(curve.stretch, names) / np.abs(curve.nominal_stress)[:, None]
     target = np.sign(curve.nominal_stress)
     best = np.array([getattr(fit_uniaxial(curve).material, name) for name in names])
-    conditions = _ellipticity_rows(names)
+    conditions = ellipticity_rows(names)
     assert (conditions @ best >= -1e-9 * np.abs(best).max()).all()
     error = np.sum((design @ best - target) ** 2)
     steps = np.random.default_rng(2).normal(size=(4000, 3)) * np.geomspace(1e-4, 1, 4000)[:, None] * np.abs(best).max()

@@ -1,0 +1,96 @@
+"""How well a uniaxial curve determines the constants of a form, and what it says nothing of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.identification.certainty import COVERED, LEAST_FREEDOM, Noise, intervals, noise_of
+from tactsim.identification.uniaxial_data import UniaxialCurve
+from tactsim.identification.uniaxial_least_squares import LeastSquares
+
+DETERMINED = 0.25
+"""Assumption: a curve determines a constant if half its interval is worth less than this part of the stress (rms)."""
+AT_REST = ("c10", "c01")
+"""Twice the sum of these is the shear modulus at rest."""
+BARELY_STRETCHED = 0.05
+"""Assumption: a curve that ends within this strain of rest holds nothing of that side."""
+
+
+@dataclass(frozen=True)
+class UniaxialCertainty:
+    """What other curves of the same noise would have given, if the form is true."""
+
+    intervals: dict[str, tuple[float, float]]
+    """Constant -> lower and upper end in Pa of its interval of 95 %; infinite where no point is to spare."""
+    shear_modulus: tuple[float, float]
+    """The same of the shear modulus at rest."""
+    undetermined: tuple[str, ...]
+    """Constants whose value may be exchanged for that of others."""
+    noise: Noise
+    """Of the weighted residuals."""
+
+    def warnings(self, largest_error: float) -> tuple[str, ...]:
+        """What cannot be relied on, in words."""
+        warnings = []
+        if self.undetermined:
+            modulus = _range(self.shear_modulus)
+            warnings.append(
+                f"the curve does not determine {' and '.join(self.undetermined)} one by one, only the stress where it was "
+                f"measured and the shear modulus at rest, {modulus}: use a form of fewer constants or measure another deformation"
+            )
+        if self.noise.freedom <= LEAST_FREEDOM:
+            warnings.append(
+                f"the residuals come in runs of one sign: the form does not follow the curve, which it misses by up to "
+                f"{largest_error:.1%}; the intervals are wide for it and hold for this form only"
+            )
+        return tuple(warnings)
+
+    def __str__(self) -> str:
+        """The intervals in a line."""
+        ranges = ", ".join(f"{name} {_range(ends)}" for name, ends in self.intervals.items())
+        open_ends = f"; not determined one by one: {', '.join(self.undetermined)}" if self.undetermined else ""
+        return f"{COVERED:.0%} intervals: {ranges}, shear modulus at rest {_range(self.shear_modulus)}{open_ends}"
+
+
+def certainty(squares: LeastSquares, design: Array, target: Array, names: tuple[str, ...]) -> UniaxialCertainty:
+    r"""What noise leaves open of a fit of a weighted design (n, m) to a target (n,).
+
+    The noise is that of the residuals, see `noise_of`; its draws are added to the data :math:`Q^T y` and fitted again, under the
+    conditions of strong ellipticity if the fit was.
+    """
+    data = squares.basis.T @ target
+    noise = noise_of(target - squares.basis @ squares.projected(data), squares.fitted_basis(data))
+    if not noise.known:
+        everything = (-np.inf, np.inf)
+        return UniaxialCertainty(dict.fromkeys(names, everything), everything, names, noise)
+    fitted = squares.constants(squares.projections(data + noise.drawn(squares.basis)).T)
+    ends = intervals(fitted.T)
+    worth = np.diff(ends, axis=0)[0] / 2 * np.sqrt(np.mean(design**2, axis=0))
+    at_rest = [name in AT_REST for name in names]
+    low, high = map(float, intervals(2 * fitted[at_rest].sum(axis=0)))
+    return UniaxialCertainty(
+        intervals={name: (float(ends[0, k]), float(ends[1, k])) for k, name in enumerate(names)},
+        shear_modulus=(low, high),
+        undetermined=tuple(name for name, value in zip(names, worth, strict=True) if value > DETERMINED),
+        noise=noise,
+    )
+
+
+def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:
+    """What a curve of one sign leaves open, in words."""
+    if curve.stretch.max() < 1 + BARELY_STRETCHED:
+        return ("the curve is compression alone, which says nothing of tension; a threshold pressure depends on it",)
+    if curve.stretch.min() > 1 - BARELY_STRETCHED:
+        return ("the curve is tension alone, which says little of compression; what lies under a sensor is compressed",)
+    return ()
+
+
+def _range(ends: tuple[float, float]) -> str:
+    """Both ends in one unit, three digits each."""
+    if not np.isfinite(ends).all():
+        return "anything"
+    unit, factor = next(((u, f) for u, f in (("MPa", 1e-6), ("kPa", 1e-3)) if max(map(abs, ends)) * f >= 1), ("Pa", 1.0))
+    return f"{ends[0] * factor:.3g} to {ends[1] * factor:.3g} {unit}"
