@@ -26,9 +26,10 @@ class AnchoredSprings:
         self._stiffness = np.zeros(space.size)
         self._stiffness[: space.displacement_size] = np.repeat(strength * softest * size * volume / volume.sum(), space.dim)
         unknowns = np.arange(space.size)
-        self._positions = body.pattern.positions(unknowns, unknowns)
+        self._tangent = np.zeros(len(body.pattern.indices))
+        self._tangent[body.pattern.positions(unknowns, unknowns)] = self._stiffness
         self._rest = rest[: space.displacement_size]
-        self._entries, self._split = len(body.pattern.indices), space.displacement_size
+        self._split = space.displacement_size
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at nodal displacements (n, d) in m."""
@@ -37,10 +38,8 @@ class AnchoredSprings:
         return force
 
     def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries."""
-        data = np.zeros(self._entries)
-        data[self._positions] = self._stiffness
-        return data
+        """Tangent entries, the same at all displacements."""
+        return self._tangent
 
     def total(self, displacement: Array) -> Array:
         """Resultant (d,) in N of the springs on the body."""

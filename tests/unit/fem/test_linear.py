@@ -13,7 +13,9 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem import pardiso
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.linear import direct_solver, solved
+from tactsim.fem.pardiso import QuasiDefinitePardiso
 from tactsim.fem.reused_factor import MOST_OF_ONE, ReusedFactor
+from tactsim.fem.solver_choice import giving_way
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -23,8 +25,18 @@ ALL = [*SOLVERS, "pardiso_symmetric", "pardiso_single"]
 
 def tangent_of(dim: int, *, axes: int, bulk_modulus: float | None = None) -> tuple[csr_matrix, np.ndarray]:
     """Tangent at rest of a unit box whose face at the origin is held along the first ``axes`` axes, and free random forces."""
+    return held_tangent(*unit_box(dim, bulk_modulus), axes)
+
+
+def unit_box(dim: int, bulk_modulus: float | None = None):
+    """Mesh and body."""
     mesh = box([1.0] * dim, [3] * dim, jitter=0.2)
-    body = body_of(mesh, "plane_strain" if dim == 2 else "solid", MooneyRivlin2(c10=80.0, c01=20.0, bulk_modulus=bulk_modulus))
+    material = MooneyRivlin2(c10=80.0, c01=20.0, bulk_modulus=bulk_modulus)
+    return mesh, body_of(mesh, "plane_strain" if dim == 2 else "solid", material)
+
+
+def held_tangent(mesh, body, axes: int) -> tuple[csr_matrix, np.ndarray]:
+    """Tangent at rest of a body held along axes, and forces."""
     fixed = np.array([held(mesh, axis, on_plane(0, 0.0)) for axis in range(axes)], int).ravel()
     constraints = Constraints(fixed, body.pattern)
     right = np.zeros(body.space.size)
@@ -137,6 +149,29 @@ def test_the_size_of_the_right_hand_side_does_not_matter_in_single_precision():
     solver.factor(matrix)
     assert_close(1e60 * solver.solve(1e-60 * right), solver.solve(right), 1e-5)
     assert not solver.solve(0 * right).any()
+
+
+def guided_by_what_gives_way(bulk_modulus=None, factor=1.0):
+    """The solution for a unit box to 1e-8 with a quasi-definite factor as its guide, its matrix and right side, and the solvers."""
+    mesh, body = unit_box(3, bulk_modulus)
+    matrix, right = held_tangent(mesh, body, 3)
+    direct = QuasiDefinitePardiso(factor * giving_way(body))
+    solver = ReusedFactor(direct)
+    return solved(solver, matrix, right, 1e-8), matrix, right, solver, direct
+
+
+@pytest.mark.parametrize("bulk_modulus", [None, 1e6])
+def test_a_factor_of_tissue_that_gives_way_a_little_guides_to_what_does_not(bulk_modulus):
+    computed, matrix, right, solver, direct = guided_by_what_gives_way(bulk_modulus)
+    assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
+    assert_close(computed, solved(direct_solver("pardiso"), matrix, right), 1e-4)  # accuracy times condition number
+    exact = ReusedFactor(direct_solver("pardiso_single"))
+    solved(exact, matrix, right, 1e-8)
+    assert solver.solutions <= exact.solutions + 4
+    assert direct.perturbed_pivots == 0
+    # mutant: what gives way a thousand times as much guides badly
+    *_, loose, _ = guided_by_what_gives_way(bulk_modulus, factor=1e3)
+    assert loose.solutions > exact.solutions + 4
 
 
 def changed(matrix, amount, *, skew=0.0):
