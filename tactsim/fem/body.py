@@ -143,6 +143,13 @@ class Body:
                 slopes[0, mine] = material.shear_modulus
         return slopes if self.relaxation is None else slopes * self.relaxation.scale[:, None]
 
+    def compiled_elastic_stress(self, state: Kinematics) -> Array:
+        """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa, not scaled by a step of time; where a material has no compiled
+        form, its entries mean nothing."""
+        elastic, stress = self.with_relaxation(None), np.zeros((6, *state.J.shape))
+        self._kernels.elastic_stress(state.F, elastic.energy_slopes(state, second=False), self.linear, stress)
+        return stress
+
     def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
         """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
         state = self.kinematics(unknowns) if state is None else state

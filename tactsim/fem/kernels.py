@@ -9,7 +9,14 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from tactsim.fem.point import add_history_stress, add_history_tangent, hyperelastic_stress, point_stress, point_tangent
+from tactsim.fem.point import (
+    add_history_stress,
+    add_history_tangent,
+    hyperelastic_stress,
+    point_stress,
+    point_tangent,
+    pulled_back,
+)
 
 BLOCK = 32
 """Elements per task of a thread."""
@@ -168,3 +175,15 @@ def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, dat
                         for x in range(CORNERS):
                             D[v, x] -= weight * compliance[e] * shape_p[q, v] * shape_p[q, x]
                 _scatter((K, B, D), nodes, u.size + pressures[e], indptr, offsets[e], data)
+
+
+@numba.njit(cache=True)
+def elastic_stress(F, W, linear, out):  # type: ignore[no-untyped-def]
+    """Isochoric second Piola-Kirchhoff stress at F (3, 3, E, Q) and slopes W into ``out`` (6, E, Q)."""
+    here, cof, work = np.empty(9), np.empty(9), np.empty((6, 9))
+    for e in range(F.shape[2]):
+        for q in range(F.shape[3]):
+            for m in range(9):
+                here[m] = F[m // 3, m % 3, e, q]
+            point_stress(here, W[:, e, q], linear[e], work, cof)
+            pulled_back(work, linear[e], out[:, e, q])
