@@ -6,13 +6,14 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+from tactsim.fem import kernels, section_kernels
 from tactsim.fem.interpreted import InterpretedPart, PointState
-from tactsim.fem.kernels import compiled
 from tactsim.fem.material_forms import compiled_form
 from tactsim.fem.pattern import Pattern, build_pattern
 from tactsim.fem.space import TaylorHood
@@ -98,7 +99,6 @@ class Body:
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         resisting = volume_stiffness * np.array([m.shear_modulus for m in materials])[self.regions]
         self.volume_stiffness = resisting / (1 + resisting * self.compliance)
-        self._kernels = compiled(space.dim)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
         """The same body in a time step of materials that relax."""
@@ -115,7 +115,7 @@ class Body:
         """Deformation at the quadrature points."""
         u, _ = self.space.split(unknowns)
         shape = self.points.weights.shape
-        F, invariants = np.empty((9, *shape)), np.empty((3, *shape))
+        F, invariants = np.zeros((9, *shape)), np.empty((3, *shape))
         with loop_threads(len(self.regions)):
             self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
         return Kinematics(F.reshape(3, 3, *shape), *invariants)
@@ -142,6 +142,13 @@ class Body:
             elif self.forms[index] == "small_strain":
                 slopes[0, mine] = material.shear_modulus
         return slopes if self.relaxation is None else slopes * self.relaxation.scale[:, None]
+
+    def compiled_elastic_stress(self, state: Kinematics) -> Array:
+        """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa, not scaled by a step of time; where a material has no compiled
+        form, its entries mean nothing."""
+        elastic, stress = self.with_relaxation(None), np.zeros((6, *state.J.shape))
+        self._kernels.elastic_stress(state.F, elastic.energy_slopes(state, second=False), self.linear, stress)
+        return stress
 
     def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
         """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
@@ -176,6 +183,11 @@ class Body:
         size = np.abs(points.gradients).max(axis=-1) + points.hoop
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
         return np.bincount(self.space.elements.ravel(), forces.ravel())
+
+    @property
+    def _kernels(self) -> ModuleType:
+        """The compiled loops."""
+        return kernels if self.space.dim == 3 else section_kernels
 
     @cached_property
     def _interpreted(self) -> tuple[InterpretedPart, ...]:

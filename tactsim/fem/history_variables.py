@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.fem import history_kernels
 from tactsim.fem.body import Body, Kinematics, RelaxationStep
 
 ROUND_OFF = 128 * np.finfo(float).eps
@@ -38,6 +39,8 @@ COMPONENTS = (np.array([0, 1, 2, 0, 1, 0]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of the six components of a symmetric tensor."""
 DOUBLE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 """Multiplicity of each component in the tensor."""
+IN_SECTION = 4
+"""Components 11, 22, 33 and 12, which alone are not zero in a section."""
 
 
 @dataclass(frozen=True)
@@ -80,13 +83,16 @@ class HistoryVariables:
     series: Series
     elastic: Array
     overstress: Array
+    components: int = len(DOUBLE)
+    """How many of the components, the first ones, may differ from zero: 4 in a section."""
     earlier: tuple[tuple[Array, float], ...] = ()
 
     @classmethod
     def at_rest(cls, body: Body, series: Series) -> HistoryVariables:
         """The stress-free state at the beginning."""
         shape = (6, *body.points.weights.shape)
-        return cls(series, np.zeros(shape), np.zeros((len(series.times), *shape)))
+        components = IN_SECTION if body.space.dim == 2 else shape[0]
+        return cls(series, np.zeros(shape), np.zeros((len(series.times), *shape)), components)
 
     @property
     def stress(self) -> Array:
@@ -102,17 +108,17 @@ class HistoryVariables:
         kept, mean, bend = self.series.faded(time_step)
         share, rest = self._bend(time_step)
         weight = (mean + share * bend).sum(axis=0)
-        stress = np.einsum("ne,nceq->ceq", kept, self.overstress) - mean.sum(axis=0)[:, None] * self.elastic
-        stress += bend.sum(axis=0)[:, None] * rest
-        return RelaxationStep(self.series.equilibrium + weight, np.ascontiguousarray(stress))
+        stress = np.zeros_like(self.elastic)
+        history_kernels.history_stress((kept, mean, bend), self.overstress, self.elastic, rest, self.components, stress)
+        return RelaxationStep(self.series.equilibrium + weight, stress)
 
     def advanced(self, elastic: Array, time_step: float) -> HistoryVariables:
         """The variables after a step of this length in s to the elastic stress (6, E, Q) in Pa."""
-        kept, mean, bend = (factor[:, None, :, None] for factor in self.series.faded(time_step))
-        share, rest = self._bend(time_step)
-        overstress = kept * self.overstress + mean * (elastic - self.elastic) + bend * (share * elastic + rest)
+        overstress, stresses = np.zeros_like(self.overstress), (self.elastic, elastic)
+        factors, bend = self.series.faded(time_step), self._bend(time_step)
+        history_kernels.advanced(factors, self.overstress, stresses, bend, self.components, overstress)
         earlier = ((self.elastic, time_step), *self.earlier[: MOST_EARLIER - 1]) if time_step > 0 else ()
-        return HistoryVariables(self.series, elastic, overstress, earlier)
+        return replace(self, elastic=elastic, overstress=overstress, earlier=earlier)
 
     def _bend(self, time_step: float) -> tuple[float, Array]:
         """The bend of the parabola times the step squared: ``share`` times the new elastic stress plus the rest (6, E, Q)."""
@@ -124,13 +130,17 @@ class HistoryVariables:
 
 
 def elastic_stress(body: Body, state: Kinematics) -> Array:
-    """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa of the energies; the deviatoric stress if linear elastic."""
-    stress = np.zeros((6, *state.J.shape))
+    """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa of the energies; the deviatoric stress if linear elastic.
+
+    Compiled but for materials without a compiled form; in numpy it was a sixth of a timed indentation.
+    """
+    stress = body.compiled_elastic_stress(state)
     for index, material in enumerate(body.materials):
-        mine = body.regions == index
-        F = state.F[:, :, mine]
-        P = material.first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
-        stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[COMPONENTS]
+        if body.forms[index] is None:
+            mine = body.regions == index
+            F = state.F[:, :, mine]
+            P = material.first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
+            stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[COMPONENTS]
     return stress
 
 

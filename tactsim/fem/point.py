@@ -151,6 +151,17 @@ def add_history_tangent(history_stress, linear, A):  # type: ignore[no-untyped-d
                     A[3 * i + j, 3 * i + o] += history_stress[SYMMETRIC_SLOTS[3 * j + o]]
 
 
+@numba.njit(cache=True)
+def pulled_back(work, linear, S):  # type: ignore[no-untyped-def]
+    """F^-1 P, or P where the material is linear, of the stress and F^-T that ``point_stress`` left, into S (6,)."""
+    for i in range(3):
+        for j in range(i, 3):
+            value = work[0, 3 * i + j]
+            if not linear:
+                value = work[3, i] * work[0, j] + work[3, 3 + i] * work[0, 3 + j] + work[3, 6 + i] * work[0, 6 + j]
+            S[SYMMETRIC_SLOTS[3 * i + j]] = value
+
+
 @numba.njit(cache=True, inline="always")
 def point_tangent(F, W, linear, volume, work, cof, A):  # type: ignore[no-untyped-def]
     """dP/dF at fixed pressure into A (9, 9), derivative of the volume change into ``cof`` (9,); W holds the five slopes and

@@ -8,6 +8,7 @@ from solids import assert_close, body_of, box
 
 from tactsim.fem import forms
 from tactsim.fem.body import Body, RelaxationStep
+from tactsim.fem.history_variables import COMPONENTS, elastic_stress
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -109,3 +110,21 @@ def test_deformation_and_invariants_equal_the_readable_ones(measure):
     assert_close(state.J, J, ROUND_OFF)
     assert_close(state.I1, J ** (-2 / 3) * trace, ROUND_OFF)
     assert_close(state.I2, J ** (-4 / 3) * (trace**2 - np.einsum("JK...,JK...->...", C, C)) / 2, ROUND_OFF)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("kind", [name for name, _ in KINDS])
+def test_the_elastic_stress_is_that_of_the_material(measure, kind):
+    material, other = dict(KINDS)[kind].example(), MooneyRivlin2.example()
+    body = with_random_history(body_of(mesh_of(measure), measure, material, other), 3)
+    state = body.kinematics(random_unknowns(body, 4))
+    expected = np.zeros((3, 3, *state.J.shape))
+    for index, law in enumerate((material, other)):
+        mine = body.regions == index
+        P = np.moveaxis(law.first_piola_kirchhoff(state.F[:, :, mine], np.zeros(state.J[mine].shape)), (0, 1), (-2, -1))
+        F = np.moveaxis(state.F[:, :, mine], (0, 1), (-2, -1))
+        expected[:, :, mine] = np.moveaxis(P if law.small_strain else np.linalg.solve(F, P), (-2, -1), (0, 1))
+    stress = elastic_stress(body, state)
+    assert_close(stress, expected[COMPONENTS], ROUND_OFF)
+    with pytest.raises(AssertionError):
+        assert_close(stress, expected.swapaxes(0, 1)[::-1][COMPONENTS], ROUND_OFF)
