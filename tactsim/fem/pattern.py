@@ -67,20 +67,31 @@ def _csr_structure(element_unknowns: Array, size: int) -> tuple[Array, Array]:
 
 @numba.njit(cache=True)
 def _locate(leading, indptr, indices, offsets):  # type: ignore[no-untyped-def]
+    """Places of the unknowns of an element in each other's rows, by bisection: numpy's search takes a second to compile."""
     count, width = leading.shape
     for e in range(count):
         for i in range(width):
             start, stop = indptr[leading[e, i]], indptr[leading[e, i] + 1]
             for j in range(width):
-                offsets[e, i, j] = np.searchsorted(indices[start:stop], leading[e, j])
+                low, high = start, stop
+                while low < high:
+                    middle = (low + high) // 2
+                    if indices[middle] < leading[e, j]:
+                        low = middle + 1
+                    else:
+                        high = middle
+                offsets[e, i, j] = low - start
 
 
 @numba.njit(cache=True)
 def _color(elements, size):  # type: ignore[no-untyped-def]
-    """Greedy colouring by 64-bit masks: the lowest colour that no unknown of the element has seen."""
+    """Greedy colouring by 64-bit masks: the lowest colour that no unknown of the element has seen.
+
+    Returns the elements by colour, each colour's in their order, and where each colour starts.
+    """
     count, width = elements.shape
     colors = np.full(count, -1, np.int64)
-    assigned, base = 0, 0
+    assigned, base, last = 0, 0, 0
     while assigned < count:
         seen = np.zeros(size, np.uint64)
         for e in range(count):
@@ -93,14 +104,19 @@ def _color(elements, size):  # type: ignore[no-untyped-def]
                 bit = np.uint64(1) << np.uint64(c)
                 if mask & bit == 0:
                     colors[e] = base + c
+                    last = max(last, base + c)
                     assigned += 1
                     for i in range(width):
                         seen[elements[e, i]] |= bit
                     break
         base += 64
-    order = np.argsort(colors, kind="mergesort")
-    total = colors.max() + 1
-    starts = np.zeros(total + 1, np.int64)
+    starts = np.zeros(last + 2, np.int64)  # sorted by counting: numpy's sort takes two seconds to compile
     for e in range(count):
         starts[colors[e] + 1] += 1
-    return order, np.cumsum(starts)
+    for c in range(last + 1):
+        starts[c + 1] += starts[c]
+    order, free = np.empty(count, np.int64), starts[:-1].copy()
+    for e in range(count):
+        order[free[colors[e]]] = e
+        free[colors[e]] += 1
+    return order, starts
