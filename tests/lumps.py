@@ -67,3 +67,14 @@ def interface_nodes(mesh: QuadraticMesh, first: int, second: int) -> Array:
     """Numbers of the nodes that elements of two regions share."""
     nodes = [np.unique(mesh.elements[mesh.regions == region]) for region in (first, second)]
     return np.intersect1d(*nodes)
+
+
+def same_mirrored(mesh: QuadraticMesh, axis: int) -> bool:
+    """Whether the nodes and the centres of the elements of a mesh of a block of `SIZE` are their own mirror image."""
+    same = True
+    for points in (mesh.nodes, mesh.nodes[mesh.elements].mean(axis=1)):
+        image = points.copy()
+        image[:, axis] = SIZE[axis] - image[:, axis]
+        places = [np.round(p * 1e9).astype(np.int64) for p in (points, image)]
+        same &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
+    return same

@@ -82,7 +82,8 @@ class LayersSource(BlockMeshSettings):
 
 
 class GradedSource(BlockMeshSettings):
-    """Few cells, thin at the faces and rounded around spheres and ellipsoids in a row: the fastest for its accuracy."""
+    """Few cells, thin at the faces, rounded around spheres and ellipsoids in a row, in rings around tubes: the fastest for its
+    accuracy."""
 
     kind: Literal["graded"] = "graded"
     size: Positive = 6e-3
@@ -217,12 +218,12 @@ def _tag(name: str) -> int | str:
 
 
 class AutomaticSource(FrozenModel):
-    """Graded cells where they can follow the inclusions; tetrahedra around free forms and arteries, and for jaws smaller than the
-    block, at whose edges they are refined."""
+    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and for jaws smaller than the block, at
+    whose edges they are refined."""
 
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()
-    """The cells around spheres and ellipsoids in a row."""
+    """The cells around spheres and ellipsoids in a row, and around tubes."""
     tetrahedra: TetrahedraSource = TetrahedraSource()
     """The tetrahedra otherwise."""
 

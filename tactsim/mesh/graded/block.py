@@ -1,4 +1,4 @@
-"""Blocks of few elements: a grid of cells that grow away from the faces, and around lumps boxes of rounded cells.
+"""Blocks of few elements: a grid of cells that grow away from the faces, boxes of rounded cells around lumps, rings around tubes.
 
 Tissue that sticks to a jaw is strained without bound where its free face begins, so that thin cells at the faces are worth more
 than many cells (Apel 1999, Anisotropic Finite Elements: Local Estimates and Applications, for grading towards edges).
@@ -35,16 +35,18 @@ ATTEMPTS = 3
 def graded_block(
     size: Sequence[float], inclusions: Sequence[Inclusion] = (), settings: BlockMeshSettings | None = None
 ) -> BlockMesh:
-    """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the lumps in it.
+    """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the inclusions.
 
-    A sphere or an ellipsoid may lie anywhere in the block, several in a row along one of its axes. Cells are wanted ``edge_size``
-    thick at the faces (by default a third of ``size``), each next one longer by ``growth`` up to ``size``; on a lump they are at
-    most about ``inclusion_size`` long, shorter where longer ones would be badly curved.
+    A sphere or an ellipsoid may lie anywhere in the block, several in a row along one of its axes; tubes lead along one axis side
+    by side, one lump among them at most. Cells are wanted ``edge_size`` thick at the faces (by default a third of ``size``), each
+    next one longer by ``growth`` up to ``size``; on an inclusion they are at most about ``inclusion_size`` long, shorter where
+    longer ones would be badly curved.
 
     Raises
     ------
     InputError
-        If an inclusion is of another kind, they do not stand in a row or do not suit the block, or the cells are too many.
+        If an inclusion is of another kind, they do not stand in a row or side by side or do not suit the block, or the cells are
+        too many.
     ConvergenceError
         If the mesh misses the volumes or the shape asked for.
     """

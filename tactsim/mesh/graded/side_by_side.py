@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,19 +21,13 @@ from tactsim.mesh.graded.lines import (
     box_shares,
     edge_thickness,
     knots_between,
-    mirrored_line,
     outer_places,
     planes_across,
     spaced,
 )
+from tactsim.mesh.graded.planes_along import planes_along
 from tactsim.mesh.graded.row import Lump
 from tactsim.mesh.graded.sections import Hollow, Sections, leading_axis, sections_of
-
-MOST_TURN = 0.3
-"""Angle in rad by which a tube may turn along a cell, at most: at 0.45 mid-nodes of a wall of a quarter of the bore no longer
-find room on its surface, and the volume is wrong by 0.6 %."""
-TILT_ROOM = 1.5
-"""Thickness of the cells at a flat end that leans, over the way by which its rim stands ahead of its middle."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +81,7 @@ def bundle_of(
     arc = np.pi / 2 * longest / settings.inclusion_size
     check_along(arc, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
     across = PAIRED * (-(-max(LEAST_ALONG, round(arc)) // PAIRED) + finer)
-    places, planes = _planes_along(tubes, ball, axis, size, across, settings)
+    places, planes = planes_along(tubes, ball, size, settings, axis=axis, across=across)
     found = sections_of(tubes, axis, places, size)
     sections, bodies, numbers = _in_order(found, ball, planes)
     seen = _bodies(sections, ball, bodies, planes, size)
@@ -98,67 +91,17 @@ def bundle_of(
     pressed = sections.axes[2] == 2
     (near, far), begin = planes_across(flat_centers, flat_bounds, float(extent[2]), across, settings, pressed=pressed)
     shape = (*seen.centers.shape[:2], -1)
-    grid = _bent(seen, (sides, outer), (np.array(near).reshape(shape), np.array(far).reshape(shape)), first, begin, across)
+    grid = _bent(
+        seen,
+        (sides, outer),
+        (np.array(near).reshape(shape), np.array(far).reshape(shape)),
+        first=first,
+        begin=begin,
+        across=across,
+    )
     wall = tuple(max(1, round(float(outer - inner) / settings.inclusion_size)) for outer, inner in sections.radii)
     firsts = np.column_stack([first, np.full(len(first), begin)])
     return Bundle(sections, ball, bodies, across, firsts, planes, grid, wall), numbers
-
-
-def _planes_along(
-    tubes: Sequence[Hollow], ball: Lump | None, axis: int, size: Array, across: int, settings: BlockMeshSettings
-) -> tuple[Array, tuple[int, int]]:
-    """Ascending places in m from face to face, and the numbers of the first and the last across the box of the ball.
-
-    Cells grow from the faces, from the ends of tubes on the way, and from the ball.
-
-    Raises
-    ------
-    InputError
-        If a tube ends beside the ball.
-    """
-    length, edge = float(size[axis]), edge_thickness(settings)
-    longest = min([settings.size, *(MOST_TURN * tube.tightest for tube in tubes)])
-    settings = settings.model_copy(update={"size": longest, "edge_size": min(edge, longest)})
-    knots = {0.0: min(edge, longest), length: min(edge, longest)}
-    for tube in tubes:
-        for end, parameter in zip(tube.ends(axis, size), np.sort(tube.line.limits), strict=True):
-            if 0 < end < length:
-                tangent = tube.line.tangents(np.array([parameter]))[0]
-                knots[end] = max(settings.inclusion_size, TILT_ROOM * tube.outer * float(np.sqrt(1 - tangent[axis] ** 2)))
-    box: Array = np.zeros(0)
-    if ball is not None:
-        gaps = np.array([ball.bounds[0, axis], length - ball.bounds[1, axis]])
-        begin, end = ball.bounds[:, axis] + np.array([-1, 1]) * np.minimum(ROOM * gaps, (REACH - 1) * ball.half[axis])
-        if any(begin < place < end for place in knots):
-            raise InputError("graded cells serve a lump beside a tube, not beside the end of one")
-        box = np.interp(box_shares(across, 0.0), [-1, 0, 1], [begin, ball.center[axis], end])
-        knots |= {float(box[0]): float(box[1] - box[0]), float(box[-1]): float(box[-1] - box[-2])}
-    if len(knots) == 2:
-        return mirrored_line(length, settings), (0, 0)
-    lines = [np.zeros(1)]
-    for low, high in itertools.pairwise(sorted(knots)):
-        if len(box) and low == box[0]:
-            lines.append(box[1:])
-        else:
-            lines.append(low + _between(high - low, (knots[low], knots[high]), settings)[1:])
-        lines[-1][-1] = high
-    places = np.concatenate(lines)
-    return places, (int(np.searchsorted(places, box[0])), int(np.searchsorted(places, box[-1]))) if len(box) else (0, 0)
-
-
-def _between(length: float, thickness: tuple[float, float], settings: BlockMeshSettings) -> Array:
-    """Ascending places from 0 to ``length`` in m: cells of given thickness at both ends, growing towards each other."""
-    sides: tuple[list[float], list[float]] = ([], [])
-    following = list(thickness)
-    while sum(sides[0]) + sum(sides[1]) + min(following) / 2 < length:
-        k = int(following[1] < following[0])
-        sides[k].append(following[k])
-        following[k] = max(following[k], min(settings.size, following[k] * (1 + settings.growth)))
-        check_along(len(sides[0]) + len(sides[1]), "mesh.size, mesh.edge_size and mesh.growth")
-    steps = np.array([*sides[0], *sides[1][::-1]])
-    if not len(steps):
-        return np.array([0.0, length])
-    return np.concatenate([[0.0], np.cumsum(steps)]) * length / steps.sum()
 
 
 def _in_order(found: Sections, ball: Lump | None, planes: tuple[int, int]) -> tuple[Sections, Array, Array]:
@@ -237,7 +180,11 @@ def _lines_beside(
     for spans in (left, far):
         moved = sides.copy()
         moved[:, 0, 0], moved[:, -1, 1] = spans[:, 0], length - spans[:, 1]
-        lines.append(np.array([_line(moved[i], middle[i], length, (ends, between), across, settings) for i in range(len(moved))]))
+        lines.append(
+            np.array(
+                [_line(moved[i], middle[i], (ends, between), settings, length=length, across=across) for i in range(len(moved))]
+            )
+        )
     return first, lines[0], lines[1]
 
 
@@ -256,7 +203,7 @@ def _box_sides(bounds: Array, length: float, settings: BlockMeshSettings, *, pre
 
 
 def _line(
-    sides: Array, middle: Array, length: float, counts: tuple[list[int], list[int]], across: int, settings: BlockMeshSettings
+    sides: Array, middle: Array, counts: tuple[list[int], list[int]], settings: BlockMeshSettings, *, length: float, across: int
 ) -> Array:
     """Ascending places in m from face to face through boxes with sides (k, 2) and middles (k,), in given numbers of cells."""
     (before, after), between = counts
@@ -268,7 +215,9 @@ def _line(
     return np.concatenate([*places, (length - outer_places(length - float(sides[-1, 1]), after, settings))[::-1]])
 
 
-def _bent(seen: _Bodies, beside: tuple[Array, Array], third: tuple[Array, Array], first: Array, begin: int, across: int) -> Array:
+def _bent(
+    seen: _Bodies, beside: tuple[Array, Array], third: tuple[Array, Array], *, first: Array, begin: int, across: int
+) -> Array:
     """Crossings (n, w, t, 2) in m of lines that move to their far places away from the boxes.
 
     The lines along the second axis lie at ``beside``, near and far, each (n, w); those along the third axis at ``third`` at each

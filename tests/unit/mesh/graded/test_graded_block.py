@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from lumps import irregular, same_mirrored, write_cells
 
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.block_source import GradedSource
@@ -11,23 +12,12 @@ from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
-from tactsim.mesh.inclusions.tube import Tube
+from tactsim.mesh.inclusions.surface import Surface
 from tactsim.mesh.mesh_store import content_hash
 
 SIZE = (40e-3, 40e-3, 20e-3)
 CENTRED = Sphere(center=(20e-3, 20e-3, 10e-3), radius=5e-3)
 COARSE = BlockMeshSettings(size=6e-3, inclusion_size=5e-3, edge_size=1.6e-3, growth=1.0)
-
-
-def mirrored(mesh, axis):
-    """Whether the corners and the centres of the elements are their own mirror image."""
-    same = True
-    for points in (mesh.nodes, mesh.nodes[mesh.elements].mean(axis=1)):
-        image = points.copy()
-        image[:, axis] = SIZE[axis] - image[:, axis]
-        places = [np.round(p * 1e9).astype(np.int64) for p in (points, image)]
-        same &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
-    return same
 
 
 def random_lumps(count):
@@ -82,9 +72,9 @@ def test_the_gap_between_a_jaw_and_a_lump_has_two_cells_unless_it_is_thin(gap, c
 
 def test_a_centred_lump_has_a_mirrored_mesh_if_the_number_across_is_even():
     even = graded_block(SIZE, [CENTRED], COARSE.model_copy(update={"inclusion_size": 2e-3})).mesh
-    assert all(mirrored(even, axis) for axis in range(3))
+    assert all(same_mirrored(even, axis) for axis in range(3))
     odd = graded_block(SIZE, [CENTRED], COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
-    assert not all(mirrored(odd, axis) for axis in range(3))
+    assert not all(same_mirrored(odd, axis) for axis in range(3))
 
 
 def test_the_same_lump_has_the_same_mesh_and_another_has_another():
@@ -100,10 +90,12 @@ def test_a_turned_ellipsoid_is_followed():
     assert abs(block.volume_errors[1]) < VOLUME_TOLERANCE
 
 
-def test_what_cannot_be_meshed_is_refused_by_name():
-    tube = Tube(centre_line=((0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)), inner_radius=2e-3, wall=1e-3)
-    with pytest.raises(InputError, match="a tube cannot be meshed in graded cells; allowed: sphere, ellipsoid"):
-        graded_block(SIZE, [tube], COARSE)
+def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
+    vertices, faces = irregular()
+    path = write_cells(tmp_path / "free.stl", vertices, triangle=faces)
+    free = Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3))
+    with pytest.raises(InputError, match="a surface cannot be meshed in graded cells; allowed: sphere, ellipsoid, tube"):
+        graded_block(SIZE, [free], COARSE)
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
     with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):
         graded_block(SIZE, [needle], COARSE)
@@ -155,5 +147,5 @@ def test_lumps_in_a_row_keep_their_numbers_and_places(axis):
 def test_a_row_across_which_a_plane_mirrors_has_a_mesh_that_it_mirrors(lean):
     pair = [Sphere(center=(20e-3 + side * 9e-3, 20e-3 + side * lean, 10e-3), radius=4e-3) for side in (-1, 1)]
     mesh = graded_block(SIZE, pair, COARSE.model_copy(update={"inclusion_size": 1.6e-3})).mesh
-    assert mirrored(mesh, 2)
-    assert mirrored(mesh, 1) == (lean == 0)
+    assert same_mirrored(mesh, 2)
+    assert same_mirrored(mesh, 1) == (lean == 0)
