@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from tactsim.interfaces import Material
-from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.stability_range import stability_range
 from tactsim.units import format_quantity
 
@@ -78,9 +78,11 @@ def _unusual_material(name: str, material: Material) -> Iterator[str]:
         poisson, both = (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear), [format_quantity(value, "Pa") for value in (bulk, shear)]
         end = "take bulk_modulus: null" if bulk > shear else f"its Poisson's ratio is {poisson:.3g}, that of no tissue"
         yield f"{name} has a bulk modulus of {both[0]}, {bulk / shear:.3g} times its shear modulus of {both[1]}: {end}"
-    second = getattr(material, "c01", 0.0)
-    if second < 0 and isinstance(material, Hyperelastic) and not (stability := stability_range(material)).strongly_elliptic:
-        within, first = stability.elliptic_everywhere_within, getattr(material, "c10", 0.0)
+    if not isinstance(material, InvariantPolynomial):
+        return
+    first, second = (material.terms.get(powers, 0.0) for powers in ((1, 0), (0, 1)))
+    if second < 0 and not (stability := stability_range(material)).strongly_elliptic:
+        within = stability.elliptic_everywhere_within
         yield (
             f"{name} has c01 = {format_quantity(second, 'Pa')} beside c10 = {format_quantity(first, 'Pa')}: it is stable only "
             f"while all principal stretches stay within {1 / within:.3g} to {within:.3g}"

@@ -12,6 +12,7 @@ from tactsim.experiments.indentation.record import contact_oddities
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.materials.polynomial import Polynomial
 from tactsim.mechanics.plausibility import oddities
 from tactsim.units import parse_quantity
 
@@ -31,8 +32,11 @@ def test_an_unusual_material_is_reported_with_both_values(coefficients, words):
     assert all(word in warning for word in words)
 
 
-def test_a_negative_second_coefficient_is_reported_where_it_loses_stability():
-    (warning,) = oddities({"tissue": MooneyRivlin2(c10=1000.0, c01=-300.0)})
+@pytest.mark.parametrize(
+    "material", [MooneyRivlin2(c10=1000.0, c01=-300.0), Polynomial(coefficients={"c10": 1000.0, "c01": -300.0})]
+)
+def test_a_negative_second_coefficient_is_reported_where_it_loses_stability(material):
+    (warning,) = oddities({"tissue": material})
     assert "c01 = -300 Pa beside c10 = 1 kPa" in warning
     assert "stable only while all principal stretches stay within 0." in warning
     assert oddities({"tissue": MooneyRivlin2(c10=1000.0, c01=300.0)}) == []
