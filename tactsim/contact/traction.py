@@ -42,8 +42,8 @@ class ContactState:
     def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
         """The same step with the tractions of its last solution as multipliers (augmented Lagrangian).
 
-        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before, which goes beyond the
-        new ones with a share above one, but never below no pressure.
+        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before. A share above one
+        goes beyond the new ones, but never below no pressure.
         """
         pressure, tangential = now.pressure, now.tangential
         if share != 1:
