@@ -25,9 +25,9 @@ from tactsim.fem.prescribed_force import PrescribedForce
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
 """A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, is part of a cycle."""
-FORCING, LARGEST_FORCING = 0.05, 1e-2
-"""Error of a linear step over its size, over the residual that it starts from, and at most: so small that Newton still converges
-nearly quadratically (Eisenstat & Walker 1996, doi:10.1137/0917003). Direct solvers are exact anyway."""
+FORCING, LARGEST_FORCING = 0.5, 1e-2
+"""Error of a linear step over its size, over the residual that it starts from, and at most. In proportion to the residual it
+leaves Newton quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
 NEAR = 0.1
 """Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
 CONTRACTION = 0.3

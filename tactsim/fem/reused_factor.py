@@ -1,6 +1,6 @@
 """Linear systems that change little: an old factor preconditions the next systems until it no longer pays.
 
-Factoring a sparse matrix of tissue in space costs as much as some thirty solutions with the factor. GMRES needs fewer than
+Factoring a sparse matrix of tissue in space costs as much as some twenty solutions with the factor. GMRES needs fewer than
 that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do. A factor
 is replaced once the solutions with it have cost as much as a new one: at worst twice what the best moments would cost.
 
@@ -17,8 +17,9 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.linear import DirectSolver, IterativeSolver, LinearSystem
 
-WORTH_A_FACTOR = 30
-"""Solutions with a factor that cost as much as a new one; the system after them is factored."""
+WORTH_A_FACTOR = 18
+"""Solutions with a factor that cost as much as a new one; the system after them is factored. In processor time 18 at 17 600
+unknowns, 0.21 s and 0.0115 s with a product of the matrix."""
 MOST_OF_ONE = 24
 """Most solutions with an old factor for one system before the system itself is factored."""
 MOST_CYCLES = 6

@@ -28,8 +28,8 @@ STEPS = 15.0
 2.9 s by iteration there, 0.40 and 1.8 s by factor."""
 
 GIVING_WAY = 1e-4
-"""Compliance that the factor adds to that of the tissue, times the shear modulus. With 1e-3 solutions to 1e-8 take six steps more,
-and the rounding of single precision, 6e-8, is 6e-4 of what 1e-4 leaves as a pivot at worst."""
+"""Compliance that the factor adds to that of the tissue, times the shear modulus. With 1e-3 solutions to 1e-8 take six steps
+more, and the rounding of single precision, 6e-8, is 6e-4 of what 1e-4 leaves as a pivot at worst."""
 
 
 def factor_seconds(unknowns: float) -> float:

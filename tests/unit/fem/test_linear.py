@@ -152,7 +152,7 @@ def test_the_size_of_the_right_hand_side_does_not_matter_in_single_precision():
 
 
 def guided_by_what_gives_way(bulk_modulus=None, factor=1.0):
-    """The solution for a unit box to 1e-8 with a quasi-definite factor as its guide, its matrix and right side, and the solvers."""
+    """The solution for a unit box to 1e-8 guided by a quasi-definite factor, its matrix and right side, and the solvers."""
     mesh, body = unit_box(3, bulk_modulus)
     matrix, right = held_tangent(mesh, body, 3)
     direct = QuasiDefinitePardiso(factor * giving_way(body))
