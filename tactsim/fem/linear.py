@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
+from tactsim.fem.symmetric_factor import SymmetricWhereItIs
 
 LARGEST_RESIDUAL = 1e-3
 """Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
@@ -171,3 +172,9 @@ def direct_solver(name: str | None = None) -> DirectSolver:
     if name not in kinds:
         raise InputError(f"unknown linear solver {name!r}; allowed: {', '.join(kinds)}")
     return kinds[name]()
+
+
+def section_solver() -> DirectSolver:
+    """The solver of systems of some ten thousand unknowns, which each get a factor: symmetric as long as they are."""
+    solver = direct_solver()
+    return SymmetricWhereItIs() if solver.name == Pardiso.name else solver

@@ -17,7 +17,7 @@ from tactsim.fem.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.constraints import Constraints
 from tactsim.fem.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.external_forces import AnyInterface, FollowerLoad, LinearisedContact
-from tactsim.fem.linear import IterativeSolver, LinearSolver, direct_solver, resolved, solved
+from tactsim.fem.linear import IterativeSolver, LinearSolver, resolved, section_solver, solved
 from tactsim.fem.newton_options import NewtonOptions
 from tactsim.fem.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.prescribed_force import PrescribedForce
@@ -59,7 +59,7 @@ class Problem:
     def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
         self.body = body
         self.constraints = Constraints(fixed, body.pattern)
-        self.solver = solver or direct_solver()
+        self.solver = solver or section_solver()
         self.options = options or NewtonOptions()
         self._scales = Scales.of(body)
         self._factored: Factored | None = None

@@ -13,11 +13,16 @@ SERIAL_UNKNOWNS = 40_000
 """The same for factoring a matrix of fewer unknowns."""
 
 
+def are_serial(elements: int) -> bool:
+    """Whether loops over so many elements use one thread."""
+    return elements < SERIAL_ELEMENTS
+
+
 @contextmanager
 def loop_threads(elements: int) -> Iterator[None]:
     """The element loops inside use one thread if there are few elements."""
     before = numba.get_num_threads()
-    numba.set_num_threads(1 if elements < SERIAL_ELEMENTS else before)
+    numba.set_num_threads(1 if are_serial(elements) else before)
     try:
         yield
     finally:

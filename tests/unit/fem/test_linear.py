@@ -12,10 +12,11 @@ from solids import assert_close, body_of, box, held, on_plane
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem import pardiso
 from tactsim.fem.constraints import Constraints
-from tactsim.fem.linear import direct_solver, solved
-from tactsim.fem.pardiso import QuasiDefinitePardiso
+from tactsim.fem.linear import direct_solver, section_solver, solved
+from tactsim.fem.pardiso import QuasiDefinitePardiso, SymmetricPardiso
 from tactsim.fem.reused_factor import MOST_OF_ONE, ReusedFactor
 from tactsim.fem.solver_choice import giving_way
+from tactsim.fem.symmetric_factor import EXACT
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -248,3 +249,59 @@ def test_an_iteration_that_an_old_factor_does_not_finish_goes_on_with_the_new_on
     solved(fresh, now, right, 1e-8)
     assert solver.factorisations == 2
     assert solver.solutions - before - MOST_OF_ONE < fresh.solutions
+
+
+def left_over(matrix: csr_matrix, solution: np.ndarray, right: np.ndarray) -> float:
+    """Residual over the right-hand side."""
+    return float(np.abs(matrix @ solution - right).max() / np.abs(right).max())
+
+
+@pytest.mark.parametrize("bulk_modulus", [None, 1e6])
+def test_a_symmetric_matrix_gets_the_symmetric_factor_and_as_exact_a_solution(bulk_modulus):
+    matrix, right = tangent_of(2, axes=2, bulk_modulus=bulk_modulus)
+    solver = section_solver()
+    for scale in (1.0, 2.0):
+        solver.factor(scale * matrix)
+        assert left_over(scale * matrix, solver.solve(right), right) < 1e-12  # round-off times the growth of pivots
+        assert solver.name == "pardiso_symmetric"
+
+
+@pytest.mark.parametrize("first", ["symmetric", "not symmetric"])
+def test_a_matrix_that_is_not_symmetric_gets_the_general_factor_from_then_on(first):
+    matrix, right = tangent_of(2, axes=2)
+    skew = matrix.copy()
+    rows = np.repeat(np.arange(skew.shape[0]), np.diff(skew.indptr))
+    skew.data[np.argmax(np.where(rows != skew.indices, np.abs(skew.data), 0.0))] *= 1 + 1e-6
+    solver = section_solver()
+    if first == "symmetric":
+        solver.factor(matrix)
+        solver.solve(right)
+    for each in (skew, matrix):
+        solver.factor(each)
+        solution = solver.solve(right)
+        assert solver.name == "pardiso"
+        assert left_over(each, solution, right) < 1e-12
+    symmetric = direct_solver(SymmetricPardiso.name)
+    symmetric.factor(skew)  # the mutant: it halves the difference
+    assert left_over(skew, symmetric.solve(right), right) > 1e-11
+
+
+def test_a_symmetric_factor_that_is_not_exact_gives_way_to_the_general_one(monkeypatch):
+    matrix, right = tangent_of(2, axes=2)
+    exact = SymmetricPardiso.solve
+    monkeypatch.setattr(SymmetricPardiso, "solve", lambda self, right: exact(self, right) * (1 + 10 * EXACT))
+    solver = section_solver()
+    solver.factor(matrix)
+    assert left_over(matrix, solver.solve(right), right) < 1e-12
+    assert solver.name == "pardiso"
+
+
+def test_it_is_closed_and_takes_another_pattern_and_refuses_to_solve_before():
+    solver = section_solver()
+    for dim in (2, 3):
+        with pytest.raises(InputError, match="factor a matrix"):
+            solver.solve(np.ones(3))
+        matrix, right = tangent_of(dim, axes=dim)
+        solver.factor(matrix)
+        assert left_over(matrix, solver.solve(right), right) < 1e-12
+        solver.close()

@@ -9,6 +9,7 @@ import pytest
 from scipy.sparse import csr_matrix
 from solids import body_of, box
 
+from tactsim.fem import threads
 from tactsim.fem.constraints import Constraints
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
@@ -42,7 +43,15 @@ def test_positions_find_every_entry(measure):
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_colours_cover_every_element_once_and_share_no_node(measure):
+def test_a_body_with_one_thread_has_one_colour_in_the_order_of_the_mesh(measure):
+    one = body(measure)
+    assert (one.pattern.order == np.arange(len(one.space.elements))).all()
+    assert one.pattern.color_starts.tolist() == [0, len(one.space.elements)]
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+def test_colours_cover_every_element_once_and_share_no_node(measure, monkeypatch):
+    monkeypatch.setattr(threads, "SERIAL_ELEMENTS", 0)  # a body so small has one thread otherwise
     one = body(measure)
     pattern, elements = one.pattern, one.space.elements
     assert sorted(pattern.order) == list(range(len(elements)))
