@@ -49,7 +49,7 @@ LAYERS = [
     (1.0, "slipping", 0.25, 2.1815, None),
     (1.0, "slipping", 0.50, 2.0647, None),
 ]
-QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "fixed", 0.50), (1.0, "slipping", 0.50)]
+QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "slipping", 0.50)]
 QUICK_PUNCH_LAYERS = [(1.0, "fixed", 3.6187), (1.0, "slipping", 2.1986)]
 PUNCH_LAYERS = [(0.2, "fixed", 1.2806), (1.0, "fixed", 3.6187), (2.0, "fixed", 9.1495), (1.0, "slipping", 2.1986)]
 
