@@ -76,7 +76,7 @@ def test_least_squares_has_a_lower_objective_than_the_search(times, noise):
         assert fit_least_squares(data).objective < 1e-6 * searched.objective
 
 
-@pytest.mark.parametrize("times", TIMES)
+@pytest.mark.parametrize("times", [TIMES[0], pytest.param(TIMES[1], marks=pytest.mark.slow)])
 def test_the_band_holds_the_true_curves_in_forty_trials(times):
     covered, width = trials(times, 40)
     least = binom.ppf(1e-3, 40, CONFIDENCE) / 40  # one false alarm in a thousand
