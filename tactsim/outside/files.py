@@ -155,10 +155,10 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
         If there is none, it is no regular file, or it is too large.
     """
     limit = LIMITS[kind] if limit is None else limit
-    found, beside, state = _looked_up(path, kind)
+    candidate, beside, state = _looked_up(path, kind)
     _check(state, kind, str(path), limit)
-    quotable = not isinstance(path, CasePath) or _place(found, beside) != "elsewhere"
-    return OutsideFile(kind, str(path), found, state.st_size, limit, quotable, beside)
+    quotable = not isinstance(path, CasePath) or _place(candidate, beside) != "elsewhere"
+    return OutsideFile(kind, str(path), candidate, state.st_size, limit, quotable, beside)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
@@ -187,10 +187,10 @@ def located(path: str | Path) -> Place:
     Unreadable
         If there is none, or it is neither a regular file nor a folder.
     """
-    found, beside, state = _looked_up(path, "file")
+    candidate, beside, state = _looked_up(path, "file")
     if not stat.S_ISDIR(state.st_mode):
         _check(state, "file", str(path), state.st_size)
-    return _place(found, beside)
+    return _place(candidate, beside)
 
 
 def _looked_up(path: str | Path, kind: str) -> tuple[Path, Path | None, os.stat_result]:

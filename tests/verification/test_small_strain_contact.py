@@ -152,7 +152,7 @@ def test_punch_on_layer(ratio, base, factor, verification_record):
     assert_kills(check_force, half_space=(force, 1.0))
 
 
-@pytest.mark.parametrize(("poisson_ratio", "factor"), [(0.49, 3.4840), (0.30, 2.4835)])
+@pytest.mark.parametrize(("poisson_ratio", "factor"), [pytest.param(0.49, 3.4840, marks=pytest.mark.slow), (0.30, 2.4835)])
 def test_punch_on_compressible_layer(poisson_ratio, factor):
     force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
     check_force(force, factor / (2 * (1 - poisson_ratio)))
