@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import json
 import os
 import signal
 import subprocess
@@ -126,6 +127,17 @@ def reader_here(monkeypatch: pytest.MonkeyPatch) -> None:
         return Ended(code, words.getvalue())
 
     monkeypatch.setattr(mesh_files, "run_child", read)
+
+
+@pytest.fixture
+def hdf5_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """HDF5 is written in this process; where the child is what is tried, it is started as ever."""
+    from tactsim.dataset.use import export
+
+    def write(store: Path, split: object, waiting: Path, target: Path) -> None:
+        assert not export.main(str(store), str(waiting), json.dumps(split))
+
+    monkeypatch.setattr(export, "_hdf5_apart", write)
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from tactsim.errors import TactsimError
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.networks import LearnedWeights, Network
 
-INPUTS = int(os.environ.get("TACTSIM_FUZZ", "550"))
+INPUTS = int(os.environ.get("TACTSIM_FUZZ", "300"))
 """Of all tests together."""
 MOST_TIME = 10.0
 """In s, of one input."""

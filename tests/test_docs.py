@@ -29,7 +29,7 @@ PAGES = [
 ]
 
 
-LONG = ("guide/run.md", "guide/time.md", "guide/grasp.md", "guide/sensors.md")
+LONG = ("guide/run.md", "guide/time.md", "guide/grasp.md", "guide/sensors.md", "guide/data_sets.md")
 """Pages whose cases take more than ten seconds."""
 
 

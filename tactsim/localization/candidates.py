@@ -53,17 +53,18 @@ class Candidates:
         parts = (self.begins, self.ends, self.radii, self.signals)
         return Candidates(self.kind, *(part[which] for part in parts))
 
-    def overlaps(self, one: int) -> Array:
-        """Which candidates (n,) overlap the given one and so exclude it.
+    def overlaps(self, one: int | Array) -> Array:
+        """Which candidates (n,) overlap the given one and so exclude it; (m, n) for several.
 
         Balls overlap closer than the sum of their radii, straight level tubes where their centre lines come that close.
         """
-        reach = self.radii + self.radii[one]
+        of = one if np.ndim(one) == 0 else np.asarray(one)[:, None]
+        reach = self.radii + self.radii[of]
         if self.kind == "sphere":
-            away = self.begins - self.begins[one]
-            return np.einsum("nk,nk->n", away, away) < reach**2
-        above = np.abs(self.begins[:, 2] - self.begins[one, 2])
-        return (_plan_distance(self.begins[:, :2], self.ends[:, :2], one) < reach) & (above < reach)
+            away = self.begins - self.begins[of]
+            return np.einsum("...k,...k->...", away, away) < reach**2
+        above = np.abs(self.begins[:, 2] - self.begins[of, 2])
+        return (_plan_distance(self.begins[:, :2], self.ends[:, :2], of) < reach) & (above < reach)
 
 
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
@@ -191,8 +192,8 @@ def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> sc
     return scipy.sparse.csr_array((np.concatenate(entries), (np.tile(line, 4), np.concatenate(columns))), shape=shape)
 
 
-def _plan_distance(firsts: Array, lasts: Array, one: int) -> Array:
-    """Distance (n,) in m in plan of every segment from one of them: 0 where they cross."""
+def _plan_distance(firsts: Array, lasts: Array, one: int | Array) -> Array:
+    """Distance (n,) in m in plan of every segment from one of them, (m, n) from several (m, 1): 0 where they cross."""
     begin, end = firsts[one], lasts[one]
     ends = [_from_segment(point, firsts, lasts) for point in (begin, end)]
     ends += [_from_segment(points, begin, end) for points in (firsts, lasts)]

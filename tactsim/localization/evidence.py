@@ -26,6 +26,8 @@ BEGINNINGS = 4
 """Pairs of the coarse grid from which the search on the fine grid begins."""
 DRAWS = 32
 """Bodies drawn near the best pairs, each of which is paired with every other one."""
+ROWS = 64
+"""Bodies that are held against all others at once: enough to count, few enough for the memory."""
 ROUNDS = 2
 """Sweeps of the search; in each, either body of a pair moves to its best place while the other stays."""
 
@@ -183,8 +185,8 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
     evidence = _pair_evidence(
         table.along[:, None], table.along, a=table.stiff[:, None], b=table.stiff, cross=cross, change=change
     )
-    for one in range(len(coarse)):
-        evidence[one, coarse.overlaps(one)] = -np.inf
+    for some in np.array_split(np.arange(len(coarse)), -(-len(coarse) // ROWS)):
+        evidence[some] = np.where(coarse.overlaps(some), -np.inf, evidence[some])
     pairs: list[tuple[int, int]] = []
     for _ in range(BEGINNINGS):
         first, second = (int(k) for k in np.unravel_index(int(evidence.argmax()), evidence.shape))

@@ -51,6 +51,8 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
         corners = mesh.p.T[mesh.t.T]
         edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
         wanted = np.min([*(size(corners[:, i]) for i in range(3)), size(corners.mean(axis=1))], axis=0)
+        if not (wanted > 0).all():
+            raise InputError("the wanted element size is not positive everywhere")
         marked = np.flatnonzero(edges.max(axis=1) > wanted)
         if not len(marked):
             break
@@ -58,7 +60,7 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
             raise InputError(f"the wanted element sizes need more than {MOST_ELEMENTS} elements; take larger ones")
         mesh = mesh.refined(marked)
     else:
-        raise InputError("the mesh does not reach the wanted element size; is the size positive everywhere?")
+        raise InputError("the mesh does not reach the wanted element size")
     middle = mesh.p[1, mesh.t].mean(axis=0)
     regions = len(heights) - 1 - np.searchsorted(heights, middle)
     return quadratic_mesh(_with_rings(mesh.p.T, rings), mesh.t.T.astype(np.int64), regions)

@@ -66,7 +66,7 @@ class TooLarge(Unreadable):
 
 @dataclass(frozen=True)
 class OutsideFile:
-    """A file that may be read: what it is, how the user named it, where it stands and how long it was in bytes.
+    """A file that may be read: what it is, how the user named it, where it was found and how long it was in bytes.
 
     It is ``quotable`` in messages unless a case, which may be a stranger's, names a file that stands anywhere on the machine.
     """
@@ -74,10 +74,16 @@ class OutsideFile:
     kind: str
     named: str
     path: Path
-    place: Place
     size: int
     limit: int
     quotable: bool = True
+    beside: Path | None = None
+    """Folder of the case that names it."""
+
+    @property
+    def place(self) -> Place:
+        """Where it stands, links followed."""
+        return _place(self.path, self.beside)
 
     def read(self) -> bytes:
         """The content.
@@ -149,10 +155,10 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
         If there is none, it is no regular file, or it is too large.
     """
     limit = LIMITS[kind] if limit is None else limit
-    real, place, state = _looked_up(path, kind)
+    candidate, beside, state = _looked_up(path, kind)
     _check(state, kind, str(path), limit)
-    quotable = place != "elsewhere" or not isinstance(path, CasePath)
-    return OutsideFile(kind, str(path), real, place, state.st_size, limit, quotable)
+    quotable = not isinstance(path, CasePath) or _place(candidate, beside) != "elsewhere"
+    return OutsideFile(kind, str(path), candidate, state.st_size, limit, quotable, beside)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
@@ -165,12 +171,12 @@ def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:
     """
     named = f"{one_line(path)} is not a folder with a {kind}"
     try:
-        folder, place, state = _looked_up(path, kind)
+        folder, beside, state = _looked_up(path, kind)
     except Unreadable as error:
         raise Unreadable(f"{named}: {error.reason}", error.reason) from None
     if not stat.S_ISDIR(state.st_mode):
         raise Unreadable(named, "it is not a folder")
-    return folder, place
+    return folder, _place(folder, beside)
 
 
 def located(path: str | Path) -> Place:
@@ -181,14 +187,14 @@ def located(path: str | Path) -> Place:
     Unreadable
         If there is none, or it is neither a regular file nor a folder.
     """
-    _, place, state = _looked_up(path, "file")
+    candidate, beside, state = _looked_up(path, "file")
     if not stat.S_ISDIR(state.st_mode):
         _check(state, "file", str(path), state.st_size)
-    return place
+    return _place(candidate, beside)
 
 
-def _looked_up(path: str | Path, kind: str) -> tuple[Path, Place, os.stat_result]:
-    """The first of the places looked at that holds something, and its state."""
+def _looked_up(path: str | Path, kind: str) -> tuple[Path, Path | None, os.stat_result]:
+    """The first of the places looked at that holds something, the folder of the case that names it, and its state."""
     beside = path.beside if isinstance(path, CasePath) else None
     tried: list[str] = []
     refusal: OSError | ValueError = FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
@@ -200,7 +206,7 @@ def _looked_up(path: str | Path, kind: str) -> tuple[Path, Place, os.stat_result
             refusal = refusal if isinstance(error, FileNotFoundError) else error
             tried += [{Path(): "the working folder", PROGRAM: "what comes with tactsim"}.get(folder, "the folder of the case")]
             continue
-        return candidate, _place(candidate, beside), state
+        return candidate, beside, state
     looked = f"; looked in {' and in '.join(tried)}" if len(tried) > 1 else ""
     raise _refused(kind, str(path), refusal, looked)
 

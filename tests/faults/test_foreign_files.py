@@ -195,14 +195,27 @@ def test_no_case_can_have_the_content_of_another_file_reported(
     assert "hunter2" not in refused("run", str(case), "--out", "out")
 
 
-def test_no_reader_of_meshes_reports_the_content_of_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "work").mkdir()
-    for suffix in (".obj", ".inp", ".mesh", ".msh", ".bdf", ".vtk", ".stl", ".ply", ".su2", ".off", ".vtu", ".mdpa"):
-        hidden = tmp_path / f"shadow{suffix}"
-        hidden.write_text(f"{SECRET}\n" * 3, encoding="utf-8")
-        with pytest.raises(TactsimError) as caught:
-            read_foreign(CasePath(str(hidden), tmp_path / "work"))
-        assert "hunter2" not in str(caught.value)
+def assert_not_reported(folder: Path, suffix: str) -> None:
+    """Refuse a reader of meshes that quotes a file anywhere on the machine which a case names."""
+    (folder / "work").mkdir(exist_ok=True)
+    hidden = folder / f"shadow{suffix}"
+    hidden.write_text(f"{SECRET}\n" * 3, encoding="utf-8")
+    with pytest.raises(TactsimError) as caught:
+        read_foreign(CasePath(str(hidden), folder / "work"))
+    assert "hunter2" not in str(caught.value)
+
+
+@pytest.mark.usefixtures("reader_here")
+@pytest.mark.parametrize(
+    "suffix", [".obj", ".inp", ".mesh", ".msh", ".bdf", ".vtk", ".stl", ".ply", ".su2", ".off", ".vtu", ".mdpa"]
+)
+def test_no_reader_of_meshes_reports_the_content_of_another_file(tmp_path: Path, suffix: str) -> None:
+    assert_not_reported(tmp_path, suffix)
+
+
+@pytest.mark.parametrize("suffix", [".inp", ".vtu"])
+def test_no_reader_in_a_process_of_its_own_reports_it_either(tmp_path: Path, suffix: str) -> None:
+    assert_not_reported(tmp_path, suffix)
 
 
 def test_a_table_of_text_is_not_quoted_even_beside_the_case(tmp_path: Path) -> None:

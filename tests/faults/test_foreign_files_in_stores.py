@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -29,9 +30,24 @@ def swept(tmp_path: Path, samples: int, *options: str) -> int:
     return main(["sweep", case, "--out", str(tmp_path / "s.zarr"), "--samples", str(samples), "--quiet", *options])
 
 
-def test_card_and_figures_are_written_anew(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    store = tmp_path / "s.zarr"
-    assert swept(tmp_path, 3) == 0
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of three samples that stays as it is."""
+    folder = tmp_path_factory.mktemp("kept")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+        patch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
+        assert swept(folder, 3) == 0
+    return folder / "s.zarr"
+
+
+@pytest.fixture
+def store(kept: Path, tmp_path: Path) -> Path:
+    """The same to be gone on with."""
+    return Path(shutil.copytree(kept, tmp_path / "s.zarr"))
+
+
+def test_card_and_figures_are_written_anew(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert check(store).findings == ()
     (store / "figures/spread.png").unlink()
     assert [finding.kind for finding in check(store).findings] == ["file"]
@@ -44,9 +60,9 @@ def test_card_and_figures_are_written_anew(tmp_path: Path, capsys: pytest.Captur
 
 @pytest.mark.parametrize("name", ["README.md", "figures/spread.png"])
 @pytest.mark.parametrize("before", [False, True])
-def test_a_file_of_the_user_is_kept(name: str, before: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    store = tmp_path / "s.zarr"
-    assert swept(tmp_path, 3) == 0
+def test_a_file_of_the_user_is_kept(
+    name: str, before: bool, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     if before:  # as if it had been there from the beginning
         (store / OWN_LIST).unlink()
         (store / "README.md").unlink()
@@ -58,9 +74,9 @@ def test_a_file_of_the_user_is_kept(name: str, before: bool, tmp_path: Path, cap
     assert check(store).counts["done"] == 6
 
 
-def test_files_of_an_earlier_version_are_known_by_the_card(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    store = tmp_path / "s.zarr"
-    assert swept(tmp_path, 3) == 0
+def test_files_of_an_earlier_version_are_known_by_the_card(
+    store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (store / OWN_LIST).unlink()
     assert check(store).findings == ()
     assert "cannot be verified" in check(store).notes[-1]
@@ -70,9 +86,7 @@ def test_files_of_an_earlier_version_are_known_by_the_card(tmp_path: Path, capsy
 
 
 @pytest.mark.parametrize("text", ["mine", "[1]", json.dumps({"schema": "other"}), "[" * 10_000])
-def test_a_list_of_another_program_is_kept(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    store = tmp_path / "s.zarr"
-    assert swept(tmp_path, 3) == 0
+def test_a_list_of_another_program_is_kept(text: str, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (store / OWN_LIST).write_text(text)
     assert swept(tmp_path, 6, "--resume") == 0
     assert (store / OWN_LIST).read_text() == text
@@ -80,9 +94,7 @@ def test_a_list_of_another_program_is_kept(text: str, tmp_path: Path, capsys: py
     assert main(["data", "check", str(store)]) in (4, 5)
 
 
-def test_a_journal_of_another_program_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    store = tmp_path / "s.zarr"
-    assert swept(tmp_path, 3) == 0
+def test_a_journal_of_another_program_is_kept(store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (store / ".journal").write_text("dear diary")
     assert swept(tmp_path, 6, "--resume") == 5
     assert "is no journal of tactsim; move it away" in capsys.readouterr().err

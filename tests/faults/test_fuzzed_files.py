@@ -1,6 +1,6 @@
 """Damaged files of every kind that is read: each is read, or refused by an error of ours, within seconds and a bounded memory.
 
-Some 550 inputs, the same every time. A long run takes the number of inputs from the environment::
+Some 300 inputs, the same every time. A long run takes the number of inputs from the environment::
 
     TACTSIM_FUZZ=20000 pytest tests/faults/test_fuzzed_files.py tests/faults/test_fuzzed_cases.py
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import json
 import os
 from collections.abc import Iterator
 from contextlib import suppress
@@ -34,15 +33,10 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+def in_this_process(monkeypatch: pytest.MonkeyPatch, hdf5_here: None) -> None:
     """HDF5 is written here instead of in a process of its own, whose end is tried apart; nothing waits for the disk."""
     monkeypatch.setattr(os, "fsync", lambda descriptor: None)
     monkeypatch.setattr(export, "SHARD_SAMPLES", 10)
-
-    def inline(store: Path, split: object, waiting: Path, target: Path) -> None:
-        assert not export.main(str(store), str(waiting), json.dumps(split))
-
-    monkeypatch.setattr(export, "_hdf5_apart", inline)
 
 
 def exported(store: Path, place: Path) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -29,7 +30,7 @@ SAMPLES, MORE = 4, 6
 PLAIN = TEXT.replace("  reading: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}}\n", "").replace(
     "samples_per_specimen: 3", "samples_per_specimen: 2"
 )
-STRIDE, CREATION_STRIDE = 89, 11
+STRIDE, CREATION_STRIDE = 149, 11
 """Steps between those that the quick run tries, of a sweep and of its creation; primes, so that they meet every kind of step."""
 
 
@@ -69,7 +70,11 @@ def place_of(folder: Path, number: int, earlier: int = 0) -> Path:
     (folder / str(number)).mkdir()
     place = folder / str(number) / "s.zarr"
     if earlier:
-        assert swept(place, earlier) == 0
+        kept = folder / "earlier" / "s.zarr"
+        if not kept.exists():
+            kept.parent.mkdir()
+            assert swept(kept, earlier) == 0
+        shutil.copytree(kept, place)
     return place
 
 

@@ -49,7 +49,7 @@ LAYERS = [
     (1.0, "slipping", 0.25, 2.1815, None),
     (1.0, "slipping", 0.50, 2.0647, None),
 ]
-QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "fixed", 0.50), (1.0, "slipping", 0.50)]
+QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "slipping", 0.50)]
 QUICK_PUNCH_LAYERS = [(1.0, "fixed", 3.6187), (1.0, "slipping", 2.1986)]
 PUNCH_LAYERS = [(0.2, "fixed", 1.2806), (1.0, "fixed", 3.6187), (2.0, "fixed", 9.1495), (1.0, "slipping", 2.1986)]
 
@@ -152,7 +152,7 @@ def test_punch_on_layer(ratio, base, factor, verification_record):
     assert_kills(check_force, half_space=(force, 1.0))
 
 
-@pytest.mark.parametrize(("poisson_ratio", "factor"), [(0.49, 3.4840), (0.30, 2.4835)])
+@pytest.mark.parametrize(("poisson_ratio", "factor"), [pytest.param(0.49, 3.4840, marks=pytest.mark.slow), (0.30, 2.4835)])
 def test_punch_on_compressible_layer(poisson_ratio, factor):
     force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
     check_force(force, factor / (2 * (1 - poisson_ratio)))

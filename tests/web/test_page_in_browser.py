@@ -301,7 +301,7 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
 
 
 @contextmanager
-def sender(port: int, count: int, rate: float = 60.0) -> Iterator[None]:
+def sender(port: int, count: int, rate: float = 20.0) -> Iterator[None]:
     """A sensor of ``count`` x ``count`` taxels that sends frames, now and then a malformed one."""
     stop = threading.Event()
 

@@ -115,7 +115,7 @@ class HypothesesEstimator(Estimator):
             )
         balls = ball_candidates(readings.response, readings.block_size, _steps(self.radii), gap=self.gap).signals
         fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
-        explained = {str(name): [self._explained(name, fit, readings) for fit in fits] for name in self.classes}
+        explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}
         densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
         densities["none"] = [fit.nothing for fit in fits]
         probabilities = self._probabilities(
@@ -139,13 +139,20 @@ class HypothesesEstimator(Estimator):
         other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
         return [same, other] if self.factor_spread > 0 else [same]
 
-    def _explained(self, name: str, fit: ReferenceFit, readings: Readings) -> tuple[float, Explanation, Candidates]:
+    def _explained_by(
+        self, name: str, fits: list[ReferenceFit], response: TissueResponse, size: Array
+    ) -> list[tuple[float, Explanation, Candidates]]:
+        """What a class explains of the change of each fit."""
+        bodies = self._bodies(name, response, size)
+        return [self._explained(name, fit, bodies) for fit in fits]
+
+    def _explained(
+        self, name: str, fit: ReferenceFit, bodies: tuple[Candidates, Candidates | None]
+    ) -> tuple[float, Explanation, Candidates]:
         """Log density of the change of a fit under a class, the bodies that explain it, and the candidates in deviations."""
         check_time()
-        assert readings.response is not None  # checked by estimate
         candidates, coarse = (
-            bodies and replace(bodies, signals=whitened(fit.factor * bodies.signals, fit.covariance))
-            for bodies in self._bodies(name, readings.response, readings.block_size)
+            some and replace(some, signals=whitened(fit.factor * some.signals, fit.covariance)) for some in bodies
         )
         assert candidates is not None  # only the coarse ones may be missing
         change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)

@@ -152,6 +152,7 @@ def test_hdf5_holds_the_same(kept: Path, tmp_path: Path) -> None:
         assert file["failed/sample"].shape == (0,)
 
 
+@pytest.mark.usefixtures("hdf5_here")
 def test_an_export_reports_what_failed(store: Path, tmp_path: Path) -> None:
     (store / "README.md").write_text("# A small sweep — its card\n", encoding="utf-8")
     group = Store.open(store, writing=True).group
@@ -300,6 +301,7 @@ def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Sig
     assert f"| done | {computed} |" in (place / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("hdf5_here")
 def test_an_export_goes_on_after_one_that_was_broken_off(kept: Path, tmp_path: Path) -> None:
     for name in ("flat", "whole.h5"):
         waiting = tmp_path / f".{name}.partial"

@@ -14,7 +14,7 @@ PUNCH = {
     "specimen": {"material": {"kind": "neo_hookean", "c10": 1668.0}, "thickness": 6.154e-3, "radius": 14.73e-3},
     "body": {"kind": "punch", "radius": 4.96e-3, "fillet": 0.3722e-3},
     "contact": {"kind": "coulomb", "friction": 0.0},
-    "displacement": 1.141e-3,
+    "displacement": 1.1235e-3,
     "mesh": {"growth": 0.6, "finest": 0.1984e-3},
     "stop": "displacement",
 }
