@@ -32,6 +32,9 @@ NEAR = 0.1
 """Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
 CONTRACTION = 0.3
 """A step with an old factor that leaves more than this part of the residual is dropped."""
+MOST_FURTHER = 5.0
+"""A new tangent and factor cost as much as so many steps with an old one, in sections of 8 000 and of 32 000 unknowns: where
+the last contraction promises more of them, a new one is made."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
 
@@ -195,7 +198,9 @@ class _Solution:
             if not after.residual < CONTRACTION * state.residual:
                 break
             self._advance_iterates(now, step, 1.0)
-            state = after
+            contraction, state = after.residual / state.residual, after
+            if state.residual * contraction**MOST_FURTHER > self._goal:
+                break
         return state
 
     def _give_up(self, state: NewtonState) -> NoReturn:

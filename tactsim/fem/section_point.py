@@ -92,19 +92,25 @@ def add_history_stress(F, S, linear, P):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True, fastmath={"contract"})
+def linear_moduli(shear_modulus, stiffness, volume_slope, A):  # type: ignore[no-untyped-def]
+    """What ``moduli`` gives where the material is linear."""
+    volume_slope[0], volume_slope[1], volume_slope[2], volume_slope[3], volume_slope[4] = 1.0, 0.0, 0.0, 1.0, 1.0
+    for m in range(5):
+        for n in range(5):
+            A[m, n] = (stiffness - 2.0 / 3.0 * shear_modulus) * volume_slope[m] * volume_slope[n]
+        A[m, m] += shear_modulus * (1.0 + volume_slope[m])
+    A[1, 2] += shear_modulus
+    A[2, 1] += shear_modulus
+
+
+@numba.njit(cache=True, fastmath={"contract"})
 def moduli(F, W, linear, volume, volume_slope, A):  # type: ignore[no-untyped-def]
     """dP/dF at fixed pressure into A (5, 5), slope of the volume change into ``volume_slope`` (5,); W are the five slopes of the
     energy and ``volume`` the pressure, the compliance and the stiffness against a change of volume that it does not ask for."""
     t, (W1, W2, W11, W12, W22) = F[4], W
     pressure, compliance, stiffness = volume
     if linear:
-        volume_slope[0], volume_slope[1], volume_slope[2], volume_slope[3], volume_slope[4] = 1.0, 0.0, 0.0, 1.0, 1.0
-        for m in range(5):
-            for n in range(5):
-                A[m, n] = (stiffness - 2.0 / 3.0 * W1) * volume_slope[m] * volume_slope[n]
-            A[m, m] += W1 * (1.0 + volume_slope[m])
-        A[1, 2] += W1
-        A[2, 1] += W1
+        linear_moduli(W1, stiffness, volume_slope, A)
         return
     invariants = deformation_invariants(F)
     area, slope, square, J, I1, I2, a1 = invariants
