@@ -87,6 +87,9 @@ def test_overlapping_bodies_are_reported():
     apart = np.abs(tubes.begins[parallel, 1] - tubes.begins[parallel[0], 1])
     np.testing.assert_array_equal(meets[parallel], apart < 2 * tubes.radii[0])
     assert meets[np.flatnonzero(level & ~along)].any()
+    for bodies in (candidates, tubes):
+        some = np.arange(0, len(bodies), 7)
+        np.testing.assert_array_equal(bodies.overlaps(some), [bodies.overlaps(int(k)) for k in some])
 
 
 def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
