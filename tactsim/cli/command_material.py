@@ -19,9 +19,11 @@ DESCRIPTION = """\
 Without an argument lists the materials that ship with tactsim. With a name, or a case file,
 prints the constants, the small-strain moduli and the range of stretch in which each material
 is stable. With --fit reads a uniaxial curve (CSV with a header such as
-"stretch,nominal_stress_kPa"), fits every form of the energy, and prints the lines to put into
-a case file, each constant with its interval of 95 %. --save draws the curves. With --relaxation reads what relaxes at a held
-deformation (CSV with a header such as "time [s], stress [kPa]") and prints its Prony series.
+"strain [%], nominal stress [kPa]", also as a testing machine writes it), fits every form of
+the energy, and prints the lines to put into a case file, each constant with its interval of
+95 %. A curve should hold the strains that the tissue will undergo and few others: --strains.
+--save draws the curves. With --relaxation reads what relaxes at a held deformation (CSV with
+a header such as "time [s], stress [kPa]") and prints its Prony series.
 """
 EXAMPLES = """\
 examples:
@@ -29,6 +31,7 @@ examples:
   tactsim material icf_stable --save icf.png
   tactsim material cases/annulus_icf.yaml
   tactsim material --fit my_rubber.csv --form stable --save fit.png
+  tactsim material --fit my_rubber.csv --strains 0.05 1 --absolute
   tactsim material --relaxation held.csv --rise "0.2 s"
 """
 
@@ -40,6 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--fit", metavar="CURVE.csv", type=Path, help="fit a measured uniaxial curve")
     what.add_argument("--relaxation", metavar="CURVE.csv", type=Path, help="fit a Prony series to a measured relaxation")
     parser.add_argument("--rise", metavar="TIME", help="with --relaxation: how long the deformation rose; a step without it")
+    strains = "with --fit: use the curve between two strains only, such as 0 1"
+    parser.add_argument("--strains", nargs=2, type=float, metavar=("FROM", "TO"), help=strains)
     parser.add_argument("--absolute", action="store_true", help="with --fit: noise of one size, not in proportion to the stress")
     parser.add_argument("--form", metavar="FORM", help="with --fit: report this form of the energy only")
     parser.add_argument("--save", metavar="FILE.png", type=Path, help="save the curves")
@@ -56,14 +61,15 @@ def run(arguments: argparse.Namespace) -> int:
     _check_image(arguments.save)
     if arguments.rise is not None and arguments.relaxation is None:
         raise InputError("--rise goes with --relaxation")
-    if arguments.relaxation is not None and (arguments.form or arguments.save or arguments.absolute):
-        raise InputError("--form, --absolute and --save go with --fit; --relaxation prints its Prony series")
+    if arguments.relaxation is not None and (arguments.form or arguments.save or arguments.absolute or arguments.strains):
+        raise InputError("--form, --strains, --absolute and --save go with --fit; --relaxation prints its Prony series")
     if arguments.relaxation is not None:
         return _relaxation(arguments)
     if arguments.fit is not None:
         return _fit(arguments)
-    if arguments.form is not None or arguments.absolute:
-        raise InputError(f"{'--form' if arguments.form else '--absolute'} goes with --fit")
+    given = [name for name in ("form", "absolute", "strains") if getattr(arguments, name)]
+    if given:
+        raise InputError(f"--{given[0]} goes with --fit")
     if arguments.material is None:
         if arguments.save is not None:
             raise InputError("--save needs a material to draw")
@@ -109,9 +115,14 @@ def _relaxation(arguments: argparse.Namespace) -> int:
 def _fit(arguments: argparse.Namespace) -> int:
     from tactsim.errors import ConvergenceError, InvalidQuantity
     from tactsim.identification.uniaxial import FORMS, fit_uniaxial, spread_of_forms
+    from tactsim.identification.uniaxial_certainty import wrong_signs
     from tactsim.identification.uniaxial_data import read_uniaxial_curve
 
     curve = read_uniaxial_curve(arguments.fit)
+    if arguments.strains is not None:
+        curve = curve.within(*arguments.strains)
+    for warning in wrong_signs(curve):
+        console.note(f"note: {warning}")
     fits: list[UniaxialFit] = []
     refused: list[str] = []
     for form in [arguments.form] if arguments.form else FORMS:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tactsim.errors import InvalidQuantity
@@ -20,11 +20,8 @@ MOST_LINES, MOST_CELLS = 3_000_000, 10_000_000
 """Lines and cells of a table, each of which takes some 50 bytes in memory: days of a signal of 10 Hz."""
 LINE_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 """Characters at which text is cut into lines."""
-SEPARATORS = (
-    "columns are separated by semicolons or tabs; needed: columns are separated by commas and numbers have decimal points, "
-    "as CSV in English is written"
-)
-"""What is said of a table of a program that writes decimal commas."""
+SEPARATORS = (",", ";", "\t")
+"""Of columns, the first that stands in the first line; where it is no comma, a comma is that of a decimal fraction."""
 NOT_SHOWN = "(not shown, as the file is no table beside the case or in the working folder)"
 """What a message says instead of the content of another file."""
 LONGEST_CELL = 80
@@ -42,12 +39,17 @@ class Table:
     lines: tuple[tuple[int, str], ...]
     quotable: bool
     numeric: bool
+    separator: str = ","
 
     @property
     def header(self) -> list[str]:
         """The cells of the first line."""
         number, line = self.lines[0]
         return self.cells(number, line)
+
+    def below(self, number: int) -> Table:
+        """The table whose header is the line of this number, counted from 0, of those that are left."""
+        return replace(self, lines=self.lines[number:])
 
     def cells(self, number: int, line: str) -> list[str]:
         """The cells of a line, without blanks around them.
@@ -58,7 +60,7 @@ class Table:
             If the line is no row of a table.
         """
         try:
-            return [cell.strip() for cell in next(csv.reader([line]), [])]
+            return [cell.strip() for cell in next(csv.reader([line], delimiter=self.separator), [])]
         except csv.Error as error:
             raise InvalidQuantity(f"{self.place(number)}: {one_line(error)}; allowed: one number per column") from None
 
@@ -87,11 +89,9 @@ class Table:
 
     def _row(self, number: int, line: str, columns: Sequence[str]) -> list[float]:
         cells, place = self.cells(number, line), self.place(number)
-        if ";" in line or "\t" in line:
-            raise InvalidQuantity(f"{place}: {SEPARATORS}")
         if len(cells) != len(columns):
             raise InvalidQuantity(f"{place}: {len(cells)} values in a row of {len(columns)} columns")
-        values = [_number(cell) for cell in cells]
+        values = [_number(cell, self.separator) for cell in cells]
         for value, cell, name in zip(values, cells, columns, strict=True):
             if not math.isfinite(value):
                 raise InvalidQuantity(f"{place}: {name} is {self.quoted(cell)}; allowed: a finite number")
@@ -101,35 +101,36 @@ class Table:
 def read_table(path: str | Path) -> Table:
     """The table in a CSV file in UTF-8; blank lines and lines that begin with ``#`` are skipped.
 
+    Columns are separated by commas, or by semicolons or tabs, with decimal commas or points, as other languages write them.
+
     Raises
     ------
     StorageError
         If the file cannot be read.
     InvalidQuantity
-        If nothing is left, it is too long, or its columns are not separated by commas.
+        If nothing is left, or it is too long.
     """
     file = opened(path, "table")
     text, name = file.text(), one_line(path)
-    if sum(map(text.count, LINE_ENDS)) > MOST_LINES or text.count(",") > MOST_CELLS:
+    if sum(map(text.count, LINE_ENDS)) > MOST_LINES or max(map(text.count, SEPARATORS)) > MOST_CELLS:
         raise InvalidQuantity(f"{name}: more than {MOST_LINES} lines or {MOST_CELLS} cells; leave out what is not needed")
     rows = ((number, line) for number, line in enumerate(text.splitlines(), 1))
     lines = tuple((number, line) for number, line in rows if line.strip() and not line.lstrip().startswith("#"))
     if not lines:
         raise InvalidQuantity(f"{name}: no header and no data")
-    if "," not in lines[0][1] and (";" in lines[0][1] or "\t" in lines[0][1]):
-        raise InvalidQuantity(f"{name}: {SEPARATORS}")
-    return Table(str(path), lines, file.quotable, any(map(_is_row, (line for _, line in lines[1:]))))
+    separator = next((one for one in SEPARATORS if one in lines[0][1]), ",")
+    return Table(str(path), lines, file.quotable, any(_is_row(line, separator) for _, line in lines[1:]), separator)
 
 
-def _is_row(line: str) -> bool:
+def _is_row(line: str, separator: str) -> bool:
     """Whether a line consists of two numbers or more, as every table has and no other text."""
-    cells = line.split(",")
-    return len(cells) > 1 and all(math.isfinite(_number(cell)) for cell in cells)
+    cells = line.split(separator)
+    return len(cells) > 1 and all(math.isfinite(_number(cell, separator)) for cell in cells)
 
 
-def _number(cell: str) -> float:
+def _number(cell: str, separator: str) -> float:
     """The number in a cell, NaN if there is none."""
     try:
-        return float(cell)
+        return float(cell if separator == "," else cell.replace(",", ".", 1))
     except ValueError:
         return math.nan

@@ -10,7 +10,14 @@ from pydantic import ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
-from tactsim.identification.uniaxial_certainty import BARELY_STRETCHED, UniaxialCertainty, certainty, one_sided
+from tactsim.identification.uniaxial_certainty import (
+    BARELY_STRETCHED,
+    UniaxialCertainty,
+    certainty,
+    one_sided,
+    pressure_text,
+    wrong_signs,
+)
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.identification.uniaxial_least_squares import LeastSquares
 from tactsim.materials.homogeneous import cauchy_stress, nominal_stress, principal_invariants, uniaxial
@@ -21,7 +28,6 @@ from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
 from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.stability_range import SCANNED, StabilityReport, stability_range
-from tactsim.units import format_quantity
 
 
 @dataclass(frozen=True)
@@ -71,12 +77,12 @@ class UniaxialFit:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the curve leaves open of this form."""
-        return (*self.certainty.warnings(self.max_relative_error), *one_sided(self.curve))
+        return (*wrong_signs(self.curve), *self.certainty.warnings(self.max_relative_error), *one_sided(self.curve))
 
     @property
     def case_line(self) -> str:
         """The material of a case file."""
-        entries = ", ".join(f"{name}: {format_quantity(value, 'Pa')}" for name, value in named_terms(self.material).items())
+        entries = ", ".join(f"{name}: {pressure_text(value)}" for name, value in named_terms(self.material).items())
         if "coefficients" in type(self.material).model_fields:
             entries = f"coefficients: {{{entries}}}"
         return f"{{kind: {self.material.kind}, {entries}}}"

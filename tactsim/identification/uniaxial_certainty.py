@@ -15,6 +15,8 @@ DETERMINED = 0.25
 """Assumption: a curve determines a constant if half its interval is worth less than this part of the stress (rms)."""
 AT_REST = ("c10", "c01")
 """Twice the sum of these is the shear modulus at rest."""
+ROUND_OFF = 1e-9
+"""Part of an interval below which one of its ends is 0."""
 BARELY_STRETCHED = 0.05
 """Assumption: a curve that ends within this strain of rest holds nothing of that side."""
 
@@ -44,7 +46,7 @@ class UniaxialCertainty:
         if self.noise.freedom <= LEAST_FREEDOM:
             warnings.append(
                 f"the residuals come in runs of one sign: the form does not follow the curve, which it misses by up to "
-                f"{largest_error:.1%}; the intervals are wide for it and hold for this form only"
+                f"{largest_error:.1%}; the intervals are wide for it and hold for this form only: take fewer strains"
             )
         return tuple(warnings)
 
@@ -79,6 +81,19 @@ def certainty(squares: LeastSquares, design: Array, target: Array, names: tuple[
     )
 
 
+def wrong_signs(curve: UniaxialCurve) -> tuple[str, ...]:
+    """Names points whose stress has another sign than their strain, in words: a fit of relative errors is ruled by them."""
+    wrong = np.flatnonzero(curve.nominal_stress * (curve.stretch - 1) < 0)
+    if not wrong.size:
+        return ()
+    at, stress = curve.stretch[wrong[0]], pressure_text(float(curve.nominal_stress[wrong[0]]))
+    return (
+        f"{wrong.size} of {curve.stretch.size} points have a stress against their strain, such as {stress} at a strain of "
+        f"{at - 1:.3g}, of slack or of an offset of the load cell; they rule a fit of relative errors: leave them out or fit "
+        "absolute errors",
+    )
+
+
 def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:
     """What a curve of one sign leaves open, in words."""
     if curve.stretch.max() < 1 + BARELY_STRETCHED:
@@ -92,5 +107,17 @@ def _range(ends: tuple[float, float]) -> str:
     """Both ends in one unit, three digits each."""
     if not np.isfinite(ends).all():
         return "anything"
-    unit, factor = next(((u, f) for u, f in (("MPa", 1e-6), ("kPa", 1e-3)) if max(map(abs, ends)) * f >= 1), ("Pa", 1.0))
-    return f"{ends[0] * factor:.3g} to {ends[1] * factor:.3g} {unit}"
+    largest = max(map(abs, ends))
+    unit, factor = _unit(largest)
+    low, high = (f"{(0.0 if abs(end) < ROUND_OFF * largest else end) * factor:.3g}" for end in ends)
+    return f"{low} to {high} {unit}"
+
+
+def pressure_text(value: float) -> str:
+    """A constant as a case file has it, five digits; never in mPa, a letter from MPa."""
+    unit, factor = _unit(abs(value))
+    return f"{value * factor:.5g} {unit}"
+
+
+def _unit(size: float) -> tuple[str, float]:
+    return next(((unit, factor) for unit, factor in (("MPa", 1e-6), ("kPa", 1e-3)) if size * factor >= 1), ("Pa", 1.0))

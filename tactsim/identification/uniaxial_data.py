@@ -15,6 +15,8 @@ from tactsim.outside.text import one_line
 from tactsim.units import parse_quantity
 
 FEWEST_POINTS = 3
+MOST_PREAMBLE = 100
+"""Lines above a header in which a testing machine may say what was tested."""
 
 STRETCH_COLUMNS = ("stretch", "strain", "engineering_strain")
 STRESS_COLUMNS = ("stress", "nominal_stress", "engineering_stress", "true_stress", "cauchy_stress")
@@ -57,9 +59,26 @@ class UniaxialCurve:
         object.__setattr__(self, "stretch", stretch[order])
         object.__setattr__(self, "nominal_stress", stress[order])
 
+    def within(self, least: float, largest: float) -> UniaxialCurve:
+        """The part of the curve between two strains, stretch - 1.
+
+        Raises
+        ------
+        InvalidQuantity
+            If too little is left.
+        """
+        if not least < largest:
+            raise InvalidQuantity(f"strains from {least:g} to {largest:g}; allowed: from the lower one to the higher one")
+        kept = (self.stretch >= 1 + least) & (self.stretch <= 1 + largest)
+        where = f"{self.source}, strains {least:g} to {largest:g}"
+        return UniaxialCurve(self.stretch[kept], self.nominal_stress[kept], where)
+
 
 def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     """The curve in a CSV file: a header such as ``strain [%], nominal stress [kPa]``, rows in any order, ``#`` before comments.
+
+    What a testing machine writes above the header is passed over. Where a file holds true values beside nominal ones, the nominal
+    ones are read.
 
     The first column may be ``stretch``, ``strain`` or ``engineering strain`` (with ``%`` for percent); the second ``stress``,
     ``nominal stress``, ``engineering stress``, ``true stress`` or ``cauchy stress``, with its unit in brackets or after ``_``.
@@ -73,7 +92,7 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     InvalidQuantity
         If it holds no usable curve, with file and line.
     """
-    table, name = read_table(path), one_line(path)
+    table, name = _below_preamble(read_table(path)), one_line(path)
     strain_at, strain_name, percent = _column(table, STRETCH_COLUMNS)
     stress_at, stress_name, unit = _column(table, STRESS_COLUMNS)
     factor = _stress_factor(table, stress_name, unit)
@@ -87,6 +106,15 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     return UniaxialCurve(stretch, nominal, name)
 
 
+def _below_preamble(table: Table) -> Table:
+    """The table below the first line that names a strain and a stress; all of it if none does."""
+    for number, (at, line) in enumerate(table.lines[:MOST_PREAMBLE]):
+        cells = [cell.lower() for cell in table.cells(at, line)]
+        if any("strain" in cell or "stretch" in cell for cell in cells) and any("stress" in cell for cell in cells):
+            return table.below(number)
+    return table
+
+
 def _column(table: Table, allowed: tuple[str, ...]) -> tuple[int, str, str]:
     """Position, name and unit text of the one column whose name is allowed."""
     columns = []
@@ -97,6 +125,9 @@ def _column(table: Table, allowed: tuple[str, ...]) -> tuple[int, str, str]:
             if match:
                 columns.append((position, name, match["unit"] or ""))
                 break
+    nominal = [one for one in columns if not one[1].startswith(("true", "cauchy"))]
+    if len(columns) > 1 and len(nominal) == 1:
+        columns = nominal
     if len(columns) != 1:
         header = table.quoted_header(", ".join(table.header))
         needed = f"{', '.join(allowed)}, like 'strain [%], nominal stress [kPa]'"

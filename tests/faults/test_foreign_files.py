@@ -234,13 +234,18 @@ def test_headers_as_instruments_write_them(tmp_path: Path, header: str) -> None:
     np.testing.assert_allclose(curve.nominal_stress, [2e3, 4e3, 6e3])
 
 
-@pytest.mark.parametrize(
-    "text", ["strain [%];stress [kPa]\n0,5;1,5\n", "strain [%]\tstress [kPa]\n0,5\t1,5\n", CURVE + "0,5;1,5\n"]
-)
-def test_decimal_commas_are_reported(tmp_path: Path, text: str) -> None:
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_decimal_commas_are_read_where_columns_are_separated_otherwise(tmp_path: Path, separator: str) -> None:
     path = tmp_path / "a.csv"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InvalidQuantity, match="columns are separated by commas and numbers have decimal points"):
+    rows = ("strain [%];stress [kPa]", "0,5;1,5", "1,5;4,5", "2;6")
+    path.write_text("\n".join(rows).replace(";", separator), encoding="utf-8")
+    np.testing.assert_allclose(read_uniaxial_curve(path).stretch, [1.005, 1.015, 1.02])
+
+
+def test_decimal_commas_among_commas_are_reported(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(CURVE + "0,5;1,5\n", encoding="utf-8")
+    with pytest.raises(InvalidQuantity, match="3 values in a row of 2 columns"):
         read_uniaxial_curve(path)
 
 

@@ -148,6 +148,7 @@ def test_a_curve_in_compression_alone_leaves_tension_open(
         (["missing.yaml"], 5, "cannot read the case file"),
         (["--save", "x.png"], 2, "--save needs a material"),
         (["icf_stable", "--save", "x.pdf"], 2, "must end in .png"),
+        (["--strains", "0", "1"], 2, "--strains goes with --fit"),
         (["--absolute"], 2, "--absolute goes with --fit"),
         (["--form", "stable"], 2, "--form goes with --fit"),
         (["--fit", "missing.csv"], 5, "missing.csv"),
@@ -155,7 +156,7 @@ def test_a_curve_in_compression_alone_leaves_tension_open(
         (["--relaxation", "missing.csv"], 5, "missing.csv"),
         (["icf_stable", "--rise", "1 s"], 2, "--rise goes with --relaxation"),
         (["--relaxation", "x.csv", "--rise", "1 mm"], 2, "'1 mm'"),
-        (["--relaxation", "x.csv", "--save", "x.png"], 2, "--form, --absolute and --save go with --fit"),
+        (["--relaxation", "x.csv", "--save", "x.png"], 2, "--form, --strains, --absolute and --save go with --fit"),
     ],
 )
 def test_what_cannot_be_answered(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InvalidQuantity, StorageError
+from tactsim.identification.uniaxial_certainty import wrong_signs
 from tactsim.identification.uniaxial_data import UniaxialCurve, read_uniaxial_curve
 
 
@@ -103,7 +104,6 @@ HEADER = "stretch,nominal_stress_kPa\n"
         ("stretch,force_N\n" + ROWS, "exactly one column of stress, nominal_stress"),
         ("stretch,strain,nominal_stress_kPa\n0.7,-0.3,-3\n", "exactly one column of stretch"),
         ("stretch_mm,nominal_stress_kPa\n" + ROWS, "column 'stretch' has the unit 'mm': stretch and strain are dimensionless"),
-        ("stretch;nominal_stress_kPa\n0,7;-3\n", "columns are separated by commas"),
         (HEADER + "-30,-3\n-20,-2\n-10,-1\n", "stretch = -30; it must be > 0"),
         (HEADER + "0.7,3\n0.8,2\n0.9,1\n", "tension positive, compression negative"),
         (HEADER + "0.7,0\n0.8,0\n0.9,0\n", "tension positive, compression negative"),
@@ -141,3 +141,40 @@ def test_a_curve_is_a_copy_sorted_by_stretch():
     curve = UniaxialCurve(stretch, np.array([-1.0, -3, -2]), "here")
     np.testing.assert_array_equal(stretch, [0.9, 0.7, 0.8])
     np.testing.assert_array_equal(curve.nominal_stress, [-3, -2, -1])
+
+
+MACHINE = """Specimen Width (mm);6;;;
+Standard;ASTM D412;;;
+;;;;
+Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress (MPa)
+0,2;0,0436;-0,00098;0,0446;-0,00094
+0,8;0,1670;0,01101;0,1818;0,009315
+1,4;0,2762;0,02008;0,3181;0,01524
+2,0;0,3746;0,03110;0,4545;0,021385
+"""
+
+
+@pytest.mark.parametrize("decimal", [",", "."])
+def test_the_file_of_a_testing_machine_is_read_as_it_is(decimal, tmp_path):
+    """Lines above the header, semicolons, decimal commas, true values beside nominal ones."""
+    path = tmp_path / "machine.csv"
+    path.write_text(MACHINE.replace(",", decimal), encoding="utf-8")
+    curve = read_uniaxial_curve(path)
+    np.testing.assert_allclose(curve.stretch, [1.0446, 1.1818, 1.3181, 1.4545], rtol=1e-12)
+    np.testing.assert_allclose(curve.nominal_stress, [-940, 9315, 15240, 21385], rtol=1e-12)
+    [words] = wrong_signs(curve)
+    assert "1 of 4 points have a stress against their strain, such as -940 Pa at a strain of 0.0446" in words
+    part = curve.within(0.1, 1)
+    assert part.stretch.size == 3
+    assert wrong_signs(part) == ()
+    with pytest.raises(InvalidQuantity, match="at least 3"):
+        curve.within(0.3, 1)
+    with pytest.raises(InvalidQuantity, match="from the lower one"):
+        curve.within(1, 0.1)
+
+
+def test_a_decimal_comma_among_commas_is_refused(tmp_path):
+    path = tmp_path / "comma.csv"
+    path.write_text("stretch,nominal_stress_kPa\n0,7,-3\n", encoding="utf-8")
+    with pytest.raises(InvalidQuantity, match="3 values in a row of 2 columns"):
+        read_uniaxial_curve(path)
