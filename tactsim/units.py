@@ -195,16 +195,17 @@ def written(value: Any) -> Any:
     return [written(item) for item in value] if isinstance(value, list | tuple) else value
 
 
-def _reader(unit: str) -> Callable[[Any, ValidationInfo], float]:
+def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
     def read(value: Any, info: ValidationInfo) -> float:
         if isinstance(value, str):
             return parse_quantity(value, unit)
         if _is_pint(value):
             return parse_quantity(written(value), unit)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {unit}'")
+            raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {usual}'")
         if info.context and info.context.get("units") == "required":
-            raise InvalidQuantity(f"{shown(value)} has no unit; expected text such as '{value:g} {unit}'")
+            units = " or ".join(f"'{value:g} {one}'" for one in dict.fromkeys((usual, unit)))
+            raise InvalidQuantity(f"{shown(value)} has no unit; expected text such as {units}")
         return float(value)
 
     return read
@@ -233,7 +234,7 @@ def quantity_type(unit: str, example: str) -> Any:
     schema = {"type": "string", "pattern": pattern, "examples": [example], "unit": unit}
     return Annotated[
         float,
-        BeforeValidator(_reader(unit)),
+        BeforeValidator(_reader(unit, example.partition(" ")[2])),
         PlainSerializer(_writer(unit)),
         WithJsonSchema(schema, mode="validation"),
         Field(json_schema_extra={"unit": unit}),

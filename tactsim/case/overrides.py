@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from pydantic import BaseModel
+
+from tactsim.case.model import experiment_class
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems, read_yaml
-from tactsim.errors import shown
+from tactsim.errors import UnknownName, shown
 
 
 def apply_override(document: Document, override: str) -> Path:
     """Sets one value in the document, which it changes; returns the key path that the override made or replaced.
 
-    A missing mapping on the way is created, so that a value with a default can be set; validation refuses unknown keys.
+    A missing mapping on the way is created, as its default if it has one, so that a part of a default can be set; validation
+    refuses unknown keys.
 
     Raises
     ------
@@ -45,11 +49,27 @@ def set_value(document: Document, keys: Sequence[str], value: Any) -> Path:
         step = _step(target, place, key)
         place = (*place, step)
         if (target[step] if isinstance(target, list) else target.get(step)) is None:
-            target[step], made = {}, made or place
+            target[step], made = _default(document, place), made or place
         target = target[step]
     step = _step(target, place, keys[-1])
     target[step] = value
     return made or (*place, step)
+
+
+def _default(document: Document, place: Path) -> dict[str, Any]:
+    """The default of a field of the experiment as a case file would hold it, empty if it has none that is a mapping."""
+    experiment = document.value.get("experiment") if isinstance(document.value, dict) else None
+    if len(place) != 2 or place[0] != "experiment" or not isinstance(experiment, dict):
+        return {}
+    try:
+        field = experiment_class(experiment["kind"]).model_fields[str(place[1])]
+    except (KeyError, TypeError, UnknownName):  # validation says what is wrong with it
+        return {}
+    default = field.get_default(call_default_factory=True)
+    if not isinstance(default, BaseModel):
+        return {}
+    written: dict[str, Any] = default.model_dump(mode="json", by_alias=True, context={"units": "written"})
+    return written
 
 
 def _step(target: Any, place: Path, key: str) -> Any:

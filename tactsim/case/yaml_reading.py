@@ -76,7 +76,11 @@ def read_yaml(text: str) -> Document:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         what = " ".join(part for part in (error.context, error.problem) if part)
-        raise YamlProblems(Problem((), mark.line + 1 if mark else 0, f"not valid YAML: {what}")) from None
+        raise YamlProblems(
+            Problem(
+                (), mark.line + 1 if mark else 0, f"not valid YAML: {what}; a line is 'key: value', indented as its neighbours"
+            )
+        ) from None
     except YAMLError as error:
         raise YamlProblems(Problem((), 0, f"not valid YAML: {str(error).splitlines()[0]}")) from None
     except (ValueError, LookupError, AttributeError, TypeError, ArithmeticError, AssertionError, RecursionError):

@@ -15,6 +15,8 @@ DRAWS, SEED = 1000, 20
 """Draws of a fit: the ends of its intervals are known within 4 % of their width; a fixed seed, so that a fit repeats."""
 LARGEST_CORRELATION = 0.999
 """Of neighbours: a thousand points that say the same."""
+BY_CHANCE = 2.6
+"""Standard deviations that 1 mean of signs in 200 exceeds by chance."""
 LEAST_FREEDOM = 2.0
 """Assumption: with fewer degrees of freedom Student's distribution has tails beyond any use."""
 
@@ -29,6 +31,9 @@ class Noise:
     """Of neighbours, 0 to below 1."""
     freedom: float
     """Degrees of freedom by which the deviations are known."""
+
+    in_runs: bool = False
+    """Whether neighbouring residuals have one sign more often than independent ones do by chance, 1 time in 200."""
 
     @property
     def known(self) -> bool:
@@ -69,10 +74,11 @@ def noise_of(residuals: Array, basis: Array) -> Noise:
     if count <= constants:
         return Noise(np.full(count, np.inf), 0.0, LEAST_FREEDOM)
     leverage = np.minimum((basis**2).sum(axis=1), 1 - 1 / count)
-    alike = float(np.mean(np.sign(residuals[1:] * residuals[:-1]))) + 2 * constants / count
+    seen = float(np.mean(np.sign(residuals[1:] * residuals[:-1])))
+    alike = seen + 2 * constants / count
     correlation = min(float(np.sin(np.pi / 2 * min(max(alike, 0.0), 1.0))), LARGEST_CORRELATION)
     freedom = max(count * (1 - correlation) / (1 + correlation) - constants, LEAST_FREEDOM)
-    return Noise(np.abs(residuals) / (1 - leverage), correlation, freedom)
+    return Noise(np.abs(residuals) / (1 - leverage), correlation, freedom, seen * np.sqrt(count - 1) > BY_CHANCE)
 
 
 def intervals(draws: Array) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.identification.certainty import COVERED, LEAST_FREEDOM, Noise, intervals, noise_of
+from tactsim.identification.certainty import COVERED, Noise, intervals, noise_of
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.identification.uniaxial_least_squares import LeastSquares
 
@@ -43,7 +43,7 @@ class UniaxialCertainty:
                 f"the curve does not determine {' and '.join(self.undetermined)} one by one, only the stress where it was "
                 f"measured and the shear modulus at rest, {modulus}: use a form of fewer constants or measure another deformation"
             )
-        if self.noise.freedom <= LEAST_FREEDOM:
+        if self.noise.in_runs:
             warnings.append(
                 f"the residuals come in runs of one sign: the form does not follow the curve, which it misses by up to "
                 f"{largest_error:.1%}; the intervals are wide for it and hold for this form only: take fewer strains"

@@ -44,8 +44,8 @@ def schema() -> dict[str, Any]:
     return case_json_schema()
 
 
-ASKED = re.compile(r"experiment\.([\w.]+): .* has no unit; expected text such as '[^ ]+ ([^']+)'")
-"""What a message says about a number without a unit."""
+ASKED = re.compile(r"experiment\.([\w.]+): .* has no unit; expected text such as (?:'[^']+' or )?'[^ ]+ ([^']+)'")
+"""What a message says about a number without a unit: the last of its examples is in SI."""
 
 
 def with_units(case: dict[str, Any], path: Path) -> None:

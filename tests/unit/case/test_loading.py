@@ -57,7 +57,7 @@ def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -
         (
             "c10: 10 kPa",
             "c10: 10",
-            "14: experiment.specimen.layers.1.material.c10: 10 has no unit; expected text such as '10 Pa'",
+            "14: experiment.specimen.layers.1.material.c10: 10 has no unit; expected text such as '10 kPa' or '10 Pa'",
         ),
         ("c10: 10 kPa", "c10: 10 kPs", "14: experiment.specimen.layers.1.material.c10: '10 kPs' has an unknown unit 'kPs'; "),
         ("c10: 10 kPa", "c10: true", "14: experiment.specimen.layers.1.material.c10: True is not a quantity; "),

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from tactsim.case import load_case
 from tactsim.case.overrides import apply_override
 from tactsim.case.yaml_reading import YamlProblems, read_yaml
+from tactsim.errors import CaseError
 
 TEXT = "a: {b: 1, c: null}\nlayers: [{t: 1 mm}, {t: 2 mm}]\nempty: []"
 
@@ -62,3 +64,26 @@ def test_a_list_entry_that_is_null_can_be_entered() -> None:
 def test_what_cannot_be_set_is_refused(override: str, words: str) -> None:
     with pytest.raises(YamlProblems, match=words.replace(".", r"\.")):
         apply_override(read_yaml(TEXT), override)
+
+
+MINE = """schema: tactsim/case/1
+experiment:
+  kind: indentation
+  specimen: {material: icf_stable, thickness: 4 mm, radius: 8 mm}
+  recess: 0.8 mm
+  displacement: 2 mm
+"""
+
+
+def test_a_part_of_a_default_can_be_set(tmp_path):
+    """A case as `tactsim new` writes it says nothing of body and contact; their kinds and other dimensions stay."""
+    path = tmp_path / "mine.yaml"
+    path.write_text(MINE)
+    plain = load_case(path).experiment
+    changed = load_case(path, ["experiment.body.inner_radius=1 mm", "experiment.contact.friction=0.2"]).experiment
+    assert changed.body == plain.body.model_copy(update={"inner_radius": 1e-3})
+    assert changed.contact == plain.contact.model_copy(update={"friction": 0.2})
+    with pytest.raises(CaseError, match=r"--set experiment.contact.friction: -0.1 is out of range"):
+        load_case(path, ["experiment.contact.friction=-0.1"])
+    with pytest.raises(CaseError, match=r"unknown key \(did you mean 'friction'"):
+        load_case(path, ["experiment.contact.fricton=0.1"])
