@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     from tactsim.results import read_result
 
     folders = [folder for place in arguments.results for folder in _folders(place)]
-    results = {name: read_result(folder, fields=False).result for name, folder in _named(folders).items()}
+    results = {name: read_result(folder, fields=False).complete for name, folder in _named(folders).items()}
     if len(results) < 2:
         raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
     report(results, arguments.out, everything=arguments.all)
@@ -62,13 +62,16 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
     from tactsim.results.comparison import compared
 
     comparison = compared(results)
-    width = max(len(column.head) for column in comparison.columns) if comparison.columns else 6
+    width = max(6, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
-    cells = [max(10, len(name)) for name in names]
+    given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
+    cells = [max(10, len(name), *(len(row[k]) for row in given)) for k, name in enumerate(names)]
     console.out("  ".join([" " * width, *(f"{name:>{cell}}" for name, cell in zip(names, cells, strict=True))]))
     console.out(
         "  ".join([f"{'status':<{width}}", *(f"{s:>{cell}}" for s, cell in zip(comparison.statuses, cells, strict=True))])
     )
+    for key, row in zip(comparison.inputs, given, strict=True):
+        console.out("  ".join([f"{key:<{width}}", *(f"{value:>{cell}}" for value, cell in zip(row, cells, strict=True))]))
     for column in comparison.columns if everything else comparison.differing:
         numbers = ("-" if value is None else f"{value:.5g}" for value in column.values)
         console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))

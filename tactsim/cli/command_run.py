@@ -105,7 +105,7 @@ def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) ->
 
     if not arguments.quiet:
         console.out()
-        report({folder.name: read_result(folder, fields=False).result for folder in folders}, place)
+        report({folder.name: read_result(folder, fields=False).complete for folder in folders}, place)
 
 
 def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:

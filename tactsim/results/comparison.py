@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from tactsim.results.result import Result
 from tactsim.units import compact_unit, conversion
@@ -34,6 +35,8 @@ class Comparison:
     names: tuple[str, ...]
     statuses: tuple[str, ...]
     columns: tuple[Column, ...]
+    inputs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Key of the case in SI -> its value in each result, where they differ."""
 
     @property
     def differing(self) -> tuple[Column, ...]:
@@ -44,15 +47,19 @@ class Comparison:
         """A row for each result; what it does not have is empty."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["result", "status", *(column.head for column in self.columns)])
+        writer.writerow(["result", "status", *self.inputs, *(column.head for column in self.columns)])
         for row, (name, status) in enumerate(zip(self.names, self.statuses, strict=True)):
-            writer.writerow([name, status, *("" if (v := column.values[row]) is None else repr(v) for column in self.columns)])
+            given = [values[row] for values in self.inputs.values()]
+            writer.writerow(
+                [name, status, *given, *("" if (v := column.values[row]) is None else repr(v) for column in self.columns)]
+            )
         return text.getvalue()
 
     def markdown_text(self) -> str:
         """A row for each number, a column for each result, five digits."""
         lines = [f"| | {' | '.join(_cell(name) for name in self.names)} |", f"|---{'|---:' * len(self.names)}|"]
         lines.append(f"| status | {' | '.join(self.statuses)} |")
+        lines += [f"| {_cell(key)} | {' | '.join(map(_cell, values))} |" for key, values in self.inputs.items()]
         for column in self.columns:
             numbers = " | ".join("" if value is None else f"{value:.5g}" for value in column.values)
             lines.append(f"| {column.head} | {numbers} |")
@@ -67,7 +74,25 @@ def compared(results: Mapping[str, Result]) -> Comparison:
             if isinstance(quantity.value, int | float):
                 names.setdefault(name, (quantity.unit, quantity.description))
     columns = [_column(name, *about, results) for name, about in names.items()]
-    return Comparison(tuple(results), tuple(str(result.status) for result in results.values()), tuple(columns))
+    statuses = tuple(str(result.status) for result in results.values())
+    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results))
+
+
+def _differing_inputs(results: Mapping[str, Result]) -> dict[str, tuple[str, ...]]:
+    """Values of the cases, by key and in SI, that are not the same in all results; empty where a case has no such key."""
+    cases = [dict(_leaves(result.provenance.get("case", {}).get("experiment", {}), "")) for result in results.values()]
+    keys = dict.fromkeys(key for case in cases for key in case)
+    given = {key: tuple(case.get(key, "") for case in cases) for key in keys}
+    return {f"{key} (SI)": values for key, values in given.items() if len(set(values)) > 1}
+
+
+def _leaves(value: Any, path: str) -> Iterator[tuple[str, str]]:
+    """Key path and text of everything in a case that is no list or mapping."""
+    if isinstance(value, Mapping | list | tuple):
+        for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
+            yield from _leaves(item, f"{path}.{key}" if path else str(key))
+    else:
+        yield path, f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 def _column(name: str, unit: str, description: str, results: Mapping[str, Result]) -> Column:

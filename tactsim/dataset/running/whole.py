@@ -61,6 +61,7 @@ def sweep(
     StorageError
         If the place is taken or cannot be written.
     """
+    from tactsim.dataset.use.card import empty_split_lines, empty_splits, split_counts
     from tactsim.dataset.use.loading import load
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
@@ -72,6 +73,10 @@ def sweep(
         troubles = card(run)
         interrupted = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
         troubles += finish(run)
+        splits = asked.settings.splits
+        troubles += [
+            line.removeprefix("warning: ") for line in empty_split_lines(empty_splits(split_counts(run.store), splits), splits)
+        ]
     for trouble in dict.fromkeys(troubles):
         warnings.warn(trouble, stacklevel=2)
     if interrupted:

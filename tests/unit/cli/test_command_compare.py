@@ -42,6 +42,8 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert Path("designs/comparison/comparison.png").read_bytes().startswith(b"\x89PNG")
     table = Path("designs/comparison/comparison.md").read_text()
     assert table.startswith("| | small | large |")
+    assert "| outer_radius (SI) | 0.003 | 0.004 |" in table
+    assert [row["outer_radius (SI)"] for row in rows] == ["0.003", "0.004"]
     assert main(["run", *cases, "--out", "designs"]) == 0, "results of tactsim give way"
 
 
@@ -51,6 +53,8 @@ def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: p
     assert main(["compare", "designs"]) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].split() == ["large", "small"]
+    assert shown[2].split() == ["outer_radius", "(SI)", "0.004", "0.003"], "what differs between the cases stands first"
+    assert not any(line.startswith("points") for line in shown)
     assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
     assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
     assert "largest_force" in capsys.readouterr().out
