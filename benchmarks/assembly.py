@@ -8,8 +8,8 @@ from statistics import median
 import numpy as np
 from skfem import MeshTet
 
-from tactsim.fem.body import Body
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.stability import strongly_elliptic
 from tactsim.mesh.quadratic import from_skfem

@@ -20,11 +20,11 @@ from tactsim.array import Array
 from tactsim.case.loading import load_case
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import grasp_path
-from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.body import Body
-from tactsim.fem.linear import IterativeSolver, LinearSystem
-from tactsim.fem.pardiso import SinglePardiso
-from tactsim.fem.reused_factor import ReusedFactor
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
+from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
+from tactsim.fem.solvers.pardiso import SinglePardiso
+from tactsim.fem.solvers.reused_factor import ReusedFactor
 
 CASE = Path(__file__).parents[1] / "cases" / "grasp_lump_icf.yaml"
 CELLS = {"size": 4.0, "inclusion_size": 2.0, "edge_size": 1.6}

@@ -12,9 +12,9 @@ from tactsim.experiments.switch_probe.setup import ProbeTissue
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.relaxation import Relaxation
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
 
 CHANNELS = (2, 3, 3)
 SECONDS, CHUNK = 2.0, 10

@@ -19,12 +19,12 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
-from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.linear import IterativeSolver, LinearSystem, resolved
-from tactsim.fem.pardiso import SinglePardiso
-from tactsim.fem.reused_factor import ReusedFactor
+from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
+from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, resolved
+from tactsim.fem.solvers.pardiso import SinglePardiso
+from tactsim.fem.solvers.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
-from tactsim.mechanics.block_model import GraspModel
+from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mesh.quadratic import QuadraticMesh, from_skfem
 
 SIZE = np.array([0.04, 0.04, 0.02])

@@ -24,11 +24,11 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Problem
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.solver_choice import solver_for
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mesh.structured_block import structured_block
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.case import load_case
-from tactsim.mechanics.block_source import TetrahedraSource
+from tactsim.mechanics.models.block_source import TetrahedraSource
 from tactsim.mesh.block import BlockMesh
 from tactsim.mesh.manifest import MANIFEST, ManifestEntry, add_entry, entries
 from tactsim.mesh.mesh_store import content_hash, write_block_mesh

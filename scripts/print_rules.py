@@ -13,18 +13,24 @@ FIGURES = "tactsim.**.figures"
 def printed_rules() -> str:
     """The layers of rooms and of families of experiments from top to bottom, and a line for each fence, as Markdown."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
-    rooms, families = (contract["layers"] for contract in contracts if contract["type"] == "layers")
+    rooms, families, *floors = (contract for contract in contracts if contract["type"] == "layers")
     lines = [
         BEGIN,
         "```text",
-        *(layer.replace("tactsim.", "") for layer in rooms),
+        *(layer.replace("tactsim.", "") for layer in rooms["layers"]),
         "```",
         "",
         "Within `experiments`, a family stands above those that it builds on; one that is not named here builds on none:",
         "",
         "```text",
-        *families,
+        *families["layers"],
         "```",
+        "",
+    ]
+    for room in floors:
+        order = " > ".join(f"`{layer}`" for layer in room["layers"])
+        lines.append(f"- Within `{room['containers'][0].removeprefix('tactsim.')}`: {order.replace(' | ', '` | `')}")
+    lines += [
         "",
         "| fenced | imported only in |",
         "|---|---|",

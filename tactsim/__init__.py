@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from tactsim.materials.library import material
     from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
     from tactsim.materials.neo_hookean import NeoHookean
-    from tactsim.mechanics.loading import close
-    from tactsim.mechanics.specimen import Specimen
+    from tactsim.mechanics.models.specimen import Specimen
+    from tactsim.mechanics.paths.loading import close
     from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
     from tactsim.mesh.inclusions.sphere import Sphere
     from tactsim.mesh.inclusions.tube import Tube
@@ -118,14 +118,14 @@ _PLACES = {
     "Relaxation": "tactsim.relaxation:Relaxation",
     "RigidBody": "tactsim.interfaces:RigidBody",
     "SensorFilm": "tactsim.interfaces:SensorFilm",
-    "Specimen": "tactsim.mechanics.specimen:Specimen",
+    "Specimen": "tactsim.mechanics.models.specimen:Specimen",
     "Sphere": "tactsim.mesh.inclusions.sphere:Sphere",
     "TactsimError": "tactsim.errors:TactsimError",
     "TaxelLayout": "tactsim.interfaces.taxel_layout:TaxelLayout",
     "TimedIndentation": "tactsim.experiments.indentation.timed_indentation:TimedIndentation",
     "Tube": "tactsim.mesh.inclusions.tube:Tube",
     "choice": "tactsim.interfaces.variation:choice",
-    "close": "tactsim.mechanics.loading:close",
+    "close": "tactsim.mechanics.paths.loading:close",
     "fit_relaxation": "tactsim.identification.relaxation_curve:fit_relaxation",
     "fit_uniaxial": "tactsim.identification.uniaxial:fit_uniaxial",
     "kinds": "tactsim.interfaces.points:kinds",

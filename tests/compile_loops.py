@@ -10,7 +10,7 @@ import sys
 import numpy as np
 from solids import body_of, box
 
-from tactsim.fem.space import Measure
+from tactsim.fem.assembly.space import Measure
 from tactsim.materials.neo_hookean import NeoHookean
 
 MEASURES: dict[int, Measure] = {2: "plane_strain", 3: "solid"}

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from solids import facets_where, held, on_plane, solve_near
 
-from tactsim.fem.body import Body
-from tactsim.fem.space import Measure, TaylorHood
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import Measure, TaylorHood
+from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh
 

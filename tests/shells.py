@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from solids import body_of
 
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Equilibrium, Problem
-from tactsim.fem.pressure import FollowerPressure
-from tactsim.fem.space import Measure
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.space import Measure
+from tactsim.fem.equilibrium.newton import Equilibrium, Problem
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from skfem import MeshTet, MeshTri
 
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Equilibrium, Problem
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.space import Measure, TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import Measure, TaylorHood
+from tactsim.fem.equilibrium.newton import Equilibrium, Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 

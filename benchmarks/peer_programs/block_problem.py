@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.structured_block import structured_block
 

@@ -11,13 +11,13 @@ import numpy as np
 from block_problem import read
 
 import tactsim
-from tactsim.fem.body import Body
-from tactsim.fem.linear import solved
-from tactsim.fem.newton import Problem
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.pardiso import SinglePardiso
-from tactsim.fem.reused_factor import ReusedFactor
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.solvers.linear import solved
+from tactsim.fem.solvers.pardiso import SinglePardiso
+from tactsim.fem.solvers.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.neo_hookean import NeoHookean
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.sensors.divider import divider_conductance, divider_slope
+from tactsim.sensors.electronics.divider import divider_conductance, divider_slope
 
 FEWEST_POINTS = 3
 """Two constants and one degree of freedom for the noise."""

@@ -13,8 +13,8 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.columns import read_columns
-from tactsim.sensors.composite import Composite
-from tactsim.sensors.film_equations import creep_strain
+from tactsim.sensors.films.composite import Composite
+from tactsim.sensors.films.film_equations import creep_strain
 
 COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
 """E0 in Pa, E1 in Pa and mu1 in Pa s."""

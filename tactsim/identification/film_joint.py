@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.film_creep import COEFFICIENTS
 from tactsim.identification.film_line import LineProjection, projected_on_line
-from tactsim.sensors.composite import Composite
+from tactsim.sensors.films.composite import Composite
 
 CREEP_FORCES = (2.0, 4.0, 6.0, 8.0)
 """In N: forces of the creep tests, thesis section 2.3."""

@@ -9,8 +9,8 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.sensors.composite import Composite
-from tactsim.sensors.film import Film
+from tactsim.sensors.films.composite import Composite
+from tactsim.sensors.films.film import Film
 
 
 @dataclass(frozen=True)

@@ -155,7 +155,7 @@ class SensorFilm(CaseKind):
     """
 
     package: ClassVar[str] = "tactsim.sensors"
-    modules: ClassVar[str] = r"(\w+_)?film"
+    modules: ClassVar[str] = r"films\.(\w+_)?film"
     signal: ClassVar[Literal["conductance", "capacitance"]]
     """What electronics measure of it, increasing with the force."""
     unit: ClassVar[Literal["S", "F"]]

@@ -6,7 +6,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces.recording import ForceReader
-from tactsim.sensors.force_electronics import ForceElectronics
+from tactsim.sensors.electronics.force_electronics import ForceElectronics
 
 CLEAN = "_clean"
 """How the names of readings without noise end."""

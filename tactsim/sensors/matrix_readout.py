@@ -11,9 +11,9 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
-from tactsim.sensors.calibration import LinearCalibration
-from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.force_electronics import ForceElectronics
+from tactsim.sensors.electronics.calibration import LinearCalibration
+from tactsim.sensors.electronics.channel_scatter import ChannelScatter
+from tactsim.sensors.electronics.force_electronics import ForceElectronics
 
 MOST_NUMBERS = 2_000_000
 """Samples of all channels together that one reading may hold."""

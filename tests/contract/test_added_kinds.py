@@ -66,7 +66,7 @@ MODULES = {
     """,
     SensorFilm: """
         from typing import Literal
-        from tactsim.sensors.capacitive_film import CapacitiveFilm
+        from tactsim.sensors.films.capacitive_film import CapacitiveFilm
         class Added(CapacitiveFilm):
             kind: Literal["added"] = "added"
     """,

@@ -20,10 +20,10 @@ from tactsim.contact.penalty import Augmentation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics import guarantee
-from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.guarantee import check_accepted
-from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.contact import guarantee
+from tactsim.mechanics.contact.guarantee import check_accepted
+from tactsim.mechanics.contact.posed_contact import PosedContact
+from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mesh.structured_block import structured_block
 
 pytestmark = pytest.mark.usefixtures("one_thread")

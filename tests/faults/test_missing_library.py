@@ -10,7 +10,7 @@ from typing import NoReturn
 import pytest
 
 from tactsim.errors import InputError
-from tactsim.fem import pardiso
+from tactsim.fem.solvers import pardiso
 
 REMEDY = r"mkl_rt.*pip install mkl, or set the environment variable PYPARDISO_MKL_RT"
 

@@ -16,7 +16,7 @@ from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.indentation_3d import SpaceIndentation
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
-from tactsim.mechanics.success import judged, sufficient_tolerance
+from tactsim.mechanics.outcome.success import judged, sufficient_tolerance
 from tactsim.results.result import Status, StepRecord
 
 pytestmark = pytest.mark.usefixtures("one_thread")

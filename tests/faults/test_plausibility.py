@@ -13,7 +13,7 @@ from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
-from tactsim.mechanics.plausibility import oddities
+from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.units import parse_quantity
 
 

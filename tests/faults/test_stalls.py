@@ -12,10 +12,10 @@ import pytest
 from tactsim.case import load_case
 from tactsim.contact.traction import ContactState, ContactTraction
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
-from tactsim.fem.loading import PathFollower, StepControl
-from tactsim.fem.newton import Problem
-from tactsim.fem.progress import MOST_FURTHER, MOST_STEPS, WINDOW
-from tactsim.fem.time_steps import TimeControl, TimeMarcher
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.paths.loading import PathFollower, StepControl
+from tactsim.fem.paths.progress import MOST_FURTHER, MOST_STEPS, WINDOW
+from tactsim.fem.paths.time_steps import TimeControl, TimeMarcher
 from tactsim.results.result import Status
 
 CASES = Path(__file__).parents[2] / "cases"

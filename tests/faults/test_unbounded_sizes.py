@@ -10,9 +10,9 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
-from tactsim.fem.space import FACET_POINTS
+from tactsim.fem.assembly.space import FACET_POINTS
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.surface_forces import taxel_forces
+from tactsim.mechanics.contact.surface_forces import taxel_forces
 from tactsim.mesh.affordable import MOST_UNKNOWNS, estimated_unknowns, unknowns_of_cells
 from tactsim.mesh.axisymmetric import section_mesh
 from tactsim.mesh.block import BlockMeshSettings

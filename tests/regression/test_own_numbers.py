@@ -13,8 +13,8 @@ import pytest
 from tactsim.case import load_case
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.identification.film_line import identify_film
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.films.composite_library import named_composite
 
 CASES = Path(__file__).parents[2] / "cases"
 

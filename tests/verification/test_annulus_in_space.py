@@ -16,7 +16,7 @@ from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -11,8 +11,8 @@ import pytest
 from skfem import MeshTri
 from solids import body_of, facets_where, held, on_plane
 
-from tactsim.fem.newton import Problem
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.neo_hookean import NeoHookean

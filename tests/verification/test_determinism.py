@@ -13,8 +13,8 @@ import pytest
 from solids import assert_close, body_of, box, facets_where, held, on_plane
 
 from tactsim.fem import threads as fem_threads
-from tactsim.fem.newton import Problem
-from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 TESTS = Path(__file__).parents[1]

@@ -12,7 +12,7 @@ from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 
 RADIUS = 1.19e-3
 DEPTH = 1e-3 * RADIUS

@@ -13,10 +13,10 @@ from solids import box, facets_where, on_plane
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
-from tactsim.fem.loading import PathFollower, StepControl
+from tactsim.fem.paths.loading import PathFollower, StepControl
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
-from tactsim.mechanics.block_model import GraspModel
+from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 from tactsim.mesh.quadratic import QuadraticMesh

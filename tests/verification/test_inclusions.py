@@ -14,11 +14,11 @@ from mutants import assert_kills
 from scipy.optimize import brentq
 from solids import cauchy_stress, held, on_plane
 
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Problem
-from tactsim.fem.pressure import FollowerPressure
-from tactsim.fem.solver_choice import solver_for
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block

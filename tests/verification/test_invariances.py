@@ -9,10 +9,10 @@ import pytest
 from mutants import assert_kills
 from solids import assert_close, body_of, box, facets_where, held
 
-from tactsim.fem.body import Body
-from tactsim.fem.linear import direct_solver
-from tactsim.fem.newton import Problem
-from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.solvers.linear import direct_solver
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5

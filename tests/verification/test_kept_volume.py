@@ -11,12 +11,12 @@ from solids import body_of
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.path import grasp_path
-from tactsim.fem.block_preconditioner import pressure_mass
-from tactsim.fem.linear import direct_solver
-from tactsim.fem.two_level import linear_interpolation
+from tactsim.fem.solvers.block_preconditioner import pressure_mass
+from tactsim.fem.solvers.linear import direct_solver
+from tactsim.fem.solvers.two_level import linear_interpolation
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics import block_model
-from tactsim.mechanics.volume_ratios import volume_error
+from tactsim.mechanics.fields.volume_ratios import volume_error
+from tactsim.mechanics.models import block_model
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 

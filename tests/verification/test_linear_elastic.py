@@ -14,7 +14,7 @@ from mutants import assert_kills
 from shells import radial_displacement
 from solids import assert_close, body_of, box, facets_where, first_piola_kirchhoff, held, on_plane, solve_near
 
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.materials.linear_elastic import LinearElastic
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -12,7 +12,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.setup import Embedded
 from tactsim.experiments.localization import lump_sensitivity
 from tactsim.materials.library import named_material
-from tactsim.mechanics.block_source import StructuredSource
+from tactsim.mechanics.models.block_source import StructuredSource
 from tactsim.mesh.inclusions.sphere import Sphere
 
 CELLS = (6, 6, 4)

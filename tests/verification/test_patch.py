@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from solids import assert_close, body_of, box, facets_where, first_piola_kirchhoff, on_plane, solve_near
 
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5

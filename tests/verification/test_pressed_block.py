@@ -15,12 +15,12 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.contact.plane import Plane
 from tactsim.contact.stick import Stick
 from tactsim.contact.traction import ContactPair
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Problem
-from tactsim.fem.space import TaylorHood
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
-from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mesh.quadratic import from_skfem
 
 MATERIAL = MooneyRivlin2(c10=1.0, c01=0.25)

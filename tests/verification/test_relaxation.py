@@ -22,18 +22,18 @@ from tactsim.contact.plane import Plane
 from tactsim.contact.stick import Stick
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import ConvergenceError
-from tactsim.fem.body import Body
-from tactsim.fem.history_variables import HistoryVariables, elastic_stress, series_of, step_error
-from tactsim.fem.newton import Problem
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.prescribed_force import PrescribedForce
-from tactsim.fem.space import TaylorHood
-from tactsim.fem.surface import SurfaceAssembly
-from tactsim.fem.time_steps import TimeControl, TimeMarcher
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.history_variables import HistoryVariables, elastic_stress, series_of, step_error
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
+from tactsim.fem.paths.time_steps import TimeControl, TimeMarcher
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.posed_contact import PosedContact
+from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mesh.quadratic import from_skfem
 from tactsim.relaxation import Relaxation
 

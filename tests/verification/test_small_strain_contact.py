@@ -22,7 +22,7 @@ from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 
 RADIUS = 3e-3
 SHEAR_MODULUS = 1000.0

@@ -13,9 +13,9 @@ import pytest
 from mutants import assert_kills
 from solids import assert_close, body_of, box, facets_where, on_plane
 
-from tactsim.fem.body import Body
-from tactsim.fem.pressure import FollowerPressure
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2

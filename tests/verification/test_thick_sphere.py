@@ -14,8 +14,8 @@ from shells import inflated, radial_displacement, radial_stress
 from skfem import MeshTri
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
 
-from tactsim.fem.body import Body
-from tactsim.fem.newton import Equilibrium
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.equilibrium.newton import Equilibrium
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 

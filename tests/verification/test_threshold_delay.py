@@ -14,11 +14,11 @@ from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling
 from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 
 PLATE_RATE, SMALL_RATE, TOUCH = 2.0, 0.5, 1.0
 """In N/s, N/s and s."""

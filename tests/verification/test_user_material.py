@@ -8,9 +8,9 @@ from principal_ogden import PrincipalOgden
 from solids import assert_close, body_of, box, first_piola_kirchhoff, solve_near
 
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.fem import forms
-from tactsim.fem.body import Body, RelaxationStep
-from tactsim.fem.material_forms import compiled_form
+from tactsim.fem.assembly import forms
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.material_forms import compiled_form
 from tactsim.interfaces import Array, Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.neo_hookean import NeoHookean

@@ -14,9 +14,9 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.viscoelasticity import shear_compliance
-from tactsim.mechanics.loading import AnyLoading, ForceLoading
-from tactsim.mechanics.plausibility import oddities
-from tactsim.mechanics.success import within_layer
+from tactsim.mechanics.outcome.plausibility import oddities
+from tactsim.mechanics.outcome.success import within_layer
+from tactsim.mechanics.paths.loading import AnyLoading, ForceLoading
 from tactsim.results.result import Quantity, rows
 from tactsim.units import Length, format_quantity
 

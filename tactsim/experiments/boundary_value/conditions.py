@@ -10,7 +10,7 @@ from pydantic import Field
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.interfaces import RigidBody
-from tactsim.mechanics.loading import Loading, pieces_of
+from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
 from tactsim.units import Angle, Force, Length, Pressure

@@ -28,16 +28,16 @@ from tactsim.experiments.boundary_value.conditions import (
 )
 from tactsim.experiments.boundary_value.geometry import AXES
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
-from tactsim.fem.body import Body
-from tactsim.fem.dead_load import DeadTraction
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.pressure import FollowerPressure
-from tactsim.fem.space import Measure, SurfacePoints, TaylorHood
-from tactsim.fem.surface import SurfaceAssembly
-from tactsim.mechanics.first_touch import first_touch
-from tactsim.mechanics.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
-from tactsim.mechanics.posed_contact import PosedContact
-from tactsim.mechanics.prescribed_motion import PrescribedMotion, PrescribedMotions, Rotation, Translation
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.dead_load import DeadTraction
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.space import Measure, SurfacePoints, TaylorHood
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.mechanics.contact.first_touch import first_touch
+from tactsim.mechanics.contact.posed_contact import PosedContact
+from tactsim.mechanics.models.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
+from tactsim.mechanics.models.prescribed_motion import PrescribedMotion, PrescribedMotions, Rotation, Translation
 from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
 

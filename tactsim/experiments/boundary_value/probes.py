@@ -21,9 +21,9 @@ from tactsim.experiments.boundary_value.asked import (
 from tactsim.experiments.boundary_value.geometry import AXES
 from tactsim.experiments.boundary_value.posing import PosedProblem, check_place, face_of
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
-from tactsim.fem.history_variables import HistoryVariables
-from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.point_values import BodyPoint, cauchy_stress, von_mises
+from tactsim.fem.assembly.history_variables import HistoryVariables
+from tactsim.mechanics.fields.point_values import BodyPoint, cauchy_stress, von_mises
+from tactsim.mechanics.paths.history_path import TimedState
 
 CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}

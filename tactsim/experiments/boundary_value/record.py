@@ -11,13 +11,13 @@ from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
-from tactsim.fem.material_forms import interpreted_warnings
-from tactsim.fem.time_steps import TimeControl
+from tactsim.fem.assembly.material_forms import interpreted_warnings
+from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
-from tactsim.mechanics.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
-from tactsim.mechanics.loaded_body import LoadedBody
-from tactsim.mechanics.step_policy import StepPolicy, shortest_relaxation_time
+from tactsim.mechanics.models.loaded_body import LoadedBody
+from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
+from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
 from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.units import format_quantity
 

@@ -17,7 +17,7 @@ from tactsim.experiments.boundary_value.conditions import (
 )
 from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 

@@ -15,16 +15,16 @@ from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.setup import MeshSettings
-from tactsim.fem.loading import Event
+from tactsim.fem.paths.loading import Event
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.units import Force, Length, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.experiments.indentation.course import Adapted, DisplacementPath
-    from tactsim.mechanics.history_path import TimedState
+    from tactsim.mechanics.paths.history_path import TimedState
 
 LEAST_THICKNESS = 6e-3
 """Thickness in m of a specimen that ASTM D2240 asks for; recalled, a declared assumption."""
@@ -116,7 +116,7 @@ class Durometer(Experiment):
 
     def _balanced(self, path: DisplacementPath, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether tissue and spring balance in it."""
-        from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
+        from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 
         def surplus(state: ContactEquilibrium) -> float:
             traction = state.contacts[0].at(path.model.displacement(state.unknowns)).traction

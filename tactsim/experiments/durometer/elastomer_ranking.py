@@ -22,7 +22,7 @@ from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.materials.moduli import youngs_modulus
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.model import FrozenModel
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.units import Length, Time, format_quantity

@@ -9,8 +9,8 @@ from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.record import IndentationRecord, StartedPath
 from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
-from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.mechanics.models.pressed_model import PressedModel
+from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity
 

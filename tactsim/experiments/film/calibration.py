@@ -15,7 +15,7 @@ from tactsim.identification.calibration_line import CalibrationFit, fit_calibrat
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.units import Force, format_quantity
 
 FOLLOWING = 3.0

@@ -14,10 +14,10 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.sensors.any_film import AnyFilm
-from tactsim.sensors.charge_amplifier import ChargeAmplifier
-from tactsim.sensors.film import HOLM, Film
-from tactsim.sensors.film_calibration import slope_and_intercept
+from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
+from tactsim.sensors.electronics.film_calibration import slope_and_intercept
+from tactsim.sensors.films.any_film import AnyFilm
+from tactsim.sensors.films.film import HOLM, Film
 from tactsim.units import Force, Time, check_increasing
 
 LEAST_FORCE, LONGEST = 1e-9, 1e12

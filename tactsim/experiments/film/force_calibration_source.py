@@ -12,9 +12,9 @@ from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
-from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
+from tactsim.sensors.electronics.channel_scatter import ChannelScatter
+from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.units import Force, Time
 
 Readings = tuple[Array, Array, Array]

@@ -13,11 +13,11 @@ from pydantic import Field, model_validator
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.columns import read_columns
-from tactsim.mechanics.loading import ForceLoading
+from tactsim.mechanics.paths.loading import ForceLoading
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.sensors.film import HOLM
-from tactsim.sensors.force_history import checked_forces, checked_times
+from tactsim.sensors.films.film import HOLM
+from tactsim.sensors.films.force_history import checked_forces, checked_times
 from tactsim.units import Force, Frequency, Time, format_quantity
 
 PositiveTime = Annotated[Time, Field(gt=0)]

@@ -13,11 +13,11 @@ from tactsim.experiments.film.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.result import Quantity, rows
-from tactsim.sensors.any_film import ConductingFilm
-from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
-from tactsim.sensors.film import Film
+from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
+from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
+from tactsim.sensors.films.any_film import ConductingFilm
+from tactsim.sensors.films.film import Film
 from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_square
-from tactsim.sensors.signal_chain import Recording, SignalChain
 from tactsim.units import Force, check_increasing, format_quantity
 
 MOST_SAMPLES = 100_000

@@ -11,8 +11,8 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.sensors.thermogravimetry import Thermogravimetry
-from tactsim.sensors.tunnelling import particle_separation, tunnelling_decay
+from tactsim.sensors.films.thermogravimetry import Thermogravimetry
+from tactsim.sensors.films.tunnelling import particle_separation, tunnelling_decay
 from tactsim.units import Density, Energy, Length, Mass, format_quantity
 
 STEP = 1e-6

@@ -9,8 +9,8 @@ from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
-from tactsim.mechanics.block_source import StructuredSource
-from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.mechanics.models.block_source import StructuredSource
+from tactsim.mechanics.paths.loading import DisplacementLoading
 
 
 class Grasp(GraspSetup, Experiment):

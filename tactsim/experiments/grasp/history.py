@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mechanics.contact_history import QUALITY_UNITS
+from tactsim.mechanics.outcome.contact_history import QUALITY_UNITS
 
 MOST_COLUMNS = 8
 """Rows and columns of a matrix up to which the history has a column for every taxel."""

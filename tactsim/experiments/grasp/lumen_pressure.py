@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
-from tactsim.mechanics.loading import Loading, pieces_of
+from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
 from tactsim.units import Frequency, Pressure, Time, format_quantity
 

@@ -9,7 +9,7 @@ import numpy as np
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import ConvergenceError
 from tactsim.interfaces import Inclusion
-from tactsim.mechanics.block_source import AnyBlockSource, AnySource, AutomaticSource, Size, SourcedBlock, TetrahedraSource
+from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource, Size, SourcedBlock, TetrahedraSource
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.graded.block import graded_misfit
 

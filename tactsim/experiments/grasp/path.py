@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.fem.pressure import FollowerPressure
+from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.history_path import EquilibriumProblem, TimedPath, TimedState, smooth_intervals
-from tactsim.mechanics.penetration_effect import bonded_block_rate
-from tactsim.mechanics.pressed_body import PressedBody
-from tactsim.mechanics.sufficient_contact import SufficientContact
+from tactsim.mechanics.contact.penetration_effect import bonded_block_rate
+from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.mechanics.models.pressed_body import PressedBody
+from tactsim.mechanics.outcome.sufficient_contact import SufficientContact
+from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, TimedState, smooth_intervals
 
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""

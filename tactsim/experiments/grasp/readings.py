@@ -9,9 +9,9 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.surface_forces import TaxelForces
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.surface_forces import TaxelForces
+from tactsim.mechanics.models.block_model import GraspModel
 
 SUMS = 1e-8
 """Largest difference of taxels, gaps and outside from the force on the jaw, over the size of all."""

@@ -21,10 +21,10 @@ from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readou
 from tactsim.experiments.grasp.warnings import finer, ragged, smaller_elements, suction, uneven, unlikely
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.block_source import SourcedBlock
-from tactsim.mechanics.contact_record import ContactRecord
-from tactsim.mechanics.history_path import TimedPath, TimedState
+from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.mechanics.models.block_source import SourcedBlock
+from tactsim.mechanics.outcome.contact_record import ContactRecord
+from tactsim.mechanics.paths.history_path import TimedPath, TimedState
 from tactsim.results.result import Quantity, Status
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity

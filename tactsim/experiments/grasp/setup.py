@@ -22,21 +22,21 @@ from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.block_source import (
+from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.models.block_source import (
     AnyBlockSource,
     AnySource,
     AutomaticSource,
     SourcedBlock,
 )
-from tactsim.mechanics.loading import AnyLoading, check_periods
-from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, Length, format_quantity
 
 if TYPE_CHECKING:
-    from tactsim.mechanics.block_model import GraspModel
+    from tactsim.mechanics.models.block_model import GraspModel
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
@@ -203,7 +203,7 @@ class GraspSetup(FrozenModel):
 
     def model(self, sourced: SourcedBlock) -> GraspModel:
         """The finite element model on a mesh."""
-        from tactsim.mechanics.block_model import GraspModel
+        from tactsim.mechanics.models.block_model import GraspModel
 
         middle = np.array(self.block.size[:2]) / 2
         return GraspModel(

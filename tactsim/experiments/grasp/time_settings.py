@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field
 
 from tactsim.interfaces import Material
-from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
+from tactsim.mechanics.paths.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.units import Time
 
 MANY_ITERATIONS = 60

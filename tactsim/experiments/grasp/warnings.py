@@ -8,9 +8,9 @@ import numpy as np
 
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.fem.material_forms import interpreted_warnings
+from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mechanics.plausibility import oddities
+from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh
 from tactsim.units import format_quantity

@@ -9,16 +9,16 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, Timed
-from tactsim.fem.loading import Event, PathFollower
-from tactsim.fem.progress import Headway
-from tactsim.fem.time_steps import TimeEvent
+from tactsim.fem.paths.loading import Event, PathFollower
+from tactsim.fem.paths.progress import Headway
+from tactsim.fem.paths.time_steps import TimeEvent
 from tactsim.interfaces.run import Course
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.history_path import TimedPath, TimedState, smooth_intervals
-from tactsim.mechanics.pressed_body import PressedBody
-from tactsim.mechanics.pressed_model import PressedModel
-from tactsim.mechanics.section_model import SectionModel
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.models.pressed_body import PressedBody
+from tactsim.mechanics.models.pressed_model import PressedModel
+from tactsim.mechanics.models.section_model import SectionModel
+from tactsim.mechanics.paths.history_path import TimedPath, TimedState, smooth_intervals
 from tactsim.mesh.adaptation import Refinement
 from tactsim.units import format_quantity
 

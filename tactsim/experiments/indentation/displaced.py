@@ -8,8 +8,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
-from tactsim.fem.loading import StepControl
-from tactsim.fem.progress import check_steps
+from tactsim.fem.paths.loading import StepControl
+from tactsim.fem.paths.progress import check_steps
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactsim.mechanics.contact_history import CONTACT_UNITS
+from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 
 CLOCK = ("time", "closed_form_displacement", "closed_form_force", "closed_form_difference")
 """Values of a timed indentation alone."""

@@ -8,7 +8,7 @@ from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.history import history_units
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 
 
 class Indentation(DisplacedSetup, Experiment):

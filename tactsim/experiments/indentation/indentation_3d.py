@@ -12,17 +12,17 @@ from tactsim.contact.tilted import Tilt, Tilted
 from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import MeshSettings, Posed
-from tactsim.fem.loading import StepControl
+from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
 from tactsim.units import Length, format_quantity
 
 if TYPE_CHECKING:
-    from tactsim.fem.space import Measure
-    from tactsim.mechanics.solid_model import SolidModel
+    from tactsim.fem.assembly.space import Measure
+    from tactsim.mechanics.models.solid_model import SolidModel
 
 COARSENING = 3.0
 """Element size at the edges of the body over that of the section's own model: a fillet instead of a third of one."""
@@ -115,7 +115,7 @@ class SpaceIndentation(DisplacedSetup, Experiment):
 
     def model(self) -> SolidModel:
         """The finite element model in space, the body's axis at the origin of x and y."""
-        from tactsim.mechanics.solid_model import SolidModel
+        from tactsim.mechanics.models.solid_model import SolidModel
 
         section, symmetry = self.section(), self.symmetry
         swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)

@@ -12,14 +12,14 @@ from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
-from tactsim.fem.material_forms import interpreted_warnings
+from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.materials.library import set_with_constants_of
-from tactsim.mechanics.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.contact_record import ContactRecord, FollowedPath
-from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.plausibility import oddities
-from tactsim.mechanics.pressed_model import PressedModel
-from tactsim.mechanics.solid_model import SolidModel
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.models.pressed_model import PressedModel
+from tactsim.mechanics.models.solid_model import SolidModel
+from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.plausibility import oddities
+from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.result import Quantity, Status
 from tactsim.units import format_quantity

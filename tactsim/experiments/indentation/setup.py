@@ -14,12 +14,12 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
-from tactsim.fem.loading import StepControl
+from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import RigidBody
-from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
-from tactsim.mechanics.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.specimen import Specimen
-from tactsim.mechanics.step_policy import StepPolicy
+from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
+from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
+from tactsim.mechanics.paths.step_policy import StepPolicy
 from tactsim.mesh.axisymmetric import Size, edge_graded, finer_at_surface, graded_to_peak
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
@@ -28,8 +28,8 @@ from tactsim.results.result import Status
 from tactsim.units import Length, format_quantity
 
 if TYPE_CHECKING:
-    from tactsim.fem.space import Measure
-    from tactsim.mechanics.pressed_model import PressedModel
+    from tactsim.fem.assembly.space import Measure
+    from tactsim.mechanics.models.pressed_model import PressedModel
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody, lambda cls: 2 in cls.dimensions)]
 PEAK_ELEMENTS = 12
@@ -242,7 +242,7 @@ class IndentationSetup(FrozenModel):
 
     def model(self) -> PressedModel:
         """The finite element model of the tissue."""
-        from tactsim.mechanics.section_model import SectionModel
+        from tactsim.mechanics.models.section_model import SectionModel
 
         mesh, specimen = self.section(), self.specimen
         top = self.top_edges(mesh)

@@ -12,9 +12,9 @@ from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
-from tactsim.mechanics.loading import AnyLoading, DisplacementLoading
-from tactsim.mechanics.specimen import Specimen
-from tactsim.mechanics.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
+from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading
+from tactsim.mechanics.paths.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.units import Length, format_quantity
 
 LOAD_STEPS = 20

@@ -19,7 +19,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
-from tactsim.mechanics.loading import DisplacementLoading
+from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.results.result import Quantity, StepRecord
 from tactsim.units import Force, Length, format_quantity
 

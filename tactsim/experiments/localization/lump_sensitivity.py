@@ -22,12 +22,12 @@ from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.fem.linear import direct_solver
-from tactsim.fem.pardiso import SymmetricPardiso
+from tactsim.fem.solvers.linear import direct_solver
+from tactsim.fem.solvers.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
-from tactsim.mechanics.block_model import CLOSING, GraspModel
-from tactsim.mechanics.block_source import StructuredSource
+from tactsim.mechanics.models.block_model import CLOSING, GraspModel
+from tactsim.mechanics.models.block_source import StructuredSource
 
 CELLS = (14, 14, 8)
 """Cells of the block, each of six tetrahedra: 45 000 unknowns."""

@@ -13,10 +13,10 @@ from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.course import HistoryPath
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
-from tactsim.fem.space import Measure
-from tactsim.mechanics.contact_quality import ContactQuality
-from tactsim.mechanics.history_path import TimedState
-from tactsim.mechanics.pressed_model import PressedModel
+from tactsim.fem.assembly.space import Measure
+from tactsim.mechanics.models.pressed_model import PressedModel
+from tactsim.mechanics.outcome.contact_quality import ContactQuality
+from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 

@@ -11,8 +11,8 @@ from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresh
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.experiments.switch_probe.setup import COUNT, HISTORY_UNITS, SwitchProbeSetup
 from tactsim.interfaces.run import Findings
-from tactsim.mechanics.plausibility import oddities
-from tactsim.mechanics.success import judged
+from tactsim.mechanics.outcome.plausibility import oddities
+from tactsim.mechanics.outcome.success import judged
 from tactsim.results.result import Quantity, Status, StepRecord
 from tactsim.sensors.switch_reading import Touch
 from tactsim.units import format_quantity

@@ -13,7 +13,7 @@ from tactsim.array import Array
 from tactsim.experiments.switch_probe.probe_indentation import ProbeState, probe_states
 from tactsim.experiments.switch_probe.setup import ProbeTissue, SwitchProbeSetup
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.mechanics.contact_quality import ContactQuality
+from tactsim.mechanics.outcome.contact_quality import ContactQuality
 from tactsim.results.result import StepRecord
 from tactsim.sensors.switch_array import SwitchArray
 from tactsim.sensors.switch_reading import Touch, read_switches

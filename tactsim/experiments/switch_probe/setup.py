@@ -13,13 +13,13 @@ from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation
 from tactsim.materials import AnyMaterial
-from tactsim.mechanics.loading import DisplacementLoading
-from tactsim.mechanics.penetration_bounds import default_penetration
-from tactsim.mechanics.specimen import Specimen
-from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.mechanics.contact.penetration_bounds import default_penetration
+from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
-from tactsim.sensors.calibration import THESIS_LINE, AnyCalibration
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
+from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
 from tactsim.units import Length, Speed, format_quantity
 

@@ -10,8 +10,8 @@ from pydantic import Field, model_validator
 from tactsim.experiments.threshold.tip_model import ClosedFormTip, TipModel
 from tactsim.experiments.threshold.valve_tissue import ValveSurface
 from tactsim.model import FrozenModel
-from tactsim.sensors.sensor_ring import SensorRing
-from tactsim.sensors.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold.sensor_ring import SensorRing
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
 from tactsim.units import Angle, Length, Speed, Time
 
 STEEPEST = np.pi / 6 * (1 + 1e-12)

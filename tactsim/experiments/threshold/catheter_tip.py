@@ -15,11 +15,11 @@ from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.results.result import StepRecord
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 
 
 class CatheterTip(CatheterCase, Experiment):

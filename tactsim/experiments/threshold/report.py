@@ -13,9 +13,9 @@ from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrial
 from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces.run import Findings
 from tactsim.results.result import Quantity, StepRecord
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
 
 RESOLUTION = 0.1

@@ -11,12 +11,12 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.experiments.threshold.contact_curve import Approach
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import Recording
-from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.sensors.threshold_trigger import Threshold, ThresholdTrigger, TriggerState, reported_threshold
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import Recording
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold.threshold_trigger import Threshold, ThresholdTrigger, TriggerState, reported_threshold
 
 BLOCK = 10
 """Trials that share the phase of sampling; the phases of the blocks divide the sampling interval evenly."""

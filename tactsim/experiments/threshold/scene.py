@@ -6,7 +6,7 @@ from typing import Literal
 
 from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
-from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.threshold.sensor_ring import SensorRing
 
 
 class ThresholdCapture(FrozenModel):

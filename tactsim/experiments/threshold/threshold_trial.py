@@ -16,8 +16,8 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, run_within_another
 from tactsim.materials.library import named_material
 from tactsim.results.result import StepRecord
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.threshold_trigger import ThresholdTrigger
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
 
 MOST_SAMPLES = 500_000

@@ -20,15 +20,15 @@ from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact, mixed_contacts
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.loading import DisplacementLoading
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.model import FrozenModel
 from tactsim.results.result import Result, Status
-from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.threshold.sensor_ring import SensorRing
 from tactsim.units import Length
 
 if TYPE_CHECKING:
-    from tactsim.mechanics.annulus_on_bands import AnnulusOnBands
+    from tactsim.mechanics.models.annulus_on_bands import AnnulusOnBands
 
 WIDTH = 6.0
 """Radius of the piece of tissue that finite elements compute, over the outer radius of a sensor."""
@@ -240,7 +240,7 @@ def border_factors(surface: ValveSurface, ring: SensorRing, place: tuple[float, 
     ConvergenceError
         If a linear system is singular.
     """
-    from tactsim.mechanics.annulus_on_bands import AnnulusOnBands, Band
+    from tactsim.mechanics.models.annulus_on_bands import AnnulusOnBands, Band
 
     factors = np.ones((ring.count, 2))
     distance = np.linalg.norm(ring.positions + np.array(place), axis=1)

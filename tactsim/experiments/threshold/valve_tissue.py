@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.experiments.threshold.tip_contact import SensorContact
 from tactsim.model import FrozenModel
 from tactsim.relaxation import Relaxation
-from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.threshold.sensor_ring import SensorRing
 from tactsim.units import Length, Pressure, check_increasing
 
 PositiveLength = Annotated[Length, Field(gt=0)]

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.interfaces import drawing, quantity
-from tactsim.sensors.composite_library import named_composite
-from tactsim.sensors.film_equations import creep_strain
-from tactsim.sensors.film_equations import film_resistance as resistance_of
-from tactsim.sensors.tunnelling import relative_resistance
+from tactsim.sensors.films.composite_library import named_composite
+from tactsim.sensors.films.film_equations import creep_strain
+from tactsim.sensors.films.film_equations import film_resistance as resistance_of
+from tactsim.sensors.films.tunnelling import relative_resistance
 from tactsim.units import Force, NonNegative, Positive, Time
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.film import IDENTIFIED, LITERAL, FilmComposite

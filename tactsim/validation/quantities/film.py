@@ -11,15 +11,15 @@ from pydantic import Field
 from tactsim.identification.calibration_line import fit_calibration_line
 from tactsim.identification.film_line import identify_film
 from tactsim.interfaces import quantity
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite_library import AnyComposite, named_composite
-from tactsim.sensors.film import Film
-from tactsim.sensors.film_equations import Reading, creep_strain, varying_coefficient_jump
-from tactsim.sensors.film_equations import film_resistance as resistance_of
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.thermogravimetry import Thermogravimetry
-from tactsim.sensors.tunnelling import tunnelling_decay, volume_fraction
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.films.composite_library import AnyComposite, named_composite
+from tactsim.sensors.films.film import Film
+from tactsim.sensors.films.film_equations import Reading, creep_strain, varying_coefficient_jump
+from tactsim.sensors.films.film_equations import film_resistance as resistance_of
+from tactsim.sensors.films.thermogravimetry import Thermogravimetry
+from tactsim.sensors.films.tunnelling import tunnelling_decay, volume_fraction
 from tactsim.units import Density, Force, Frequency, Length, Mass, NonNegative, Positive, Time
 
 FilmComposite = Annotated[AnyComposite, Field(description="Name of a shipped composite, or its numbers.")]

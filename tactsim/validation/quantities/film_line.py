@@ -10,8 +10,8 @@ from pydantic import Field
 from tactsim.identification.film_joint import changed, identify_film_jointly
 from tactsim.identification.film_line import identify_film
 from tactsim.interfaces import drawing, quantity
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.film import Film
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.films.film import Film
 from tactsim.units import Force, NonNegative, Positive, Time
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.film import IDENTIFIED, LITERAL, FilmComposite

@@ -12,7 +12,7 @@ from tactsim.contact.annulus import Annulus
 from tactsim.errors import InputError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import drawing
-from tactsim.mechanics.section_model import AXIAL_STRESS
+from tactsim.mechanics.models.section_model import AXIAL_STRESS
 from tactsim.model import FrozenModel
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity

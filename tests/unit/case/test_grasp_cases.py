@@ -11,7 +11,7 @@ import pytest
 from tactsim.case import load_case
 from tactsim.errors import CaseError
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mechanics.block_source import TetrahedraSource
+from tactsim.mechanics.models.block_source import TetrahedraSource
 from tactsim.mesh.inclusions.surface import read_surface
 from tactsim.mesh.inclusions.triangulated import check_closed
 from tactsim.mesh.manifest import entries

@@ -7,12 +7,12 @@ import pytest
 from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.block_preconditioner import BlockPreconditioned
-from tactsim.fem.constraints import Constraints
-from tactsim.fem.linear import LOOSENESS, direct_solver, solved
-from tactsim.fem.solver_choice import factor_seconds, iteration_seconds, solver_for
-from tactsim.fem.surface import SurfaceAssembly
-from tactsim.fem.two_level import linear_interpolation
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.constraints import Constraints
+from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
+from tactsim.fem.solvers.linear import LOOSENESS, direct_solver, solved
+from tactsim.fem.solvers.solver_choice import factor_seconds, iteration_seconds, solver_for
+from tactsim.fem.solvers.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 SIZE = np.array([0.02, 0.02, 0.01])
@@ -98,7 +98,7 @@ def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(givin
     for exact, mine in zip(body.space.split(expected), body.space.split(computed), strict=True):
         # 1e-6 of the largest: the residual is 1e-8 of the right-hand side, the nodes that give way make it grow
         np.testing.assert_allclose(mine, exact, rtol=0, atol=1e-6 * np.abs(exact).max())
-    monkeypatch.setattr("tactsim.fem.block_preconditioner.MOST_CYCLES", 2)  # 160 steps
+    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.MOST_CYCLES", 2)  # 160 steps
     solver._displacements._relaxed = np.arange(len(body.space.nodes))
     with pytest.raises(ConvergenceError):
         solver.solve(right, 1e-8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactsim.fem.event import crossing
+from tactsim.fem.paths.event import crossing
 
 
 def located(curve, bracket, tolerance, *, earlier=()):

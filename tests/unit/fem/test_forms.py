@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from solids import assert_close, body_of, box
 
-from tactsim.fem import forms
-from tactsim.fem.body import Body, RelaxationStep
-from tactsim.fem.history_variables import COMPONENTS, elastic_stress
+from tactsim.fem.assembly import forms
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.history_variables import COMPONENTS, elastic_stress
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2

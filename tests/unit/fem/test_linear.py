@@ -10,13 +10,13 @@ from scipy.sparse import csr_matrix
 from solids import assert_close, body_of, box, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem import pardiso
-from tactsim.fem.constraints import Constraints
-from tactsim.fem.linear import direct_solver, section_solver, solved
-from tactsim.fem.pardiso import QuasiDefinitePardiso, SymmetricPardiso
-from tactsim.fem.reused_factor import MOST_OF_ONE, ReusedFactor
-from tactsim.fem.solver_choice import giving_way
-from tactsim.fem.symmetric_factor import EXACT
+from tactsim.fem.equilibrium.constraints import Constraints
+from tactsim.fem.solvers import pardiso
+from tactsim.fem.solvers.linear import direct_solver, section_solver, solved
+from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SymmetricPardiso
+from tactsim.fem.solvers.reused_factor import MOST_OF_ONE, ReusedFactor
+from tactsim.fem.solvers.solver_choice import giving_way
+from tactsim.fem.solvers.symmetric_factor import EXACT
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")

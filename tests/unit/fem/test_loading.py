@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError
-from tactsim.fem.loading import Event, PathFollower, StepControl
+from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 
 CONTROL = StepControl(first=0.1, largest=0.4, smallest=0.01)
 

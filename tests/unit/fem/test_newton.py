@@ -11,11 +11,11 @@ from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
-from tactsim.fem.linear import direct_solver
-from tactsim.fem.newton import Problem
-from tactsim.fem.newton_options import NewtonOptions
-from tactsim.fem.pressure import FollowerPressure
-from tactsim.fem.surface import SurfaceAssembly
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.solvers.linear import direct_solver
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 

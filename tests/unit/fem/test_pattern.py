@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 from solids import body_of, box
 
 from tactsim.fem import threads
-from tactsim.fem.constraints import Constraints
+from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")

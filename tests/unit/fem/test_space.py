@@ -7,8 +7,8 @@ import pytest
 from solids import assert_close, box, facets_where, on_plane
 
 from tactsim.errors import InputError
-from tactsim.fem.body import Body
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 MEASURES = {"axisymmetric": 2 * np.pi * 0.5, "plane_strain": 1.0, "solid": 1.0}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError
-from tactsim.fem.time_steps import TimeControl, TimeEvent, TimeMarcher
+from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
 
 
 @dataclass

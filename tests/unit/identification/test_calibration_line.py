@@ -8,8 +8,8 @@ from scipy.optimize import curve_fit
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.calibration_line import fit_calibration_line
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.divider import divider_voltage
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.divider import divider_voltage
 
 DIVIDER = {"supply": 5.0, "load": 1e3}
 FORCE = np.linspace(0.5, 25, 26)

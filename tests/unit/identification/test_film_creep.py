@@ -5,7 +5,7 @@ import pytest
 
 from tactsim.errors import InvalidQuantity, StorageError
 from tactsim.identification.film_creep import COEFFICIENTS, CreepTest, coefficient_lines, fit_creep, read_creep, synthetic_creep
-from tactsim.sensors.composite_library import named_composite
+from tactsim.sensors.films.composite_library import named_composite
 
 LINGSTAT = named_composite("lingstat_literal")
 AREA = LINGSTAT.reference_area

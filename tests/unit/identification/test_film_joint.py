@@ -9,9 +9,9 @@ from mutants import assert_kills
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.film_joint import changed, identify_film_jointly
 from tactsim.identification.film_line import identify_film
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite_library import named_composite
-from tactsim.sensors.film import Film
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.films.composite_library import named_composite
+from tactsim.sensors.films.film import Film
 from tactsim.validation.quantities import film_line as quantities
 
 LITERAL, JOINT = named_composite("lingstat_literal"), named_composite("lingstat_joint")

@@ -11,7 +11,7 @@ from mutants import assert_kills
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.threshold.tip_model import BORDER_ERROR
-from tactsim.mechanics.annulus_on_bands import AnnulusOnBands, Band, BandMesh
+from tactsim.mechanics.models.annulus_on_bands import AnnulusOnBands, Band, BandMesh
 
 A, B, RECESS, THICK = 1e-3, 0.5e-3, 0.1e-3, 3e-3
 SOFT, HARD = Band(10e3, THICK, "bonded"), Band(60e3, THICK, "bonded")

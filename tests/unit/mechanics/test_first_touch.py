@@ -8,7 +8,7 @@ import pytest
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.sphere import Sphere
 from tactsim.contact.tilted import Tilted
-from tactsim.mechanics.first_touch import first_touch
+from tactsim.mechanics.contact.first_touch import first_touch
 
 DOWN = np.array([0.0, 0.0, -1.0])
 

@@ -6,7 +6,7 @@ import pytest
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.path import grasp_path
-from tactsim.fem.reused_factor import ReusedFactor
+from tactsim.fem.solvers.reused_factor import ReusedFactor
 
 SYSTEMS, FACTORS, SOLUTIONS = 18, 5, 110
 """Most for the example, which closes in two steps. Without multipliers extrapolated from the first step, or with every system

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from tactsim.mechanics.loading import AnyLoading
+from tactsim.mechanics.paths.loading import AnyLoading
 
 ADAPTER = TypeAdapter(AnyLoading)
 

@@ -6,8 +6,8 @@ import pytest
 
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.fem import newton
-from tactsim.mechanics import contact_equilibrium
+from tactsim.fem.equilibrium import newton
+from tactsim.mechanics.contact import contact_equilibrium
 from tactsim.results.result import Status
 
 PUNCH = {

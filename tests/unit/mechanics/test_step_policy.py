@@ -8,8 +8,8 @@ import pytest
 
 from tactsim.analytic.histories import Harmonic, Segment
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.history_path import TimeInterval
-from tactsim.mechanics.step_policy import FIRST_SHARE, SMALLEST_SHARE, StepPolicy, TimeSettings, shortest_relaxation_time
+from tactsim.mechanics.paths.history_path import TimeInterval
+from tactsim.mechanics.paths.step_policy import FIRST_SHARE, SMALLEST_SHARE, StepPolicy, TimeSettings, shortest_relaxation_time
 from tactsim.relaxation import Relaxation
 
 SETTINGS = TimeSettings(tolerance=0.01, per_decade=0)

@@ -6,7 +6,7 @@ import pytest
 
 from tactsim.experiments.grasp import path, setup
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.mechanics.success import LARGEST_FORCE_ERROR
+from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.results.result import Result, Status
 
 

@@ -9,7 +9,7 @@ from skfem.quadrature import get_quadrature
 
 from tactsim.errors import CaseError, InputError
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.surface_forces import taxel_forces
+from tactsim.mechanics.contact.surface_forces import taxel_forces
 
 X, W = get_quadrature(ElementTriP2(), 4)
 POINTS = X.T

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactsim.fem.space import FACET_POINTS
-from tactsim.mechanics.traction_recovery import recovered_forces, shape_functions
+from tactsim.fem.assembly.space import FACET_POINTS
+from tactsim.mechanics.contact.traction_recovery import recovered_forces, shape_functions
 from tactsim.mesh.quadratic import quadratic_mesh
 
 SIDE = 1e-3

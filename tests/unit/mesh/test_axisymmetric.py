@@ -7,7 +7,7 @@ import pytest
 from solids import assert_close
 
 from tactsim.errors import InputError
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.axisymmetric import edge_graded, section_mesh
 
 RADIUS, HEIGHTS = 15e-3, (0.0, -1e-3, -10e-3)

@@ -8,7 +8,7 @@ from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, interface_nodes, irregular
 from solids import assert_close
 
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh import tetrahedra
 from tactsim.mesh.block import FLATNESS, BlockMeshSettings

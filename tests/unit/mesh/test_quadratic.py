@@ -8,7 +8,7 @@ from skfem import MeshTet, MeshTri
 from solids import assert_close, box
 
 from tactsim.errors import InputError
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.quadratic import QuadraticMesh, from_skfem, quadratic_mesh
 
 MEASURE = {2: "plane_strain", 3: "solid"}

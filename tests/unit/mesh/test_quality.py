@@ -7,7 +7,7 @@ import pytest
 from lumps import LUMP, SIZE
 from solids import assert_close, box
 
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.constrained import Constraints, block_patches
 from tactsim.mesh.quality import determinants, jacobian_ratio, mean_ratio, region_volumes

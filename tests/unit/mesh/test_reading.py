@@ -8,7 +8,7 @@ import pytest
 from solids import assert_close, box
 
 from tactsim.errors import InputError, StorageError, UnknownName
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.reading import read_mesh
 
 here = pytest.mark.usefixtures("reader_here")

@@ -7,7 +7,7 @@ import pytest
 from solids import facets_where, on_plane
 
 from tactsim.errors import InputError
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.axisymmetric import edge_graded, section_mesh
 from tactsim.mesh.quality import checked_points, determinants, jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.revolved import LARGEST_SQUEEZE, largest_offset, shifted_outside, swept

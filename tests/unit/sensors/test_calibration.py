@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tactsim.errors import CaseError, InvalidQuantity
-from tactsim.sensors.calibration import THESIS_LINE, LinearCalibration
-from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE, LinearCalibration
+from tactsim.sensors.electronics.channel_scatter import ChannelScatter
+from tactsim.sensors.electronics.signal_chain import SignalChain
 
 
 def test_the_line_of_the_thesis():

@@ -15,9 +15,9 @@ from tactsim.experiments.film.sensor_response import SensorResponse
 from tactsim.materials.homogeneous import nominal_stress
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.plotting import figures_for
-from tactsim.sensors.capacitive_film import CapacitiveFilm
-from tactsim.sensors.charge_amplifier import ChargeAmplifier
-from tactsim.sensors.film import Film
+from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
+from tactsim.sensors.films.capacitive_film import CapacitiveFilm
+from tactsim.sensors.films.film import Film
 
 FILM = CapacitiveFilm(active_area=1e-4, thickness=0.5e-3, relative_permittivity=3.0, shear_modulus=15e3)
 REST = FILM.report(np.ones(1), FILM.read([0.0], [1.0])).constants["rest_capacitance"].value

@@ -7,11 +7,11 @@ from scipy.integrate import solve_ivp
 
 from tactsim.errors import CaseError, InvalidQuantity
 from tactsim.identification.film_line import identify_film
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.composite import ModulusLine
-from tactsim.sensors.composite_library import LIBRARY, named_composite
-from tactsim.sensors.film import Film
-from tactsim.sensors.film_equations import creep_strain, film_resistance, varying_coefficient_jump
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.films.composite import ModulusLine
+from tactsim.sensors.films.composite_library import LIBRARY, named_composite
+from tactsim.sensors.films.film import Film
+from tactsim.sensors.films.film_equations import creep_strain, film_resistance, varying_coefficient_jump
 
 SETS = sorted(LIBRARY)
 TIMES = np.linspace(0.0, 40.0, 81)

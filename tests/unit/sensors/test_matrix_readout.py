@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from tactsim.errors import CaseError, InvalidQuantity
-from tactsim.sensors.calibration import LinearCalibration
-from tactsim.sensors.film import Film
-from tactsim.sensors.film_calibration import film_line
+from tactsim.sensors.electronics.calibration import LinearCalibration
+from tactsim.sensors.electronics.film_calibration import film_line
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.films.film import Film
 from tactsim.sensors.matrix_readout import MatrixReadout
-from tactsim.sensors.signal_chain import SignalChain
 
 AREA = 81e-6
 TIMES = np.array([0.5, 1.0])

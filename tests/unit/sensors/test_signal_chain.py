@@ -7,11 +7,11 @@ import pytest
 from pydantic import ValidationError
 
 from tactsim.errors import InvalidQuantity
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import Buffer, SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import Buffer, SignalChain
 
 CHANNELS = (2, 3, 3)
 NOISY = Noise(white=3e-3, line=20e-3)

@@ -7,11 +7,11 @@ import pytest
 from scipy.stats import norm
 
 from tactsim.errors import CaseError, InvalidQuantity
-from tactsim.sensors.low_pass import LowPass
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.threshold_sensor import ThresholdSensor
-from tactsim.sensors.threshold_trigger import UNTRIGGERED, ThresholdTrigger, TriggerLevel, reported_threshold
+from tactsim.sensors.electronics.low_pass import LowPass
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
+from tactsim.sensors.threshold.threshold_trigger import UNTRIGGERED, ThresholdTrigger, TriggerLevel, reported_threshold
 
 TIMES = np.arange(6) / 10
 LARGE = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0])

@@ -5,7 +5,7 @@ import pytest
 from scipy import constants
 
 from tactsim.errors import InvalidQuantity
-from tactsim.sensors.tunnelling import (
+from tactsim.sensors.films.tunnelling import (
     contact_coefficient,
     particle_separation,
     relative_resistance,

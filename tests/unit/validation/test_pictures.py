@@ -9,7 +9,7 @@ import pytest
 
 from tactsim.errors import InputError, UnknownName
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.mechanics.section_model import AXIAL_STRESS
+from tactsim.mechanics.models.section_model import AXIAL_STRESS
 from tactsim.results import Result
 from tactsim.validation import load_tables
 from tactsim.validation.figures import validation_figure

@@ -11,7 +11,7 @@ from tactsim.errors import CaseError
 from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
+from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
 from tactsim.plotting import figures_for
 
 ELASTIC = NeoHookean(c10=500.0)

@@ -12,7 +12,7 @@ from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.specimen import Specimen
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.plotting.result_figures import figures_for
 
 COARSE = MeshSettings(finest=0.5e-3, growth=1.5, adaptive=False)

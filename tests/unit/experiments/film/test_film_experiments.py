@@ -10,10 +10,10 @@ from tactsim.experiments.film.film_test import FilmTest
 from tactsim.experiments.film.force_signal import Chirp, Record, Square
 from tactsim.experiments.film.sensor_response import SensorResponse
 from tactsim.results import Status
-from tactsim.sensors.composite_library import named_composite
-from tactsim.sensors.film_equations import film_resistance
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.films.composite_library import named_composite
+from tactsim.sensors.films.film_equations import film_resistance
 from tactsim.sensors.response_errors import hysteresis, range_errors
-from tactsim.sensors.signal_chain import SignalChain
 
 
 def values(result):

@@ -12,11 +12,11 @@ from tactsim.experiments.film.force_calibration_source import MeasuredCalibratio
 from tactsim.results import Status
 from tactsim.results.document import document_text
 from tactsim.results.writing import history_table
-from tactsim.sensors.calibration import THESIS_LINE
-from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.channel_scatter import ChannelScatter
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
 
 NOISY = SignalChain(noise=Noise(white=10e-3, line=20e-3))
 QUICK = SyntheticCalibration(hold=0.2)

@@ -11,10 +11,10 @@ from tactsim.experiments.film.figures.calibration import force_calibration_figur
 from tactsim.experiments.film.force_calibration_source import SyntheticCalibration
 from tactsim.plotting import figures_for
 from tactsim.results import Result, Status
-from tactsim.sensors.channel_scatter import ChannelScatter
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.channel_scatter import ChannelScatter
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
 
 FORCES = tuple(range(1, 26))
 """Without 0 N, where noise below 0 V saturates a converter that begins there."""

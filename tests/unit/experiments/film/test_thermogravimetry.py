@@ -14,9 +14,9 @@ from tactsim.errors import CaseError
 from tactsim.experiments.film.figures.thermogravimetry import thermogravimetry_figure
 from tactsim.experiments.film.thermogravimetry import ThermogravimetricAnalysis
 from tactsim.plotting import figures_for
-from tactsim.sensors.composite_library import named_composite
-from tactsim.sensors.film import Film
-from tactsim.sensors.thermogravimetry import Thermogravimetry
+from tactsim.sensors.films.composite_library import named_composite
+from tactsim.sensors.films.film import Film
+from tactsim.sensors.films.thermogravimetry import Thermogravimetry
 from tactsim.validation.quantities.film import filler_fraction_deviation
 
 CASES = Path(__file__).parents[4] / "cases"

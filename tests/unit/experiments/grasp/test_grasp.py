@@ -15,10 +15,10 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
 from tactsim.experiments.grasp.readings import JawReading, check_sums
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mechanics.block_model import GraspModel
-from tactsim.mechanics.block_source import StructuredSource
-from tactsim.mechanics.history_path import smooth_intervals
-from tactsim.mechanics.surface_forces import TaxelForces
+from tactsim.mechanics.contact.surface_forces import TaxelForces
+from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.mechanics.models.block_source import StructuredSource
+from tactsim.mechanics.paths.history_path import smooth_intervals
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.structured_block import structured_block
 

@@ -15,7 +15,7 @@ from tactsim.experiments.indentation.record import energy_assumptions
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.specimen import Layer, Specimen
+from tactsim.mechanics.models.specimen import Layer, Specimen
 
 SOFT = NeoHookean(c10=1000.0)
 COARSE = MeshSettings(finest=0.15e-3, growth=0.8)

@@ -10,8 +10,8 @@ from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
 from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.specimen import Specimen
-from tactsim.mechanics.surface_peaks import surface_peaks
+from tactsim.mechanics.fields.surface_peaks import surface_peaks
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry
 
 SOFT = NeoHookean(c10=1000.0)

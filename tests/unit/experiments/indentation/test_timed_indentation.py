@@ -12,9 +12,9 @@ from tactsim.errors import CaseError
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.loading import DisplacementLoading, ForceLoading
-from tactsim.mechanics.specimen import Layer, Specimen
-from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.mechanics.models.specimen import Layer, Specimen
+from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
+from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 

@@ -12,9 +12,9 @@ from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation, probe_states, side_forces
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.loading import DisplacementLoading
-from tactsim.mechanics.specimen import Specimen
-from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.sensors.switch_array import SwitchArray
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -18,13 +18,13 @@ from tactsim.experiments.switch_probe.run import force_noise, touched
 from tactsim.experiments.switch_probe.setup import ProbeTissue
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.step_policy import TimeSettings
+from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
 from tactsim.results import Status
 from tactsim.results.document import document_text
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
 
 CASES = Path(__file__).parents[4] / "cases"

@@ -15,10 +15,10 @@ from tactsim.experiments.threshold.figures.catheter_tip import catheter_tip_figu
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.plotting import figures_for
 from tactsim.results import Status
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.sensor_ring import SensorRing
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.threshold_sensor import ThresholdSensor
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.threshold.sensor_ring import SensorRing
+from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
 
 ROOT = Path(__file__).parents[4]
 RING = SensorRing()

@@ -23,12 +23,12 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
-from tactsim.sensors.converter import Converter
-from tactsim.sensors.film import Film
-from tactsim.sensors.noise import Noise
-from tactsim.sensors.signal_chain import SignalChain
-from tactsim.sensors.threshold_sensor import ForceSensor, ThresholdSensor
-from tactsim.sensors.threshold_trigger import TriggerLevel
+from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.noise import Noise
+from tactsim.sensors.electronics.signal_chain import SignalChain
+from tactsim.sensors.films.film import Film
+from tactsim.sensors.threshold.threshold_sensor import ForceSensor, ThresholdSensor
+from tactsim.sensors.threshold.threshold_trigger import TriggerLevel
 
 ROOT = Path(__file__).parents[4]
 CURVE = CurveSource(path=str(ROOT / "cases/data/annulus_icf_signals.csv"))

@@ -24,7 +24,7 @@ from tactsim.experiments.threshold.tip_model import (
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.relaxation import Relaxation
 from tactsim.results import Status
-from tactsim.sensors.sensor_ring import SensorRing
+from tactsim.sensors.threshold.sensor_ring import SensorRing
 
 CASES = Path(__file__).parents[4] / "cases"
 EXAMPLE, RING = CatheterTip.example(), SensorRing()

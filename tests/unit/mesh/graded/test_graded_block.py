@@ -7,7 +7,7 @@ import pytest
 from lumps import irregular, same_mirrored, write_cells
 
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
-from tactsim.mechanics.block_source import GradedSource
+from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid

@@ -13,7 +13,7 @@ from tactsim.experiments.boundary_value.geometry import (
     QuadrilateralGeometry,
     Span,
 )
-from tactsim.fem.space import TaylorHood
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.graded.mapped import grid_domain, spaced
 
 MEASURES = {"3d": "solid", "plane_strain": "plane_strain", "axisymmetric": "axisymmetric"}

@@ -7,7 +7,7 @@ import pytest
 from lumps import CURVED, SIZE, same_mirrored
 
 from tactsim.errors import InputError
-from tactsim.mechanics.block_source import AutomaticSource, GradedSource
+from tactsim.mechanics.models.block_source import AutomaticSource, GradedSource
 from tactsim.mesh.graded import block as graded_module
 from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.inclusions.sphere import Sphere

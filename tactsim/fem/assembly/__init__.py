@@ -1,0 +1,1 @@
+"""The discrete body: Taylor-Hood space, weak forms and their compiled loops, history variables, loads on its surface."""

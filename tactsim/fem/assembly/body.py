@@ -1,0 +1,227 @@
+"""A deformable body: space, materials per region, and its residual and tangent."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.errors import InputError
+from tactsim.fem.assembly import kernels, section_kernels
+from tactsim.fem.assembly.interpreted import InterpretedPart, PointState
+from tactsim.fem.assembly.material_forms import compiled_form
+from tactsim.fem.assembly.pattern import Pattern, build_pattern
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.threads import loop_threads
+from tactsim.interfaces import Material
+
+ELASTIC_STEP = np.empty((6, 0, 0))
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Deformation at the volume points: ``F`` (3, 3, E, Q), ``J`` and the isochoric invariants ``I1``, ``I2`` (E, Q)."""
+
+    F: Array
+    J: Array
+    I1: Array
+    I2: Array
+
+
+@dataclass(frozen=True)
+class RelaxationStep:
+    """The present step of materials that relax: S = scale * S_iso(F) + stress.
+
+    ``scale`` (E,) dimensionless; ``stress`` (6, E, Q), second Piola-Kirchhoff in Pa, components 11, 22, 33, 12, 23, 13.
+    """
+
+    scale: Array
+    stress: Array
+
+
+class Body:
+    """A body of one or more materials in a Taylor-Hood space.
+
+    The weak form, for all test displacements v and pressures q (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7,
+    in the displacement-pressure form):
+
+    .. math::
+        \\int (P_{iso}(F) + p\\, \\partial_F g) : \\nabla v\\, dV = f(v), \\qquad \\int q\\, (g(F) - p / K)\\, dV = 0
+
+    with the stress P = P_iso + p dg/dF and the volume change g of each material. Linear pressures hold g to p / K in the mean
+    around each corner only. A body may resist what that leaves, by
+
+    .. math:: \\int \\tfrac12 \\kappa\\, (g(F) - p / K)^2\\, dV, \\qquad \\kappa = \\frac{a G}{1 + a G / K}
+
+    in its potential, with a multiple a of the shear modulus G. That is zero in every exact solution, so that it changes no order
+    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90094-9; Olshanskii & Reusken 2004,
+    doi:10.1090/S0025-5718-03-01629-6). Where a material has no compiled form, its own methods are called at the points
+    (``interpreted``), several times slower.
+
+    Parameters
+    ----------
+    space : TaylorHood
+    materials : one per region
+    regions : (E,) index into ``materials``
+    volume_stiffness : a; with zero, the elements are those of Taylor and Hood
+
+    Raises
+    ------
+    InputError
+        If there is not one region per element, or a region has no material.
+    """
+
+    relaxation: RelaxationStep | None = None
+    """Coefficients of the present time step, for materials that relax."""
+
+    def __init__(
+        self,
+        space: TaylorHood,
+        materials: Sequence[Material],
+        regions: Array,
+        *,
+        quadrature_order: int | None = None,
+        volume_stiffness: float = 0.0,
+    ):
+        if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
+            raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
+        self.space = space
+        self.materials = tuple(materials)
+        self.regions = np.asarray(regions)
+        self.points = space.volume_points(quadrature_order)
+        self.linear = np.array([m.small_strain for m in materials])[self.regions]
+        self.forms = tuple(compiled_form(material) for material in materials)
+        self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
+        resisting = volume_stiffness * np.array([m.shear_modulus for m in materials])[self.regions]
+        self.volume_stiffness = resisting / (1 + resisting * self.compliance)
+
+    def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
+        """The same body in a time step of materials that relax."""
+        body = copy.copy(self)
+        body.relaxation = relaxation
+        return body
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """Sparse pattern of the tangent."""
+        return build_pattern(self.space.elements, self.space.dim, self.space.pressures)
+
+    def kinematics(self, unknowns: Array) -> Kinematics:
+        """Deformation at the quadrature points."""
+        u, _ = self.space.split(unknowns)
+        shape = self.points.weights.shape
+        F, invariants = np.zeros((9, *shape)), np.empty((3, *shape))
+        with loop_threads(len(self.regions)):
+            self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
+        return Kinematics(F.reshape(3, 3, *shape), *invariants)
+
+    def pressure(self, unknowns: Array) -> Array:
+        """Pressure unknown (tension positive) at the quadrature points in Pa, shape (E, Q)."""
+        _, p = self.space.split(unknowns)
+        return np.einsum("qv,ev->eq", self.points.pressure_values, p[self.space.pressures])
+
+    def energy_slopes(self, state: Kinematics, *, second: bool) -> Array:
+        """W1, W2 and with ``second`` W11, W12, W22 at the points, shape (2 or 5, E, Q); the shear modulus first if linear.
+
+        Scaled as the present step of a relaxing material asks; zero where a material has no compiled form.
+        """
+        slopes = np.zeros((5 if second else 2, *state.J.shape))
+        for index, material in enumerate(self.materials):
+            mine = self.regions == index
+            if self.forms[index] == "invariants":
+                values = material.energy_gradient(state.I1[mine], state.I2[mine])  # type: ignore[attr-defined]
+                if second:
+                    values = (*values, *material.energy_hessian(state.I1[mine], state.I2[mine]))  # type: ignore[attr-defined]
+                for slot, value in zip(slopes, values, strict=True):
+                    slot[mine] = value
+            elif self.forms[index] == "small_strain":
+                slopes[0, mine] = material.shear_modulus
+        return slopes if self.relaxation is None else slopes * self.relaxation.scale[:, None]
+
+    def compiled_elastic_stress(self, state: Kinematics) -> Array:
+        """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa, not scaled by a step of time; where a material has no compiled
+        form, its entries mean nothing."""
+        elastic, stress = self.with_relaxation(None), np.zeros((6, *state.J.shape))
+        self._kernels.elastic_stress(state.F, elastic.energy_slopes(state, second=False), self.linear, stress)
+        return stress
+
+    def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
+        """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
+        state = self.kinematics(unknowns) if state is None else state
+        u, p = self.space.split(unknowns)
+        out = np.zeros(self.space.size)
+        slopes, pattern = self.energy_slopes(state, second=False), self.pattern
+        with loop_threads(len(self.regions)):
+            self._kernels.residual(u, p, self._tables, slopes, self._history_stress(), pattern.order, pattern.color_starts, out)
+        for part in self._interpreted:
+            part.add_residual(self._at(part, unknowns, state), out)
+        return out
+
+    def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
+        """Entries of the tangent in the order of ``pattern``, a new array."""
+        state = self.kinematics(unknowns) if state is None else state
+        u, p = self.space.split(unknowns)
+        pattern = self.pattern
+        data = np.zeros(len(pattern.indices))
+        slopes = self.energy_slopes(state, second=True)
+        with loop_threads(len(self.regions)):
+            places = (pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets)
+            self._kernels.tangent(u, p, self._tables, slopes, self._history_stress(), *places, data)
+        for part in self._interpreted:
+            part.add_tangent(self._at(part, unknowns, state), pattern, data)
+        return data
+
+    def rounding_forces(self) -> Array:
+        """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
+        moduli = np.array([material.shear_modulus for material in self.materials])[self.regions]
+        points = self.points
+        size = np.abs(points.gradients).max(axis=-1) + points.hoop
+        forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
+        return np.bincount(self.space.elements.ravel(), forces.ravel())
+
+    @property
+    def _kernels(self) -> ModuleType:
+        """The compiled loops."""
+        return kernels if self.space.dim == 3 else section_kernels
+
+    @cached_property
+    def _interpreted(self) -> tuple[InterpretedPart, ...]:
+        """The regions of materials without a compiled form."""
+        uncompiled = [index for index, form in enumerate(self.forms) if form is None]
+        chosen = ((self.materials[index], np.flatnonzero(self.regions == index)) for index in uncompiled)
+        return tuple(
+            InterpretedPart(material, self.space, self.points, mine, volume_stiffness=float(self.volume_stiffness[mine[0]]))
+            for material, mine in chosen
+            if mine.size
+        )
+
+    def _at(self, part: InterpretedPart, unknowns: Array, state: Kinematics) -> PointState:
+        """What a part is computed from."""
+        mine, relaxation = part.elements, self.relaxation
+        history = (None, None) if relaxation is None else (relaxation.scale[mine], relaxation.stress[:, mine])
+        return PointState(state.F[:, :, mine], self.pressure(unknowns)[mine], *history)
+
+    def _history_stress(self) -> Array:
+        return ELASTIC_STEP if self.relaxation is None else self.relaxation.stress
+
+    @cached_property
+    def _tables(self) -> tuple[Array, ...]:
+        """What the compiled loops read of the mesh and the materials; elements without a compiled form have no weight there."""
+        points = self.points
+        compiled_elements = np.array([form is not None for form in self.forms])[self.regions]
+        return (
+            self.space.elements,
+            self.space.pressures,
+            points.gradients,
+            points.hoop,
+            points.weights if compiled_elements.all() else points.weights * compiled_elements[:, None],
+            points.pressure_values,
+            self.linear | ~compiled_elements,
+            self.compliance,
+            self.volume_stiffness,
+        )

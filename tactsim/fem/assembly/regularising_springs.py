@@ -1,0 +1,53 @@
+"""Springs on every node: far weaker than the tissue, against rigid-body motion while no contact holds the body, or as strong as
+the drag that holds back a sudden motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body
+
+WEAKNESS = 1e-8
+"""Stiffness of all springs together over that of the body: its shear modulus times its size."""
+
+
+class AnchoredSprings:
+    """Springs on every node, in proportion to its volume, without force at the unknowns ``rest`` (size,).
+
+    ``strength`` is the stiffness of all springs together over that of the body: its shear modulus times its size.
+    """
+
+    def __init__(self, body: Body, strength: float, rest: Array):
+        space = body.space
+        volume = np.bincount(space.elements.ravel(), np.repeat(body.points.weights.sum(axis=1), space.elements.shape[1]))
+        size = float(np.ptp(space.nodes, axis=0).max())
+        softest = min(material.shear_modulus for material in body.materials)
+        self._stiffness = np.zeros(space.size)
+        self._stiffness[: space.displacement_size] = np.repeat(strength * softest * size * volume / volume.sum(), space.dim)
+        unknowns = np.arange(space.size)
+        self._tangent = np.zeros(len(body.pattern.indices))
+        self._tangent[body.pattern.positions(unknowns, unknowns)] = self._stiffness
+        self._rest = rest[: space.displacement_size]
+        self._split = space.displacement_size
+
+    def force(self, displacement: Array) -> Array:
+        """External nodal forces (size,) in N at nodal displacements (n, d) in m."""
+        force = -self._stiffness
+        force[: self._split] *= displacement.ravel() - self._rest
+        return force
+
+    def stiffness(self, displacement: Array) -> Array:
+        """Tangent entries, the same at all displacements."""
+        return self._tangent
+
+    def total(self, displacement: Array) -> Array:
+        """Resultant (d,) in N of the springs on the body."""
+        return self.force(displacement)[: self._split].reshape(displacement.shape).sum(axis=0)
+
+
+class RegularisingSprings(AnchoredSprings):
+    """Springs to the undeformed places; their relative error is of the order of ``WEAKNESS``."""
+
+    def __init__(self, body: Body):
+        super().__init__(body, WEAKNESS, np.zeros(body.space.size))

@@ -1,0 +1,124 @@
+"""Balance of forces on a body: how far an iterate of Newton's method is from equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body, Kinematics
+from tactsim.fem.assembly.external_forces import AnyInterface, FollowerLoad
+from tactsim.fem.equilibrium.constraints import Constraints
+from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
+
+ROUND_OFF = 128 * np.finfo(float).eps
+"""Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
+
+
+@dataclass(frozen=True)
+class ExternalForces:
+    """What acts on a body: interfaces, follower loads, nodal forces (size,) in N, and under load control the force that the
+    interfaces together must exert."""
+
+    interfaces: tuple[AnyInterface, ...] = ()
+    loads: tuple[FollowerLoad, ...] = ()
+    nodal_force: Array | None = None
+    load_control: PrescribedForce | None = None
+
+    def nodal(self, displacement: Array, size: int) -> Array:
+        """Forces (size,) in N of loads and nodal forces at nodal displacements (n, d)."""
+        total = np.zeros(size)
+        for load in self.loads:
+            total += load.force(displacement)
+        return total if self.nodal_force is None else total + self.nodal_force
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What residuals are measured by: mean nodal ``volume`` in m^3, and ``rounding`` (n,) of the internal nodal forces in N."""
+
+    volume: float
+    rounding: Array
+
+    @classmethod
+    def of(cls, body: Body) -> Scales:
+        """Those of a body."""
+        volume = body.points.weights.sum() / len(body.space.pressure_corners)
+        return cls(volume, ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim))
+
+
+@dataclass(frozen=True)
+class NewtonState:
+    """Where Newton is: ``internal`` less external nodal forces in N, displacements of the interfaces' points relative to their
+    rigid displacement in m, tractions in Pa, the relative ``residual``, and the root of the sum of all
+    squared ``unbalanced`` forces in N."""
+
+    unknowns: Array
+    kinematics: Kinematics
+    rigid_displacement: float
+    internal: Array
+    displacements: list[Array]
+    tractions: tuple[Array, ...]
+    residual: float
+    unbalanced: float
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The forces on one body in one solution; residuals are relative to forces, at least to ``rounding / tolerance``."""
+
+    body: Body
+    constraints: Constraints
+    forces: ExternalForces
+    scales: Scales
+    tolerance: float
+
+    def at(self, unknowns: Array, kinematics: Kinematics, rigid_displacement: float) -> NewtonState:
+        """The state at these unknowns (size,) and this rigid displacement in m of the interfaces.
+
+        Raises
+        ------
+        ConvergenceError
+            If round-off hides a prescribed force.
+        """
+        interfaces, control = self.forces.interfaces, self.forces.load_control
+        internal = self.body.residual(unknowns, kinematics)
+        largest = float(np.abs(internal[: self.body.space.displacement_size]).max())
+        internal -= self.forces.nodal(self.body.space.split(unknowns)[0], self.body.space.size)
+        moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
+        tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
+        rounding = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
+        residual, unbalanced = self._norms(internal, largest, tractions, rounding)
+        if control is not None:
+            surfaces = [interface.surface for interface in interfaces]
+            residual = max(residual, control.error(surfaces, tractions, rounding, self.tolerance))
+        return NewtonState(unknowns, kinematics, rigid_displacement, internal, moved, tractions, residual, unbalanced)
+
+    def _norms(
+        self, internal: Array, largest: float, tractions: Sequence[Array], rounding: Sequence[Array]
+    ) -> tuple[float, float]:
+        """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
+        error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
+        residual, split = internal.copy(), self.body.space.displacement_size
+        scale, noise = max(largest, float(np.abs(internal[:split]).max())), self.scales.rounding.copy()
+        for interface, traction, lost in zip(self.forces.interfaces, tractions, rounding, strict=True):
+            force = interface.surface.force(traction)
+            scale = max(scale, float(np.abs(force).max()))
+            residual -= force
+            noise += interface.surface.largest_force(lost)[:split]
+        residual = self.constraints.free(residual)
+        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.tolerance)).max()
+        relative = float(max(unbalanced, np.abs(residual[split:]).max() / self.scales.volume))
+        return relative, float(np.linalg.norm(residual[:split]))
+
+
+def point_displacements(
+    body: Body, unknowns: Array, interfaces: Sequence[AnyInterface], control: PrescribedForce | None, rigid_displacement: float
+) -> list[Array]:
+    """Displacement (d, n) in m of the points of each interface, relative to its rigid displacement under load control."""
+    moved = [interface.surface.points.interpolate(body.space.split(unknowns)[0]) for interface in interfaces]
+    if control is None:
+        return moved
+    return [displacement - rigid_displacement * e[:, None] for displacement, e in zip(moved, control.directions, strict=True)]

@@ -1,0 +1,172 @@
+"""Iterative solution for bodies too large for a factor: GMRES with a block triangular preconditioner for (u, p).
+
+For the tangent [[A, B'], [B, -C]] the residual's forces are first augmented by B' W^-1 times its volumes, then divided by
+[[A~, B' (1 - W^-1 C)], [0, -S~]]. W is the lumped mass matrix of the pressures over b G, A~ a cycle of two levels for A and
+b G (div u) (div v), S~ the mass matrix over (4/3 + b) G + kappa and C, kappa the stiffness by which a `Body` resists what its
+pressures leave of a change of volume. Without W the iterations grow with every refinement, at free
+edges: A alone hardly resists a change of volume there.
+
+Sources: Elman, Silvester & Wathen 2014, Finite Elements and Fast Iterative Solvers, chapter 9 (block preconditioner); Benzi &
+Olshanskii 2006, doi:10.1137/050646421 (augmentation); Saad & Schultz 1986, doi:10.1137/0907058 (GMRES).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import bsr_matrix, csr_matrix
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from tactsim.array import Array
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.solvers.linear import LARGEST_RESIDUAL, LOOSENESS, IterativeSolver, LinearSystem, direct_solver
+from tactsim.fem.solvers.two_level import TwoLevel, free_rows
+
+RESTART = 80
+"""Search directions before a restart; the systems of a grasp need 30 to 60 for Newton's accuracy."""
+MOST_CYCLES = 6
+FINEST = 1e-11
+"""Smallest relative error requested; below it, round-off of the stiff contact dominates."""
+BULK = 1.0
+"""b, bulk over shear modulus of the augmentation."""
+SHARE = 0.3
+"""Fraction of the largest residual that ``linear.solved`` accepts."""
+
+
+class BlockPreconditioned(IterativeSolver):
+    """A solver for the tangents of one body by GMRES; deterministic, its memory is some copies of the matrix.
+
+    The residual is measured without units: each force over the root of its stiffness, each volume over that of its compliance.
+    """
+
+    name = "block_preconditioned"
+
+    def __init__(self, body: Body):
+        self._displacements, self._dilatation = TwoLevel(body), dilatation(body)
+        shear = _moduli(body)
+        self._mass = pressure_mass(body, (4 / 3 + BULK) * shear + body.volume_stiffness)
+        self._lumped = np.asarray(pressure_mass(body, BULK * shear).sum(axis=1)).ravel()
+        self._split, self._dim = body.space.displacement_size, body.space.dim
+        self._schur = direct_solver()
+        self._matrix: csr_matrix | None = None
+        self.iterations = 0
+
+    def factor(self, system: LinearSystem) -> None:
+        """Make the preconditioner of the system's matrix.
+
+        Raises
+        ------
+        ConvergenceError
+            If a part of it is singular or the matrix holds numbers that are not finite.
+        """
+        split, matrix = self._split, system.matrix
+        if not np.isfinite(matrix.data).all():
+            raise ConvergenceError("the tangent holds numbers that are not finite")
+        self._matrix = matrix
+        rows = matrix[:split]
+        block = rows[:, :split].tobsr((self._dim, self._dim))
+        block.sort_indices()
+        self._gradient = rows[:, split:].tocsr()
+        schur = (self._mass - matrix[split:, split:]).tocsr()
+        schur.sort_indices()
+        diagonal = np.concatenate([block.diagonal(), schur.diagonal()])
+        if not diagonal.all():
+            raise ConvergenceError("an unknown has no stiffness; is the material stable?")
+        self._scale = 1 / np.sqrt(np.abs(diagonal))
+        self._schur.close()
+        self._schur.factor(schur)
+        self._compliance = -matrix[split:, split:]
+        self._displacements.factor(augmented(block, self._dilatation, BULK))
+
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,) of the last matrix, its scaled residual over the right-hand side's ``accuracy``.
+
+        Raises
+        ------
+        ConvergenceError
+            If the iteration does not reach it, as with a singular matrix.
+        """
+        if self._matrix is None:
+            raise InputError("factor a matrix before solving")
+        solution, left, self.iterations = np.zeros_like(right), right, 0
+        size = float(np.linalg.norm(self._scale * right))
+        goal = max(accuracy, FINEST) * size
+        largest = SHARE * max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max())
+        operator = LinearOperator((len(right),) * 2, matvec=self._preconditioned, dtype=float)
+        for _ in range(MOST_CYCLES):
+            if not self._above(left, goal, largest):
+                return solution
+            now = float(np.linalg.norm(self._scale * left))
+            target = goal if now > goal else SHARE * now
+            y, _ = gmres(operator, self._scale * left, rtol=0.0, atol=target, restart=RESTART, maxiter=1)
+            solution = solution + self._approximate(y / self._scale)
+            left = right - self._matrix @ solution
+        if self._above(left, goal, largest):
+            raise ConvergenceError(
+                f"the iterative solver left {np.linalg.norm(self._scale * left) / size:.1e} of the residual after "
+                f"{self.iterations} iterations; is the body held against moving as a whole, and is the material stable?"
+            )
+        return solution
+
+    def close(self) -> None:
+        """Release the factors' memory."""
+        self._displacements.close()
+        self._schur.close()
+        self._matrix = None
+
+    def _above(self, left: Array, goal: float, largest: float) -> bool:
+        """Whether a residual exceeds the goal, or its largest entry what a solution may leave."""
+        return not (np.linalg.norm(self._scale * left) <= 1.01 * goal and np.abs(left).max() <= largest)
+
+    def _preconditioned(self, y: Array) -> Array:
+        """The scaled matrix times the preconditioner."""
+        self.iterations += 1
+        return self._scale * (self._matrix @ self._approximate(y / self._scale))
+
+    def _approximate(self, residual: Array) -> Array:
+        """M^-1 times a residual."""
+        split = self._split
+        force = residual[:split] + self._gradient @ (residual[split:] / self._lumped)
+        pressure = -self._schur.solve(residual[split:])
+        effective = pressure - (self._compliance @ pressure) / self._lumped
+        return np.concatenate([self._displacements(force - self._gradient @ effective), pressure])
+
+
+def pressure_mass(body: Body, moduli: Array) -> csr_matrix:
+    """Mass matrix of the pressures over a modulus (E,) in Pa, in m^3/Pa, shape (n_corner, n_corner)."""
+    values, space = body.points.pressure_values, body.space
+    blocks = np.einsum("e,eq,qv,qw->evw", 1 / moduli, body.points.weights, values, values)
+    pressures = space.pressures
+    rows, columns = np.broadcast_arrays(pressures[:, :, None], pressures[:, None, :])
+    return csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(len(space.pressure_corners),) * 2)
+
+
+def dilatation(body: Body) -> bsr_matrix:
+    """Stiffness of G (div u) (div v) on the undeformed body in N/m, shape (n d, n d) in blocks."""
+    space, points = body.space, body.points
+    count, dim = len(space.nodes), space.dim
+    rows, columns = np.broadcast_arrays(space.elements[:, :, None], space.elements[:, None, :])
+    places, weights = (rows.ravel(), columns.ravel()), _moduli(body)[:, None] * points.weights
+    divergence = [points.gradients[..., i] + (points.hoop if i == 0 else 0.0) for i in range(dim)]
+    parts = {}
+    for i in range(dim):
+        for j in range(dim):
+            entries = np.matmul((weights[..., None] * divergence[i]).swapaxes(1, 2), divergence[j])
+            parts[i, j] = csr_matrix((entries.ravel(), places), shape=(count, count))
+    data = np.stack([[parts[i, j].data for j in range(dim)] for i in range(dim)]).transpose(2, 0, 1)
+    return bsr_matrix((np.ascontiguousarray(data), parts[0, 0].indices, parts[0, 0].indptr), shape=(count * dim, count * dim))
+
+
+def augmented(block: bsr_matrix, added: bsr_matrix, factor: float) -> bsr_matrix:
+    """The displacement block plus ``factor`` times another of its pattern, except on the unknowns that are fixed."""
+    free = free_rows(block)
+    rows = np.repeat(np.arange(len(free)), np.diff(added.indptr))
+    data = factor * added.data * free[rows][:, :, None] * free[added.indices][:, None, :]
+    total = block + bsr_matrix((data, added.indices, added.indptr), shape=block.shape)
+    total.sort_indices()
+    return total
+
+
+def _moduli(body: Body) -> Array:
+    """Shear modulus (E,) in Pa of each element."""
+    return np.array([material.shear_modulus for material in body.materials])[body.regions]

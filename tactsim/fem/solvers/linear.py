@@ -1,0 +1,180 @@
+"""Linear systems: what a solver offers, SuperLU, the choice of a direct solver, and solutions that are checked."""
+
+from __future__ import annotations
+
+import importlib.util
+import platform
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from tactsim.array import Array
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
+from tactsim.fem.solvers.symmetric_factor import SymmetricWhereItIs
+
+LARGEST_RESIDUAL = 1e-3
+"""Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
+LOOSENESS = 10.0
+"""How much larger the largest entry of a residual may be, relatively, than its accuracy in the mean."""
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well: made only where it is used."""
+
+    matrix: csr_matrix
+    make_nearby: Callable[[], csr_matrix] | None = None
+
+    @property
+    def nearby(self) -> csr_matrix:
+        """The nearby matrix, by default the matrix itself."""
+        return self.matrix if self.make_nearby is None else self.make_nearby()
+
+
+class DirectSolver(Protocol):
+    """Factors matrices of one sparse pattern; the symbolic analysis is made once."""
+
+    name: str
+
+    def factor(self, matrix: csr_matrix) -> None:
+        """Factor a matrix; its pattern must be that of the first one."""
+
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,) of the last matrix."""
+
+    def close(self) -> None:
+        """Release the factor's memory."""
+
+
+class IterativeSolver(ABC):
+    """Solves systems of one sparse pattern to a requested accuracy."""
+
+    name: str
+
+    @abstractmethod
+    def factor(self, system: LinearSystem) -> None:
+        """Take a system and make its preconditioner."""
+
+    @abstractmethod
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Release the preconditioner's memory."""
+
+
+LinearSolver = DirectSolver | IterativeSolver
+
+
+class SuperLU:
+    """scipy's SuperLU, where Pardiso does not install."""
+
+    name = "superlu"
+
+    def __init__(self) -> None:
+        self._factor: Any = None
+
+    def factor(self, matrix: csr_matrix) -> None:
+        """Factor the matrix with a minimum-degree order.
+
+        Raises
+        ------
+        ConvergenceError
+            If the matrix is singular.
+        """
+        from scipy.sparse.linalg import splu
+
+        try:
+            self._factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": False})
+        except RuntimeError as error:
+            raise ConvergenceError(f"the sparse direct solver failed ({error}); is the body held?") from error
+
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,).
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
+        if self._factor is None:
+            raise InputError("factor a matrix before solving")
+        return self._factor.solve(right)
+
+    def close(self) -> None:
+        """Drop the factor."""
+        self._factor = None
+
+
+def solved(
+    solver: LinearSolver,
+    matrix: csr_matrix,
+    right: Array,
+    accuracy: float = 0.0,
+    nearby: Callable[[], csr_matrix] | None = None,
+) -> Array:
+    """Checked solution (n,) of one linear system, to an error over its size of ``accuracy`` by an iterative solver.
+
+    ``nearby`` makes the nearby matrix of the `LinearSystem`.
+
+    Neither solver reports a singular matrix reliably: both replace zero pivots and return huge numbers.
+
+    Raises
+    ------
+    ConvergenceError
+        If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
+    """
+    if isinstance(solver, IterativeSolver):
+        solver.factor(LinearSystem(matrix, nearby))
+    else:
+        solver.factor(matrix)
+    return resolved(solver, matrix, right, accuracy)
+
+
+def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
+    """Solution (n,) for another right-hand side with the factor that the solver holds.
+
+    Raises
+    ------
+    ConvergenceError
+        As ``solved``.
+    """
+    solution = solver.solve(right, accuracy) if isinstance(solver, IterativeSolver) else solver.solve(right)
+    left = float(np.abs(matrix @ solution - right).max())
+    if not left <= max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max()):
+        raise ConvergenceError(
+            f"the linear system is singular (largest step {np.abs(solution).max():.2e}, left over {left:.2e} "
+            f"of {np.abs(right).max():.2e}); is the body held against moving as a whole, and is the material stable?"
+        )
+    return solution
+
+
+def direct_solver(name: str | None = None) -> DirectSolver:
+    """The solver of this name (pardiso_single, pardiso_symmetric, pardiso or superlu), by default the fastest that is installed.
+
+    Raises
+    ------
+    InputError
+        If there is no such solver.
+    """
+    if name is None:
+        installed = importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
+        name = "pardiso" if installed else "superlu"
+    kinds: dict[str, type[Pardiso] | type[SuperLU]] = {
+        kind.name: kind for kind in (SinglePardiso, SymmetricPardiso, Pardiso, SuperLU)
+    }
+    if name not in kinds:
+        raise InputError(f"unknown linear solver {name!r}; allowed: {', '.join(kinds)}")
+    return kinds[name]()
+
+
+def section_solver() -> DirectSolver:
+    """The solver of systems of some ten thousand unknowns, which each get a factor: symmetric as long as they are."""
+    solver = direct_solver()
+    return SymmetricWhereItIs() if solver.name == Pardiso.name else solver

@@ -1,0 +1,60 @@
+"""Where elements change their volume by far more or less than the pressure in them asks for: the mesh is too coarse there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.equilibrium.diagnosis import element_in_words
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+
+POOR_RATIO = 0.1
+"""Difference of a volume ratio from what the pressure asks for that counts as poor: a tenth, far beyond the few per cent that
+P2/P1 elements leave at the corners of bodies in meshes that resolve them."""
+POOR_SHARE = 1e-3
+"""Part of the volume with poor ratios of which a user is warned: a few points at sharp corners are less and do no harm."""
+
+
+def volume_error(body: Body, state: ContactEquilibrium) -> Array:
+    """Volume ratio less the one that the pressure asks for, at the quadrature points (E, Q).
+
+    .. math:: g(F) - p / K
+
+    It is J - 1 for exactly incompressible tissue; compressible tissue may change its volume as its pressure asks.
+    """
+    kinematics = state.kinematics
+    change = np.where(body.linear[:, None], np.trace(kinematics.F) - 3, kinematics.J - 1)
+    return change - body.compliance[:, None] * body.pressure(state.unknowns)
+
+
+class VolumeRatios:
+    """The worst of the accepted states of one run; ``finer`` says what refines the mesh."""
+
+    def __init__(self, finer: str = "take smaller elements") -> None:
+        self.worst, self._worst_in_words, self._finer = 0.0, "", finer
+
+    def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
+        """Part of the volume with poor ratios in a state."""
+        error, weights = volume_error(body, state), body.points.weights
+        poor = np.abs(error) > POOR_RATIO
+        share = float(weights[poor].sum() / weights.sum())
+        if share > self.worst:
+            self.worst, ratios = share, state.kinematics.J[poor]
+            self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst in {_place(body, error)}"
+        return share
+
+    def warnings(self) -> list[str]:
+        """Warnings about the worst state: how much, where, and what to do."""
+        if self.worst <= POOR_SHARE:
+            return []
+        return [
+            f"{self.worst:.2%} of the volume misses the volume that its pressure asks for by more than {POOR_RATIO:.0%} (local "
+            f"volume ratios of {self._worst_in_words}): the mesh is too coarse there; {self._finer}"
+        ]
+
+
+def _place(body: Body, error: Array) -> str:
+    """The element with the largest error: its number, undeformed centroid and region."""
+    element = int(np.abs(error).max(axis=1).argmax())
+    return element_in_words(body, element)

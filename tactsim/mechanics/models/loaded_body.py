@@ -1,0 +1,180 @@
+"""A body under prescribed motions of its faces, tractions, pressures and rigid bodies, each with its own course in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.contact.penalty import Regularisation
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.assembly.regularising_springs import RegularisingSprings
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.solvers.linear import solved
+from tactsim.fem.solvers.solver_choice import solver_for
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
+from tactsim.mechanics.contact.posed_contact import PosedContact
+from tactsim.mechanics.fields.point_values import cauchy_stress, von_mises
+from tactsim.mechanics.fields.section_fields import section_frame
+from tactsim.mechanics.fields.solid_fields import solid_frame
+from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.result import FieldFrame
+
+VON_MISES = "von_mises [Pa]"
+"""Name of that field."""
+ACCURACY = 1e-6
+"""Error of the first guess of a step, over its size: Newton mends it."""
+
+
+class FactoredForce(Protocol):
+    """A load that a factor makes larger."""
+
+    def at(self, pressure: float, /) -> FollowerLoad:
+        """The load at a factor, or a pressure in Pa."""
+
+
+@dataclass(frozen=True)
+class MovedContact:
+    """A contact that begins as ``posed``; its rigid body moves by ``displacement`` (d,) in m times its factor."""
+
+    posed: PosedContact
+    displacement: Array
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What acts on a body; the factors of the motions come first, then those of the loads and those of the contacts.
+
+    ``unit_loads`` are loads with the size that each has at the factor one, which `FactoredForce.at` takes.
+    """
+
+    motions: PrescribedMotions
+    motion_count: int
+    loads: tuple[FactoredForce, ...] = ()
+    unit_loads: tuple[float, ...] = ()
+    contacts: tuple[MovedContact, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of factors."""
+        return self.motion_count + len(self.loads) + len(self.contacts)
+
+    def split(self, factors: Sequence[float]) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
+        """The factors of motions, of loads and of contacts."""
+        first, second = self.motion_count, self.motion_count + len(self.loads)
+        return factors[:first], factors[first:second], factors[second:]
+
+
+class LoadedBody:
+    """Finds the equilibrium of a body at given factors of its conditions.
+
+    Parameters
+    ----------
+    mesh, body : what deforms
+    conditions : what acts on it
+    regularisation : of its contacts
+    options : of Newton's method
+    """
+
+    def __init__(
+        self,
+        mesh: QuadraticMesh,
+        body: Body,
+        conditions: Conditions,
+        regularisation: Regularisation,
+        *,
+        options: NewtonOptions | None = None,
+    ):
+        self.mesh, self.body, self.conditions = mesh, body, conditions
+        self.space: TaylorHood = body.space
+        self._regularisation = regularisation
+        solver = solver_for(body) if self.space.dim == 3 else None
+        self.problem = Problem(body, conditions.motions.unknowns, solver=solver, options=options or NewtonOptions())
+        self._springs: tuple[FollowerLoad, ...] = (RegularisingSprings(body),) if conditions.contacts else ()
+
+    def at_rest(self) -> ContactEquilibrium:
+        """The undeformed body."""
+        unknowns = np.zeros(self.space.size)
+        contacts = tuple(contact.posed for contact in self.conditions.contacts)
+        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, self._regularisation, self.body.kinematics(unknowns))
+
+    def equilibrium(
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
+    ) -> ContactEquilibrium:
+        """The equilibrium at these factors, reached from ``now``; its ``load`` is the way in m that the rigid bodies have moved.
+
+        Raises
+        ------
+        ConvergenceError
+            If there is none that Newton finds.
+        """
+        motions, forces, moves = self.conditions.split(loads)
+        acting = [*self._springs, *self._forces(forces)]
+        unknowns = self._lifted(now, guess[:-1], self.conditions.motions.values(motions), acting, relaxation)
+        if not now.contacts:
+            reached = self.problem.solve(unknowns, loads=acting, relaxation=relaxation)
+            return ContactEquilibrium(
+                now.load, reached.unknowns, reached.iterations, reached.history[-1], (), now.regularisation, reached.kinematics
+            )
+        steps = [
+            one.posed.place + factor * one.displacement - contact.place
+            for one, factor, contact in zip(self.conditions.contacts, moves, now.contacts, strict=True)
+        ]
+        distance = max(float(np.linalg.norm(step)) for step in steps)
+        directions = [step / distance if distance > 0 else step for step in steps]
+        return guaranteed_equilibrium(
+            self.problem, now, now.load + distance, unknowns, directions=directions, loads=acting, relaxation=relaxation
+        )
+
+    def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
+        """Fields of a state for ParaView, with von Mises's stress, the mean of each element."""
+        draw = section_frame if self.space.dim == 2 else solid_frame
+        frame = draw(self.mesh, self.body, state, time=time, isochoric=isochoric)
+        stress = cauchy_stress(self.body, state.unknowns, state.kinematics, isochoric)
+        return replace(frame, cell_data={**frame.cell_data, VON_MISES: von_mises(stress).mean(axis=1)})
+
+    def internal_forces(self, unknowns: Array, relaxation: RelaxationStep | None = None) -> Array:
+        """Internal nodal forces (n, d) in N: what acts on each node from outside."""
+        internal = self.body.with_relaxation(relaxation).residual(unknowns)
+        return internal[: self.space.displacement_size].reshape(-1, self.space.dim)
+
+    def _forces(self, factors: Sequence[float]) -> list[FollowerLoad]:
+        """The loads at their factors."""
+        together = zip(self.conditions.loads, self.conditions.unit_loads, factors, strict=True)
+        return [load.at(factor * unit) for load, unit, factor in together]
+
+    def _lifted(
+        self,
+        now: ContactEquilibrium,
+        guess: Array,
+        prescribed: Array,
+        loads: Sequence[FollowerLoad],
+        relaxation: RelaxationStep | None,
+    ) -> Array:
+        """The guess with the prescribed displacements; what they miss of them goes on linearly into the body."""
+        fixed, unknowns = self.conditions.motions.unknowns, guess.copy()
+        missing = prescribed - unknowns[fixed]
+        if not missing.any():
+            return unknowns
+        if np.abs(missing).max() > ACCURACY * np.abs(prescribed).max():
+            body = self.body.with_relaxation(relaxation)
+            data = body.tangent(now.unknowns, now.kinematics)
+            u, _ = self.space.split(now.unknowns)
+            for load in loads:
+                data += load.stiffness(u)
+            moved = np.zeros(self.space.size)
+            moved[fixed] = missing
+            right = -(body.pattern.matrix(data) @ moved)
+            right[fixed] = missing
+            matrix = body.pattern.matrix(self.problem.constraints.apply(data.copy()))
+            unknowns += solved(self.problem.solver, matrix, right, ACCURACY)
+        unknowns[fixed] = prescribed
+        return unknowns

@@ -1,0 +1,84 @@
+"""The equilibrium of a body for prescribed values: the displacement or force of the rigid bodies, and pressures on its walls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+
+
+class Pressed(Protocol):
+    """A model with rigid bodies that move together."""
+
+    @property
+    def body(self) -> Body:
+        """What deforms."""
+
+    def equilibrium(
+        self,
+        state: ContactEquilibrium,
+        load: float,
+        guess: Array,
+        *,
+        force: float | None = None,
+        relaxation: RelaxationStep | None = None,
+        loads: Sequence[FollowerLoad] = (),
+    ) -> ContactEquilibrium:
+        """The equilibrium at a displacement ``load`` in m, or on from there until the bodies press with a ``force`` in N."""
+
+
+class PressedBody:
+    """Finds the equilibrium for a displacement in m or a force in N, followed by a pressure in Pa for each wall.
+
+    Parameters
+    ----------
+    model : body and rigid bodies
+    by_force : whether the first value is a force
+    first_displacement : guess in m of a displacement under a force with which something touches
+    walls : what the pressures act on
+    first_guess : unknowns that Newton starts from in the undeformed body, by the displacement in m; by default
+        those of no deformation
+    """
+
+    def __init__(
+        self,
+        model: Pressed,
+        *,
+        by_force: bool,
+        first_displacement: float,
+        walls: Sequence[FollowerPressure] = (),
+        first_guess: Callable[[float], Array] | None = None,
+    ):
+        self._model, self._by_force, self._first_displacement = model, by_force, first_displacement
+        self._walls, self._first_guess = walls, first_guess
+
+    @property
+    def body(self) -> Body:
+        """What deforms."""
+        return self._model.body
+
+    def equilibrium(
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
+    ) -> ContactEquilibrium:
+        """The equilibrium at prescribed values, reached from ``now``; bodies without a force stay where they are.
+
+        Raises
+        ------
+        ConvergenceError
+            If there is none that Newton finds.
+        """
+        model, pressures = self._model, [wall.at(p) for wall, p in zip(self._walls, loads[1:], strict=True)]
+        if not self._by_force:
+            unknowns = guess[:-1]
+            if self._first_guess is not None and loads[0] > now.load and not now.unknowns.any():
+                unknowns = self._first_guess(loads[0])
+            return model.equilibrium(now, loads[0], unknowns, relaxation=relaxation, loads=pressures)
+        if loads[0] == 0:
+            return model.equilibrium(now, now.load, guess[:-1], relaxation=relaxation, loads=pressures)
+        rigid_displacement = guess[-1] if guess[-1] > 0 else self._first_displacement
+        return model.equilibrium(now, rigid_displacement, guess[:-1], force=loads[0], relaxation=relaxation, loads=pressures)

@@ -1,0 +1,158 @@
+"""Tissue on a base with rigid bodies above it, in a section or in space: what both have in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.contact.penalty import Regularisation
+from tactsim.contact.traction import ContactPair, ContactState
+from tactsim.errors import InputError
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.assembly.space import Measure, TaylorHood
+from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.interfaces import ContactLaw, Material, RigidBody
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.first_touch import first_touch
+from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
+from tactsim.mechanics.contact.posed_contact import PosedContact
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.result import FieldFrame
+
+FAR = 2.0
+"""Height from which a body approaches, over the size of the tissue."""
+
+
+class PressedModel(ABC):
+    """Tissue on a base with rigid bodies above it that move down together, along the last coordinate.
+
+    Parameters
+    ----------
+    mesh : its last coordinate is the height
+    materials : one per region of the mesh
+    base : "fixed" or "slipping"
+    top : (F, n) facets of the tissue that may touch
+    measure : what the mesh stands for
+    mirrors : coordinates that are zero on planes of symmetry
+    options : of Newton's method
+    """
+
+    def __init__(
+        self,
+        mesh: QuadraticMesh,
+        materials: Sequence[Material],
+        *,
+        base: str,
+        top: Array,
+        measure: Measure,
+        mirrors: Sequence[int],
+        options: NewtonOptions | None = None,
+    ):
+        self.mesh, self.top, self.base = mesh, top, base
+        self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
+        self.body = Body(self.space, materials, mesh.regions)
+        dim = self.space.dim
+        self.points = self.space.surface_points(top)
+        self.surface = SurfaceAssembly(self.points, self.body.pattern, dim)
+        self.reference = self.points.interpolate(mesh.nodes)
+        height = mesh.nodes[:, -1]
+        self.base_nodes = np.flatnonzero(height <= height.min() * (1 - 1e-9))
+        held = [dim * np.flatnonzero(mesh.nodes[:, axis] == 0.0) + axis for axis in mirrors]
+        held += [dim * self.base_nodes + axis for axis in (range(dim) if base == "fixed" else (dim - 1,))]
+        self.problem = Problem(self.body, np.unique(np.concatenate(held)), options=options or NewtonOptions())
+        self.down = -np.eye(dim)[-1]
+
+    @property
+    @abstractmethod
+    def images(self) -> Array:
+        """What a force (d,) on the part that is computed is multiplied by for the whole tissue."""
+
+    @abstractmethod
+    def rise(self, state: ContactEquilibrium, radius: float) -> tuple[float, float]:
+        """Largest height in m of the tissue within ``radius`` of the first body's axis above its face, and that on its axis."""
+
+    @abstractmethod
+    def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
+        """Fields of a state for ParaView; see `section_frame` and `solid_frame`."""
+
+    def touching_place(self, body: RigidBody) -> Array:
+        """Place (d,) in m of the body's reference point at which it first touches the undeformed surface.
+
+        Raises
+        ------
+        InputError
+            If it passes beside the tissue.
+        """
+        points = np.hstack([self.mesh.nodes[np.unique(self.top)].T, self.reference])
+        size = float(np.ptp(self.mesh.nodes, axis=0).max())
+        place = first_touch(body, points, begin=-FAR * size * self.down, direction=self.down, size=size)
+        if place is None:
+            raise InputError(f"the {body.kind} does not meet the tissue")
+        return place
+
+    def start(self, body: RigidBody, place: Array, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
+        """The undeformed tissue under a body with its reference point at ``place`` (d,) in m."""
+        unknowns = np.zeros(self.space.size)
+        contacts = (self.contact(body, law, place),)
+        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+
+    def contact(self, body: RigidBody, law: ContactLaw, place: Array) -> PosedContact:
+        """A body above the tissue that has not touched it."""
+        return PosedContact.apart(self.surface, self.reference, ContactPair(body, law), place)
+
+    def with_contact(self, state: ContactEquilibrium, contact: PosedContact) -> ContactEquilibrium:
+        """A state with one more body, which starts from the points where the tissue is now."""
+        points = self.reference + self.displacement(state.unknowns) - contact.place[:, None]
+        untouched = ContactState.untouched(points, contact.pair.body.signed_distance(points)[1])
+        return replace(state, contacts=(*state.contacts, replace(contact, state=untouched)))
+
+    def advance(self, state: ContactEquilibrium, load: float, guess: Array) -> ContactEquilibrium:
+        """Equilibrium with the bodies moved down by ``load`` in m, their penetration below the tolerance.
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton fails, or no penalty keeps the tissue out of the bodies.
+        """
+        return self.equilibrium(state, load, guess)
+
+    def equilibrium(
+        self,
+        state: ContactEquilibrium,
+        load: float,
+        guess: Array,
+        *,
+        force: float | None = None,
+        relaxation: RelaxationStep | None = None,
+        loads: Sequence[FollowerLoad] = (),
+    ) -> ContactEquilibrium:
+        """As ``advance``; with a ``force`` in N the bodies move on from ``load`` until they press so hard.
+
+        ``relaxation`` holds the coefficients of the time step of materials that relax, ``loads`` what else acts on the tissue.
+        """
+        directions = (self.down,) * len(state.contacts)
+        return guaranteed_equilibrium(
+            self.problem, state, load, guess, directions=directions, force=force, relaxation=relaxation, loads=loads
+        )
+
+    def displacement(self, unknowns: Array) -> Array:
+        """Displacements (d, n) in m of the surface points."""
+        return self.points.interpolate(self.space.split(unknowns)[0])
+
+    def force(self, traction: Array) -> Array:
+        """Force (d,) in N of the whole tissue on the body that exerts a traction (d, n) in Pa on the surface points."""
+        return -self.images * self.surface.total(traction) + 0.0
+
+    def base_force(self, unknowns: Array, relaxation: RelaxationStep | None = None) -> Array:
+        """Resultant (d,) in N of the internal forces of the whole tissue on the base nodes."""
+        internal = (
+            self.body.with_relaxation(relaxation).residual(unknowns)[: self.space.displacement_size].reshape(-1, self.space.dim)
+        )
+        return self.images * internal[self.base_nodes].sum(axis=0)

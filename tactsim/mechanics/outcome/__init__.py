@@ -1,0 +1,1 @@
+"""What a run with contact records, and whether it is a success."""

@@ -1,0 +1,192 @@
+"""What every run with contact records of its accepted states and says of them at its end."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.interfaces.run import Findings
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.fields.ellipticity import elliptic_in
+from tactsim.mechanics.outcome.contact_quality import ContactQuality
+from tactsim.mechanics.outcome.success import judged
+from tactsim.mechanics.paths.history_path import TimedState
+from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
+from tactsim.results.scene import Scene, SolverReport
+from tactsim.units import format_quantity
+
+UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
+
+
+class ContactModel(Protocol):
+    """A body that touches rigid ones."""
+
+    space: TaylorHood
+    body: Body
+    problem: Problem
+
+    def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
+        """Fields of a state for ParaView."""
+
+
+class FollowedPath(Protocol):
+    """A path through the states."""
+
+    @property
+    def rejected(self) -> int:
+        """Steps that were taken back."""
+
+
+Model = TypeVar("Model", bound=ContactModel)
+
+
+class ContactRecord(ABC, Generic[Model]):
+    """Collects the accepted states of a run, and reports the findings.
+
+    Parameters
+    ----------
+    model : on which the states are
+    path : through them
+    tolerance : largest penetration in m
+    stiffest : as in `PenetrationEffect`
+    finer : what makes the mesh finer, in the words of the case
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        path: FollowedPath,
+        *,
+        tolerance: float,
+        stiffest: float = math.inf,
+        finer: str = "take smaller elements",
+    ):
+        self.model, self.path, self.tolerance = model, path, tolerance
+        self.steps: list[StepRecord] = []
+        self.event: StepRecord | None = None
+        """The step at which what the run looks for happened; None if it did not."""
+        self.quality = ContactQuality(stiffest, finer=finer)
+        self._unstable = np.zeros(model.body.points.weights.shape, bool)
+        self._kept: dict[str, tuple[Model, TimedState]] = {}
+
+    def accept(self, state: TimedState, *, event: bool = False) -> StepRecord:
+        """Record an accepted state, and whether it is the event.
+
+        Raises
+        ------
+        ConvergenceError
+            If the state contradicts itself.
+        """
+        values = self.values(state)
+        record = StepRecord(len(self.steps) + 1, state.iterations, state.contact.residual, values)
+        self.steps.append(record)
+        if event:
+            self.event = record
+        for name in self.kept_as(state, event):
+            self._kept[name] = (self.model, state)
+        return record
+
+    @abstractmethod
+    def values(self, state: TimedState) -> dict[str, float]:
+        """History values of a state in SI."""
+
+    @abstractmethod
+    def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
+        """Names under which the fields of a state are kept, each until another state takes it."""
+
+    def body_values(self, state: ContactEquilibrium) -> dict[str, float]:
+        """How far the material has left ellipticity at any state until now, how volumes are kept, and what penetration costs."""
+        self._unstable |= ~elliptic_in(self.model.body, state.kinematics)
+        weights = self.model.body.points.weights
+        return {
+            "min_volume_ratio": float(state.kinematics.J.min()),
+            "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
+            **self.quality.values(self.model.body, state),
+        }
+
+    def findings(self) -> Findings:
+        """What everything that was accepted says; no success if a reported state, the event or the last one, is none."""
+        reported = [step for step in (self.event, *self.steps[-1:]) if step is not None]
+        status, reason = judged(*self.verdict(), reported, self.tolerance)
+        return Findings(
+            reason,
+            self.steps,
+            status=status,
+            quantities=self.quantities() if self.steps else {},
+            assumptions=self.assumptions(),
+            warnings=self.warnings() if self.steps else (),
+            frames=self._frames(),
+            scene=self.scene(),
+        )
+
+    @abstractmethod
+    def verdict(self) -> tuple[Status, str]:
+        """Status and reason of a path that came to its end."""
+
+    @abstractmethod
+    def assumptions(self) -> list[str]:
+        """What was chosen."""
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Quantities of at least one step: those of every run with contact."""
+        deepest = max(step.values["max_penetration"] for step in self.steps)
+        share = self.steps[-1].values["unstable_volume_fraction"]
+        least = min(step.values["min_volume_ratio"] for step in self.steps)
+        return {
+            "min_volume_ratio": Quantity(least, "1", "least local volume ratio in any step"),
+            "max_penetration": Quantity(deepest, "m", "largest penetration at any surface point in any step"),
+            "unstable_volume_fraction": Quantity(share, "1", UNSTABLE),
+            **self.quality.quantities(self.steps),
+        }
+
+    def warnings(self) -> list[str]:
+        """Warnings about at least one step."""
+        return [*self.quality.warnings(), *self.unstable("a displacement of {}")]
+
+    def unstable(self, where: str) -> list[str]:
+        """That material left strong ellipticity, if it did; ``where`` names the displacement at which it did first."""
+        share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
+        if share == 0:
+            return []
+        first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
+        at = where.format(format_quantity(first.values["displacement"], "m"))
+        return [
+            f"{share:.1%} of the volume left strong ellipticity, first at {at}: "
+            "there the answer depends on the mesh; take a stable material set"
+        ]
+
+    def _frames(self) -> list[FieldFrame]:
+        """Fields of the kept states, by time, each state once."""
+        kept = {id(state): (model, state) for model, state in self._kept.values()}.values()
+        return [
+            model.frame(
+                state.contact,
+                time=state.time,
+                isochoric=None if state.history_variables is None else state.history_variables.stress,
+            )
+            for model, state in sorted(kept, key=lambda pair: pair[1].time)
+        ]
+
+    @abstractmethod
+    def scene(self) -> Scene:
+        """What figures and other stages read beside the quantities."""
+
+    def solver_report(self, *, mesh_adaptations: int = 0) -> SolverReport:
+        """What the solution took until now."""
+        space = self.model.space
+        return SolverReport(
+            unknowns=space.size,
+            elements=len(space.elements),
+            linear_solver=self.model.problem.solver.name,
+            rejected_steps=self.path.rejected,
+            newton_iterations=sum(step.newton_iterations for step in self.steps),
+            mesh_adaptations=mesh_adaptations,
+        )

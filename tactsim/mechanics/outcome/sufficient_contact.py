@@ -1,0 +1,80 @@
+"""Equilibria whose penetration takes away no more of the force than a success may: solved again with a tighter tolerance else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.errors import ConvergenceError
+from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.penetration_effect import PenetrationEffect
+from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR, sufficient_tolerance
+from tactsim.mechanics.paths.history_path import EquilibriumProblem
+
+MOST_TIGHTENINGS = 3
+"""How often a state is solved again with a tighter tolerance."""
+LEAST_TIGHTENING = 0.7
+"""Largest factor of the tolerance by which it is tightened."""
+LARGEST_LOAD = 1 - 1e-9
+"""Part of the largest load from which on a state is one at the largest load."""
+
+
+class SufficientContact:
+    """A problem of equilibrium whose states at the largest load are held to the error of the force that a success may have.
+
+    The states before are on the way there and stay as they are.
+
+    Parameters
+    ----------
+    problem : whose states have a penetration within their tolerance
+    largest : first of the prescribed values from which on states are held to it
+    stiffest : as in `PenetrationEffect`
+    """
+
+    def __init__(self, problem: EquilibriumProblem, largest: float, stiffest: float = math.inf):
+        self._problem, self._largest = problem, largest
+        self._effect = PenetrationEffect(stiffest)
+        self._accepted: ContactEquilibrium | None = None
+
+    @property
+    def body(self) -> Body:
+        """The body that deforms."""
+        return self._problem.body
+
+    def equilibrium(
+        self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
+    ) -> ContactEquilibrium:
+        """The equilibrium at prescribed values, reached from ``now``; of a tighter one that there is not, the wider remains.
+
+        Raises
+        ------
+        ConvergenceError
+            If there is none that Newton finds.
+        """
+        if now is not self._accepted:
+            self._accepted = now
+            self._effect.share(now)
+        reached = self._problem.equilibrium(now, loads, guess, relaxation)
+        for _ in range(MOST_TIGHTENINGS if loads[0] >= LARGEST_LOAD * self._largest else 0):
+            error = self._effect.share(reached)
+            if error <= LARGEST_FORCE_ERROR:
+                break
+            start = _tightened(now, reached, error)
+            try:
+                reached = self._problem.equilibrium(start, loads, np.append(reached.unknowns, reached.load), relaxation)
+            except ConvergenceError:
+                break
+        return reached
+
+
+def _tightened(now: ContactEquilibrium, reached: ContactEquilibrium, error: float) -> ContactEquilibrium:
+    """The state before a step with a tighter tolerance, from which the forces that were ``reached`` are the expected ones."""
+    old = reached.regularisation
+    deepest = max(float(-contact.pair.body.signed_distance(contact.state.points)[0].min()) for contact in reached.contacts)
+    tolerance = min(LEAST_TIGHTENING * old.tolerance, sufficient_tolerance(deepest, error))
+    contacts = tuple(replace(c, growth=r.growth) for c, r in zip(now.contacts, reached.contacts, strict=True))
+    return replace(now, contacts=contacts, regularisation=replace(old, tolerance=tolerance))

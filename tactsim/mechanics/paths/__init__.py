@@ -1,0 +1,1 @@
+"""The course of an experiment in load and in time."""

@@ -1,0 +1,42 @@
+"""The straight line that a film itself gives, when it is calibrated with constant forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.errors import InvalidQuantity
+from tactsim.interfaces import SensorFilm
+from tactsim.sensors.electronics.calibration import LinearCalibration
+
+
+def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:
+    """Least-squares line C = m F + n through conductances read ``delay`` seconds after constant forces, in N, between two bounds.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the bounds are not 0 <= low < high.
+
+    Source: thesis, section 2.2.1: read one second after the force was applied.
+    """
+    if not 0 <= forces[0] < forces[1]:
+        raise InvalidQuantity(f"forces of the calibration are {forces} N; allowed: 0 <= low < high")
+    applied = np.linspace(*forces, points)
+    return least_squares_line(applied, film.read([0.0, delay], np.tile(applied, (2, 1)))[-1])
+
+
+def least_squares_line(force: Array, conductance: Array) -> LinearCalibration:
+    """The line through conductances (n,) in S over forces (n,) in N; they must rise on the whole."""
+    slope, intercept = slope_and_intercept(force, conductance)
+    return LinearCalibration(slope=slope, intercept=intercept)
+
+
+def slope_and_intercept(x: Array, y: Array) -> tuple[float, float]:
+    """Of the least-squares line through values ``y`` (n,) over ``x`` (n,).
+
+    In closed form, as ``scipy.stats`` takes longer to load than a film to read.
+    """
+    away = x - x.mean()
+    slope = float(away @ (y - y.mean()) / (away @ away))
+    return slope, float(y.mean() - slope * x.mean())

@@ -1,0 +1,1 @@
+"""Films whose resistance or capacitance follows the force on them."""
