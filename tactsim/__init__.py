@@ -49,7 +49,8 @@ if TYPE_CHECKING:
     from tactsim.mesh.inclusions.tube import Tube
     from tactsim.presentation import load_result
     from tactsim.relaxation import Relaxation
-    from tactsim.results.result import Quantity, Result
+    from tactsim.results.quantity import Quantity
+    from tactsim.results.result import Result
 
 __all__ = [
     "Annulus",
@@ -113,7 +114,7 @@ _PLACES = {
     "Material": "tactsim.interfaces:Material",
     "MooneyRivlin3": "tactsim.materials.mooney_rivlin_3:MooneyRivlin3",
     "NeoHookean": "tactsim.materials.neo_hookean:NeoHookean",
-    "Quantity": "tactsim.results.result:Quantity",
+    "Quantity": "tactsim.results.quantity:Quantity",
     "Result": "tactsim.results.result:Result",
     "Relaxation": "tactsim.relaxation:Relaxation",
     "RigidBody": "tactsim.interfaces:RigidBody",

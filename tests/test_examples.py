@@ -15,7 +15,8 @@ from sweeps import run_sweep
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Result, Status, StepRecord
 
 ROOT = Path(__file__).parents[1]
 SAMPLES = 200

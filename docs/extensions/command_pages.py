@@ -67,7 +67,7 @@ def _with_options(text: str) -> str:
 
 
 def _row(action: argparse.Action, parser: argparse.ArgumentParser) -> tuple[str, str]:
-    values = parser._get_formatter()._format_args(action, (action.metavar or action.dest).upper()) if action.nargs != 0 else ""  # type: ignore[union-attr]
+    values = parser._get_formatter()._format_args(action, action.dest.upper()) if action.nargs != 0 else ""
     names = ", ".join(f"`{name}{f' {values}' if values else ''}`" for name in action.option_strings)
     help_text = (action.help or "") % {"default": action.default, "prog": parser.prog}
     return names or f"`{values}`", _with_options(help_text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 
 
 @dataclass(frozen=True)

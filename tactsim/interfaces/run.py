@@ -19,7 +19,8 @@ from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation
 from tactsim.kind import CaseKind
 from tactsim.progress import quiet, step_bar
-from tactsim.results.result import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
 from tactsim.units import parse_quantity
 

@@ -4,26 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from tactsim.results.result import Quantity
+from tactsim.results.quantity import Coordinate, Quantity
 
 COMPONENTS = ("x", "y", "z")
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """Values along an axis, in SI, or names along it; several may belong to one axis."""
-
-    axis: str
-    values: tuple[float, ...] | tuple[str, ...]
-    unit: str = ""
-    """Empty of names."""
-    description: str = ""
 
 
 def dimensions(name: str, quantity: Quantity) -> tuple[str, ...]:

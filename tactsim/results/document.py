@@ -12,7 +12,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, Valid
 from tactsim.errors import StorageError, shown
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Result, Status, StepRecord
 from tactsim.results.scene import EARLIER, UnreadableScene, read_scene, written_scene
 from tactsim.units import is_unit
 

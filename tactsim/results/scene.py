@@ -12,7 +12,7 @@ from tactsim.kind import Kind
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
 from tactsim.registry import kind_class
-from tactsim.results.axes import Coordinate
+from tactsim.results.quantity import Coordinate
 
 EARLIER = "it was written by an earlier version of tactsim (schema_version 1), which described it in another form"
 

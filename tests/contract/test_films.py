@@ -8,7 +8,7 @@ import pytest
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.registry import kinds
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 from tactsim.units import parse_quantity
 
 KINDS = kinds(SensorFilm)

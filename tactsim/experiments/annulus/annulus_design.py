@@ -15,7 +15,8 @@ from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, P
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.units import Time, check_increasing, format_quantity
 
 SMALL_DISPLACEMENT = 0.1

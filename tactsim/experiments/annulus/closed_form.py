@@ -17,7 +17,8 @@ from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mechanics.outcome.success import within_layer
 from tactsim.mechanics.paths.loading import AnyLoading, ForceLoading
-from tactsim.results.result import Quantity, rows
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import rows
 from tactsim.units import Length, format_quantity
 
 SMALL = 0.1

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.model import FrozenModel
-from tactsim.results.axes import Coordinate
+from tactsim.results.quantity import Coordinate
 from tactsim.results.scene import Scene
 from tactsim.units import Force, Length, Time
 

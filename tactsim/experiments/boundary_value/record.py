@@ -18,7 +18,8 @@ from tactsim.mechanics.models.loaded_body import LoadedBody
 from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
 from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
-from tactsim.results.result import Quantity, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status, StepRecord
 from tactsim.units import format_quantity
 
 SAME_TIME = 1e-9

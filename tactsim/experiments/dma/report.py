@@ -16,7 +16,8 @@ from tactsim.identification.dma_determined import Determination
 from tactsim.identification.dma_least_squares import DmaFit, fit_least_squares
 from tactsim.identification.dma_spectrum import relative_noise
 from tactsim.interfaces.run import Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 
 METHODS = ("least_squares", "genetic")
 HISTORY_UNITS = {

@@ -16,7 +16,8 @@ from tactsim.experiments.durometer.elastomers import Elastomer, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.interfaces.run import Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 
 TIMES = (1e-6, 1e6)
 """Times in s between which the atrium is asked when its modulus is that of the reading."""

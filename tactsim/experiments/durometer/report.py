@@ -11,7 +11,8 @@ from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.paths.history_path import TimedState
-from tactsim.results.result import Quantity, Status
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status
 from tactsim.units import format_quantity
 
 APART = 0.95

@@ -14,7 +14,8 @@ from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.units import Force, format_quantity
 

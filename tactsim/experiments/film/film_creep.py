@@ -23,7 +23,8 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import Area, Force, Time

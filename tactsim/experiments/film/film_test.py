@@ -13,7 +13,8 @@ from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.run import Course, Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.electronics.film_calibration import slope_and_intercept
 from tactsim.sensors.films.any_film import AnyFilm

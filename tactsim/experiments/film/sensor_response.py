@@ -12,7 +12,8 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.film.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.results.result import Quantity, rows
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import rows
 from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
 from tactsim.sensors.films.any_film import ConductingFilm

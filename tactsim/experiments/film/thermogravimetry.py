@@ -10,7 +10,8 @@ from tactsim.experiments.film.scene import DensityReading, ThermogravimetryScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
 from tactsim.sensors.films.tunnelling import particle_separation, tunnelling_decay
 from tactsim.units import Density, Energy, Length, Mass, format_quantity

@@ -8,7 +8,7 @@ import numpy as np
 
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 
 Values = Sequence[dict[str, float]]
 

@@ -25,7 +25,8 @@ from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.block_source import SourcedBlock
 from tactsim.mechanics.outcome.contact_record import ContactRecord
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState
-from tactsim.results.result import Quantity, Status
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 

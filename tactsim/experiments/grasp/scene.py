@@ -13,7 +13,8 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
 from tactsim.model import FrozenModel
-from tactsim.results.axes import Coordinate, centred
+from tactsim.results.axes import centred
+from tactsim.results.quantity import Coordinate
 from tactsim.results.scene import Scene, SolverReport
 
 Point = tuple[float, float, float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import format_quantity

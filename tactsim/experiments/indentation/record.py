@@ -21,7 +21,8 @@ from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
 from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
-from tactsim.results.result import Quantity, Status
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status
 from tactsim.units import format_quantity
 
 SMALL = 0.01

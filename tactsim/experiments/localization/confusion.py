@@ -22,7 +22,8 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.units import Force, format_quantity
 
 TUBE = "tube"

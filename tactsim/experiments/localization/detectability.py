@@ -20,7 +20,8 @@ from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import DisplacementLoading
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.units import Force, Length, format_quantity
 
 RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])

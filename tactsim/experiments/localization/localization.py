@@ -33,7 +33,8 @@ from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.lump_response import stiffness_ratio_of
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, Result, Status, rows
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Result, Status, rows
 from tactsim.units import Force, format_quantity
 
 Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]

@@ -19,7 +19,8 @@ from tactsim.localization.section_image import depth_share, section_image
 from tactsim.localization.views import SHAPE
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.results.result import Quantity, rows
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import rows
 from tactsim.units import Force, format_quantity
 
 MOST_ELEMENTS = 4096

@@ -13,7 +13,8 @@ from tactsim.experiments.switch_probe.setup import COUNT, HISTORY_UNITS, SwitchP
 from tactsim.interfaces.run import Findings
 from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mechanics.outcome.success import judged
-from tactsim.results.result import Quantity, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status, StepRecord
 from tactsim.sensors.switch_reading import Touch
 from tactsim.units import format_quantity
 

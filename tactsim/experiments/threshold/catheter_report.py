@@ -15,7 +15,8 @@ from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact
 from tactsim.interfaces.run import Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.units import format_quantity
 
 SENSOR_UNITS = {

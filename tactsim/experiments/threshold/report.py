@@ -12,7 +12,8 @@ from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces.run import Findings
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger

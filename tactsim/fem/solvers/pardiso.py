@@ -177,7 +177,13 @@ class QuasiDefinitePardiso(SinglePardiso):
         return int(self._solver.iparm[PERTURBED])
 
     def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
+        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix.
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
         if self._system is None:
             raise InputError("factor a matrix before solving")
         return self._scale * super().solve(self._scale * right)

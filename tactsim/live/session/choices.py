@@ -19,8 +19,8 @@ from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.localization.estimators.learned import LearnedEstimator
 from tactsim.localization.region import GaussianRegion, OutlinedRegion
 from tactsim.outside.text import one_line
+from tactsim.results.quantity import Quantity
 from tactsim.results.reading import read_result
-from tactsim.results.result import Quantity
 
 
 class AnyEstimation(Protocol):

@@ -9,7 +9,8 @@ from tactsim.fem.assembly.body import Body
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.penetration_effect import PenetrationEffect
 from tactsim.mechanics.fields.volume_ratios import VolumeRatios
-from tactsim.results.result import Quantity, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import StepRecord
 
 
 class ContactQuality:

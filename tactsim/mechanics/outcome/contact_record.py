@@ -19,7 +19,8 @@ from tactsim.mechanics.fields.ellipticity import elliptic_in
 from tactsim.mechanics.outcome.contact_quality import ContactQuality
 from tactsim.mechanics.outcome.success import judged
 from tactsim.mechanics.paths.history_path import TimedState
-from tactsim.results.result import FieldFrame, Quantity, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import FieldFrame, Status, StepRecord
 from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import format_quantity
 

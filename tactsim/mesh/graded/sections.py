@@ -150,6 +150,6 @@ def sections_of(tubes: Sequence[Hollow], axis: int, places: Array, size: Array) 
     """Tubes in planes across an axis at places (n,) in m, those of their ends among them; in a block of size (3,) in m."""
     axes = (axis, (axis + 1) % 3, (axis + 2) % 3)
     ends = np.array([[np.abs(places - end).argmin() for end in tube.ends(axis, size)] for tube in tubes])
-    found = [tube.crossing(axis, places) for tube in tubes]
-    centers, tangents = (np.stack([pair[k] for pair in found], axis=1)[..., axes] for k in range(2))
+    crossings = [tube.crossing(axis, places) for tube in tubes]
+    centers, tangents = (np.stack([pair[k] for pair in crossings], axis=1)[..., axes] for k in range(2))
     return Sections(axes, places, ends, centers, tangents, np.array([[tube.outer, tube.inner] for tube in tubes]))

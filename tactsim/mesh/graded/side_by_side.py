@@ -82,8 +82,8 @@ def bundle_of(
     check_along(arc, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
     across = PAIRED * (-(-max(LEAST_ALONG, round(arc)) // PAIRED) + finer)
     places, planes = planes_along(tubes, ball, size, settings, axis=axis, across=across)
-    found = sections_of(tubes, axis, places, size)
-    sections, bodies, numbers = _in_order(found, ball, planes)
+    unordered = sections_of(tubes, axis, places, size)
+    sections, bodies, numbers = _in_order(unordered, ball, planes)
     seen = _bodies(sections, ball, bodies, planes, size)
     extent = size[list(sections.axes)]
     first, sides, outer = _lines_beside(seen, across, float(extent[1]), settings, pressed=sections.axes[1] == 2)
@@ -104,7 +104,7 @@ def bundle_of(
     return Bundle(sections, ball, bodies, across, firsts, planes, grid, wall), numbers
 
 
-def _in_order(found: Sections, ball: Lump | None, planes: tuple[int, int]) -> tuple[Sections, Array, Array]:
+def _in_order(unordered: Sections, ball: Lump | None, planes: tuple[int, int]) -> tuple[Sections, Array, Array]:
     """Sections along the axis where the bodies are farthest apart, the bodies in their order, and the numbers of the tubes.
 
     Raises
@@ -114,7 +114,7 @@ def _in_order(found: Sections, ball: Lump | None, planes: tuple[int, int]) -> tu
     """
     best, kept = 0.0, None
     beside = np.arange(planes[0], planes[1] + 1)
-    for sections in (found, found.turned()):
+    for sections in (unordered, unordered.turned()):
         low, high = np.moveaxis(sections.bounds[:, :, 0], -1, 0)
         seen = slice(None) if ball is None else beside
         spans = np.stack([low[seen], high[seen]])

@@ -13,7 +13,7 @@ from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
 from tactsim.units import Area, Length, Pressure, format_quantity
 

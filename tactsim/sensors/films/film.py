@@ -21,7 +21,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
-from tactsim.results.result import Quantity
+from tactsim.results.quantity import Quantity
 from tactsim.sensors.films.composite import Composite
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
 from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times

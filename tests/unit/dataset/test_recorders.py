@@ -20,7 +20,8 @@ from tactsim.experiments.grasp.recorder import GraspRecorder
 from tactsim.experiments.recording import recorder_for
 from tactsim.interfaces import Recorder
 from tactsim.registry import kinds
-from tactsim.results.result import Quantity, Result, Status, StepRecord
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Result, Status, StepRecord
 
 CASES = Path(__file__).parents[3] / "cases"
 SWEEPS = sorted(CASES.glob("sweep_*.yaml"))

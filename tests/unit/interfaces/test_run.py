@@ -11,7 +11,8 @@ from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory,
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import NO_MEMORY, Course, Findings, run_within_another, timed
 from tactsim.registry import forget
-from tactsim.results.result import Quantity, Status, StepRecord, rows
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Status, StepRecord, rows
 
 
 def raised(error: BaseException | None) -> None:

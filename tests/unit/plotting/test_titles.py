@@ -9,7 +9,8 @@ import pytest
 from tactsim.cli import main
 from tactsim.experiments.localization.scene import ConfusionScene
 from tactsim.plotting.canvas import entitle, new_figure
-from tactsim.results.result import Quantity, Result, Status
+from tactsim.results.quantity import Quantity
+from tactsim.results.result import Result, Status
 
 
 def test_a_title_is_drawn_as_it_is_written_not_as_tex(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

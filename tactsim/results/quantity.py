@@ -1,0 +1,88 @@
+"""A number or an array with its unit, and what lies along the axes of an array."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactsim.units import conversion
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """Values along an axis, in SI, or names along it; several may belong to one axis."""
+
+    axis: str
+    values: tuple[float, ...] | tuple[str, ...]
+    unit: str = ""
+    """Empty of names."""
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number or an array with its unit; in SI where tactsim made it.
+
+    Attributes
+    ----------
+    value : number, or nested lists of numbers
+    unit : such as ``Pa``; ``1`` for a plain number
+    dims : names of the axes of an array, as `array` has them
+    coordinates : what lies along them, by name
+    """
+
+    value: Any
+    unit: str
+    description: str
+    dims: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    coordinates: Mapping[str, Coordinate] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """The value as an array of floats, NaN where it has none."""
+        return np.asarray(self.value, dtype=float)
+
+    @property
+    def array(self) -> xarray.DataArray:
+        """The value as a `xarray.DataArray` with its unit and description in ``attrs``; a number has no dimensions.
+
+        Coordinates are in SI: the places of rows and columns of taxels in the block, the times of steps.
+        """
+        import xarray
+
+        attributes = {"units": self.unit, "long_name": self.description}
+        along = {
+            name: (one.axis, list(one.values), {"units": one.unit, "long_name": one.description} if one.unit else {})
+            for name, one in self.coordinates.items()
+        }
+        return xarray.DataArray(self.numbers, along, self.dims or None, attrs=attributes)
+
+    def to(self, unit: str) -> Quantity:
+        """The same quantity in another unit.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the unit is unknown or has another dimension.
+        """
+        factor = conversion(self.unit, unit)
+        value = self.numbers * factor
+        return replace(self, value=float(value) if value.ndim == 0 else value.tolist(), unit=unit)
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self.numbers, dtype=dtype)
+
+    def __format__(self, form: str) -> str:
+        return f"{format(self.value, form)} {self.unit}".removesuffix(" 1") if form else str(self)
+
+    def __str__(self) -> str:
+        return f"{self.value} {self.unit}".removesuffix(" 1")
