@@ -121,7 +121,7 @@ def measure(sizes: Sequence[int] = CELLS) -> dict[str, dict[str, float]]:
     done = {}
     for cells in sizes:
         command = [sys.executable, "-c", program, str(cells)]
-        output = subprocess.run(command, check=True, capture_output=True, cwd=__file__.rsplit("/", 1)[0]).stdout
+        output = subprocess.run(command, check=True, stdout=subprocess.PIPE, cwd=__file__.rsplit("/", 1)[0]).stdout
         figures = json.loads(output)
         done[f"{figures['displacement_unknowns']}"] = figures
     return done
