@@ -9,6 +9,8 @@ Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES); Karlin et al. 1988, doi
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator, gcrotmk
@@ -26,15 +28,23 @@ MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
 FINEST = 1e-12
 """Smallest error over its size that is asked of an iteration."""
+FAILED = 1e-6
+"""Residual over the right side above which the iteration with a new factor has failed; round-off ends others near `FINEST`."""
 
 
 class ReusedFactor(IterativeSolver):
-    """A direct solver that factors rarely; what it returns depends on the systems that it has solved before, to ``accuracy``."""
+    """A direct solver that factors rarely; what it returns depends on the systems that it has solved before, to ``accuracy``.
 
-    def __init__(self, direct: DirectSolver):
-        self.name = f"{direct.name}, reused"
+    Parameters
+    ----------
+    direct : makes the factors
+    sturdier : makes the solver that takes over for good once the iteration with a new factor of ``direct`` fails
+    """
+
+    def __init__(self, direct: DirectSolver, sturdier: Callable[[], DirectSolver] | None = None):
         self.factorisations = self.solutions = 0
-        self._direct = direct
+        self.name = f"{direct.name}, reused"
+        self._direct, self._sturdier = direct, sturdier
         self._system: LinearSystem | None = None
         self._current, self._spent = False, WORTH_A_FACTOR
 
@@ -60,15 +70,24 @@ class ReusedFactor(IterativeSolver):
         if not right.any():
             return np.zeros_like(right)
         if not self._current and self._spent < WORTH_A_FACTOR:
-            begin, reached = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=1)
-            if reached:
+            begin, left = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=1)
+            if left <= 2 * max(accuracy, FINEST):
                 return begin
         if not self._current:
-            self._direct.factor(self._system.nearby)
-            self.factorisations += 1
-            self._current, self._spent = True, 0
-        solution, _ = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
+            self._factor_anew(self._system)
+        solution, left = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
+        if not left <= max(2 * accuracy, FAILED) and self._sturdier is not None:
+            self._direct.close()
+            self._direct, self._sturdier = self._sturdier(), None
+            self.name = f"{self._direct.name}, reused"
+            self._factor_anew(self._system)
+            solution, _ = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
         return solution
+
+    def _factor_anew(self, system: LinearSystem) -> None:
+        self._direct.factor(system.nearby)
+        self.factorisations += 1
+        self._current, self._spent = True, 0
 
     def close(self) -> None:
         """Release the factor's memory."""
@@ -77,13 +96,12 @@ class ReusedFactor(IterativeSolver):
 
     def _iterated(
         self, matrix: csr_matrix, right: Array, begin: Array | None, accuracy: float, *, cycles: int
-    ) -> tuple[Array, bool]:
-        """Solution by flexible GMRES, which measures the true residual even with a rounded factor; whether it converged."""
+    ) -> tuple[Array, float]:
+        """Solution by flexible GMRES, which measures the true residual even with a rounded factor; that over the right side."""
         guide = LinearOperator(matrix.shape, matvec=self._counted, dtype=float)
         restart = MOST_OF_ONE - 1  # and one more direction instead of those of the cycle before
         solution, _ = gcrotmk(matrix, right, begin, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)
-        left = np.linalg.norm(matrix @ solution - right) / np.linalg.norm(right)
-        return solution, bool(left <= 2 * accuracy)
+        return solution, float(np.linalg.norm(matrix @ solution - right) / np.linalg.norm(right))
 
     def _counted(self, vector: Array) -> Array:
         self.solutions += 1

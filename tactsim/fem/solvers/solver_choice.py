@@ -8,7 +8,7 @@ from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressure_mass
 from tactsim.fem.solvers.linear import LinearSolver, direct_solver
-from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
+from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 
 REFERENCE = 1e5
@@ -53,7 +53,7 @@ def solver_for(body: Body, *, largest_factor: int | None = None) -> LinearSolver
     if iterates:
         return BlockPreconditioned(body)
     solver = direct_solver()
-    return ReusedFactor(QuasiDefinitePardiso(giving_way(body))) if solver.name == "pardiso" else solver
+    return ReusedFactor(QuasiDefinitePardiso(giving_way(body)), SinglePardiso) if solver.name == "pardiso" else solver
 
 
 def giving_way(body: Body) -> Array:

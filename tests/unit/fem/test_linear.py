@@ -13,7 +13,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers import pardiso
 from tactsim.fem.solvers.linear import direct_solver, section_solver, solved
-from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SymmetricPardiso
+from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.reused_factor import MOST_OF_ONE, ReusedFactor
 from tactsim.fem.solvers.solver_choice import giving_way
 from tactsim.fem.solvers.symmetric_factor import EXACT
@@ -173,6 +173,25 @@ def test_a_factor_of_tissue_that_gives_way_a_little_guides_to_what_does_not(bulk
     # mutant: what gives way a thousand times as much guides badly
     *_, loose, _ = guided_by_what_gives_way(bulk_modulus, factor=1e3)
     assert loose.solutions > exact.solutions + 4
+
+
+class Misguiding(SinglePardiso):
+    """A factor that leaves out half of every solution's entries, as one with wrong pivots may."""
+
+    def solve(self, right):
+        return np.where(np.arange(len(right)) % 2, super().solve(right), 0.0)
+
+
+def test_where_a_guide_fails_a_sturdier_one_takes_over_for_good():
+    matrix, right = tangent_of(3, axes=3)
+    alone, helped = ReusedFactor(Misguiding()), ReusedFactor(Misguiding(), SinglePardiso)
+    with pytest.raises(ConvergenceError):
+        solved(alone, matrix, right, 1e-8)
+    computed = solved(helped, matrix, right, 1e-8)
+    assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
+    assert (helped.name, helped.factorisations) == ("pardiso_single, reused", 2)
+    solved(helped, changed(matrix, 1e-3), right, 1e-8)
+    assert helped.factorisations == 2
 
 
 def changed(matrix, amount, *, skew=0.0):
