@@ -42,13 +42,12 @@ class ContactState:
     def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
         """The same step with the tractions of its last solution as multipliers (augmented Lagrangian).
 
-        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before. A share above one
-        goes beyond the new ones, but never below no pressure.
+        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before.
         """
         pressure, tangential = now.pressure, now.tangential
-        if share != 1:
-            pressure = np.maximum(0.0, share * pressure + (1 - share) * self.pressure)
-            tangential = np.where(pressure > 0, share * tangential + (1 - share) * self.tangential, 0.0)
+        if share < 1:
+            pressure = share * pressure + (1 - share) * self.pressure
+            tangential = share * tangential + (1 - share) * self.tangential
         return ContactState(pressure, tangential, self.points, now.normal, pressure, self.creep)
 
 

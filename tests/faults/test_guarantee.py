@@ -97,7 +97,7 @@ MUTANTS = {
         "contact forces are no finite",
     ),
     "an element inside out": (lambda s: with_unknowns(s, turned_inside_out), "element 0 at .*volume ratio -.*; allowed: above 0"),
-    "a penetrated body": (lambda s: raised(s, 5e-6), r"rigid body 1 is penetrated by (4\.99|5\.).* µm; allowed: 1 µm"),
+    "a penetrated body": (lambda s: raised(s, 5e-6), r"rigid body 1 is penetrated by 5\..* µm; allowed: 1 µm"),
     "pressure across a gap": (lambda s: raised(s, -20e-6), "rigid body 1 presses across a gap of .* µm; allowed: 7.6"),
     "a body that pulls": (
         lambda s: with_forces(s, pressure=lambda c: np.where(c.pressure == 0, -1.0, c.pressure)),

@@ -27,12 +27,6 @@ STALLED = 0.1
 """Residual below which Newton was near."""
 HELD_ROUNDS = 6
 """How often limits of friction are held before a step counts as failed."""
-EXTRAPOLATED = 1.3
-"""Share of the forces found that goes into the multipliers as long as penetration and slip have only shrunk.
-
-Why: a fifth to a quarter of the penetration is left from one augmentation to the next (15, 3.8 and 0.8 tolerances in the grasps
-of ``sweep_lumps``), so that all further ones together add a third to the first. Multipliers converge for shares up to two
-(Bertsekas 1982, Constrained Optimization and Lagrange Multiplier Methods, section 2.3)."""
 UNAVERAGED, AVERAGED = 6, 0.5
 """After so many augmentations, if penetration and slip have not only shrunk from one to the next, only this share of the forces
 found goes into the multipliers (the averaged iteration of Krasnoselskii 1955).
@@ -42,9 +36,8 @@ lifts. Whole augmentations overshoot there: the tissue opens where it was presse
 other way round, for all of the ``AUGMENTATIONS``. No step was short enough to end this, so that a grasp crept (a block of 52 x 46
 x 14.6 mm closed by 0.069 of its height each, friction 0.37: 640 linear solutions to 69 % of the way, most of them in two such
 steps; averaged, 400 to its end). All shipped cases approach evenly, by up to eleven, and are not touched."""
-COARSE = 0.07
-"""Residual that suffices between augmentations, with friction: without it Newton is as fast to the end. Grasps of
-``sweep_lumps`` take half as many systems more with 0.15, where the last solution starts too far away."""
+COARSE = 4.5e-2
+"""Residual that suffices between augmentations, with friction: without it Newton is as fast to the end."""
 SHARPER = 0.3
 """Factor of that residual once an augmentation has not raised the residual above it."""
 
@@ -167,7 +160,7 @@ def _equilibrium(
         if excess <= 1:
             coarse = 0.0
         if regularisation.augments:
-            share = EXTRAPOLATED if not overshot else AVERAGED if attempt >= UNAVERAGED else 1.0
+            share = AVERAGED if overshot and attempt >= UNAVERAGED else 1.0
             before = tuple(old.augmented(result, share) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
     limit = regularisation.tolerance

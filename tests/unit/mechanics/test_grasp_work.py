@@ -8,10 +8,9 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 
-SYSTEMS, FACTORS, SOLUTIONS = 18, 5, 110
+SYSTEMS, FACTORS, SOLUTIONS = 18, 4, 125
 """Most for the example, which closes in two steps. Without multipliers extrapolated from the first step, or with every system
-factored, there are more; it takes 18, 5 and 101. With multipliers that are not extrapolated and a residual of 0.045 between
-augmentations it takes 20, 5 and 133."""
+factored, there are more; it takes 17, 4 and 115."""
 
 
 def test_a_grasp_factors_rarely_and_solves_little(one_thread):
