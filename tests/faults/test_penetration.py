@@ -148,6 +148,7 @@ GOOD = {
         ({"min_volume_ratio": 0.0}, 1e-12, "inside out"),
         ({"max_penetration": 2e-6}, 1e-12, "the penetration is 2 µm; allowed: 1 µm"),
         ({"penetration_force_error": 6e-3}, 1e-12, "takes away 0.60% of the force"),
+        ({"penetration_force_error": 6e-3, "max_penetration": 0.0}, 1e-12, "takes away 0.60% of the force"),
     ],
 )
 def test_one_place_says_no(values, residual, words):

@@ -50,9 +50,10 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
         return f"the penetration is {penetration}; allowed: {allowed}"
     error = values["penetration_force_error"]
     if error > LARGEST_FORCE_ERROR:
+        enough = sufficient_tolerance(values["max_penetration"] or tolerance, error)  # without penetration it is creep that costs
         return (
             f"penetration takes away {error:.2%} of the force by its estimate; allowed: {LARGEST_FORCE_ERROR:.1%}; "
-            f"take penetration_tolerance: at most {format_quantity(sufficient_tolerance(values['max_penetration'], error), 'm')}"
+            f"take penetration_tolerance: at most {format_quantity(enough, 'm')}"
         )
     return None
 
