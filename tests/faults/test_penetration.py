@@ -166,8 +166,9 @@ def test_one_place_says_yes():
 
 
 def test_the_advised_tolerance_is_enough_and_has_one_digit():
-    assert sufficient_tolerance(1e-5, 0.02) == pytest.approx(2e-6)
-    assert 0 < sufficient_tolerance(1.0, 1.0) < 1e-4
+    assert sufficient_tolerance(1e-5, 1.0, 0.02) == pytest.approx(2e-6)
+    assert sufficient_tolerance(0.0, 1e-5, 0.02) == sufficient_tolerance(-1.0, 1e-5, 0.02) == pytest.approx(2e-6)
+    assert 0 < sufficient_tolerance(1.0, 1.0, 1.0) < 1e-4
 
 
 def test_unloading_to_nothing_is_measured_by_the_largest_force():

@@ -24,12 +24,10 @@ GENERAL_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1}
 """User settings, nested dissection, refinement only after perturbed pivots, perturbation 1e-13, scaling and matching: MKL's
 defaults for nonsymmetric matrices but for the refinement. Two rounds of it for every solution
 take a third of a factor in a section, and without them the residual is 4e-15 of the right-hand side already."""
-INDEFINITE_SETTINGS = GENERAL_SETTINGS | {20: 1}
-"""With Bunch-Kaufman pivoting: MKL's defaults make the pressure of nearly incompressible tissue wrong by percents."""
 SINGLE_PRECISION, PIVOTING = 27, 20
 """Which of Pardiso's settings ask for matrices and vectors in single precision, and for blocks of two by two as pivots."""
-SCALING, MATCHING, PERTURBED = 10, 12, 13
-"""Which of them ask for scaling and for the matching of large entries to the diagonal, and where MKL counts perturbed pivots."""
+SCALING, MATCHING = 10, 12
+"""Which of them ask for scaling and for the matching of large entries to the diagonal."""
 NO_MEMORY = (-2, -9)
 """Pardiso's error codes when memory runs out (oneMKL Developer Reference, pardiso, table of error indicators)."""
 
@@ -88,14 +86,20 @@ class Pardiso:
 
 
 class SymmetricPardiso(Pardiso):
-    """MKL Pardiso for the symmetric part of indefinite matrices of a symmetric pattern: half the work of the general one."""
+    """MKL Pardiso for the symmetric part of indefinite matrices of a symmetric pattern: half the work of the general one.
+
+    Parameters
+    ----------
+    blocks : whether blocks of two by two may be pivots (Bunch-Kaufman), or single numbers only, which take less time; with MKL's
+        default pivots the pressure of nearly incompressible tissue is wrong by percents, so that their user looks at the residual
+    """
 
     name = "pardiso_symmetric"
 
-    def __init__(self) -> None:
+    def __init__(self, *, blocks: bool = True) -> None:
         super().__init__()
         self._solver = _fresh_binding(SYMMETRIC_INDEFINITE)
-        for index, value in INDEFINITE_SETTINGS.items():
+        for index, value in (GENERAL_SETTINGS | {PIVOTING: int(blocks)}).items():
             self._solver.iparm[index] = value
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
@@ -127,8 +131,8 @@ class SinglePardiso(SymmetricPardiso):
     name = "pardiso_single"
 
     def __init__(self) -> None:
-        super().__init__()
-        self._solver.iparm[SINGLE_PRECISION], self._solver.iparm[PIVOTING] = 1, 0
+        super().__init__(blocks=False)
+        self._solver.iparm[SINGLE_PRECISION] = 1
 
     def _entries(self, matrix: csr_matrix) -> Array:
         entries = self._upper_entries(matrix)
@@ -160,7 +164,7 @@ class QuasiDefinitePardiso(SinglePardiso):
 
     def __init__(self, added: Array) -> None:
         super().__init__()
-        self._added = added
+        self._added, self._scale = added, np.ones(len(added))
         self._solver.iparm[SCALING] = self._solver.iparm[MATCHING] = 0
 
     def _upper_entries(self, matrix: csr_matrix) -> Array:
@@ -171,21 +175,8 @@ class QuasiDefinitePardiso(SinglePardiso):
         self._scale = 1 / np.sqrt(np.where(sizes > 0, sizes, 1.0))
         return entries * self._scale[self._rows] * self._scale[self._columns]
 
-    @property
-    def perturbed_pivots(self) -> int:
-        """Pivots of the last factor that were too small and replaced."""
-        return int(self._solver.iparm[PERTURBED])
-
     def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix.
-
-        Raises
-        ------
-        InputError
-            If no matrix was factored.
-        """
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
+        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
         return self._scale * super().solve(self._scale * right)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
-from tactsim.fem.solvers.pardiso import PIVOTING, Pardiso, SymmetricPardiso
+from tactsim.fem.solvers.pardiso import Pardiso, SymmetricPardiso
 
 ASYMMETRY = 1e-13
 """Largest difference of two mirrored entries, over the largest entry, that is round-off: sections without friction have 2e-16."""
@@ -23,8 +23,7 @@ class SymmetricWhereItIs:
     """
 
     def __init__(self) -> None:
-        self._symmetric = SymmetricPardiso()
-        self._symmetric._solver.iparm[PIVOTING] = 0
+        self._symmetric = SymmetricPardiso(blocks=False)
         self._inner: Pardiso = self._symmetric
         self.name = self._symmetric.name
         self._mirror: Array | None = None

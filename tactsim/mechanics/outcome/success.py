@@ -50,7 +50,7 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
         return f"the penetration is {penetration}; allowed: {allowed}"
     error = values["penetration_force_error"]
     if error > LARGEST_FORCE_ERROR:
-        enough = sufficient_tolerance(values["max_penetration"] or tolerance, error)  # without penetration it is creep that costs
+        enough = sufficient_tolerance(values["max_penetration"], tolerance, error)
         return (
             f"penetration takes away {error:.2%} of the force by its estimate; allowed: {LARGEST_FORCE_ERROR:.1%}; "
             f"take penetration_tolerance: at most {format_quantity(enough, 'm')}"
@@ -64,13 +64,14 @@ def _where(values: Mapping[str, float]) -> str:
     return f"at a {name} of {format_quantity(values[name], unit)}"
 
 
-def sufficient_tolerance(penetration: float, error: float) -> float:
-    """A penetration in m with which an error that another one makes should be allowed, rounded down to one digit.
+def sufficient_tolerance(penetration: float, tolerance: float, error: float) -> float:
+    """A tolerance in m with which the error of the force would fall to what a success allows, rounded down to one digit.
 
-    Contact and tissue are two springs in series: the missing part of the force is e / (1 - e) of what remains.
+    Contact and tissue are two springs in series: the missing part of the force is e / (1 - e) of what remains. Where
+    nothing penetrates it is creep that costs, in proportion to the tolerance.
     """
     missing = min(error, SATURATED)
-    enough = penetration * LARGEST_FORCE_ERROR * (1 - missing) / missing
+    enough = (penetration if penetration > 0 else tolerance) * LARGEST_FORCE_ERROR * (1 - missing) / missing
     digit = 10.0 ** math.floor(math.log10(enough))
     return digit * math.floor(enough / digit * (1 + ROUND_OFF))
 

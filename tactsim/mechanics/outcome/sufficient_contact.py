@@ -75,7 +75,6 @@ def _tightened(now: ContactEquilibrium, reached: ContactEquilibrium, error: floa
     """The state before a step with a tighter tolerance, from which the forces that were ``reached`` are the expected ones."""
     old = reached.regularisation
     deepest = max(float(-contact.pair.body.signed_distance(contact.state.points)[0].min()) for contact in reached.contacts)
-    enough = sufficient_tolerance(deepest, error) if deepest > 0 else math.inf  # creep alone may make the error
-    tolerance = min(LEAST_TIGHTENING * old.tolerance, enough)
+    tolerance = min(LEAST_TIGHTENING * old.tolerance, sufficient_tolerance(deepest, old.tolerance, error))
     contacts = tuple(replace(c, growth=r.growth) for c, r in zip(now.contacts, reached.contacts, strict=True))
     return replace(now, contacts=contacts, regularisation=replace(old, tolerance=tolerance))
