@@ -68,18 +68,18 @@ def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run:
     assert seen == {None, False, True}
 
 
-STRIDE = {errno.ENOSPC: 1, errno.EIO: 5}
-"""Steps between those that are refused: all for a full disk; a broken one goes the same way, and is tried at some."""
+STRIDES = [(errno.ENOSPC, 1), (errno.EIO, 5), pytest.param(errno.EIO, 1, marks=pytest.mark.slow)]
+"""Steps between those that are refused: all for a full disk; a broken one goes the same way, and is quickly tried at some."""
 
 
-@pytest.mark.parametrize("code", STRIDE, ids=errno.errorcode.get)
+@pytest.mark.parametrize(("code", "stride"), STRIDES)
 def test_a_run_refused_at_any_step_says_so_and_loses_nothing(
-    tmp_path: Path, run: Callable[[Path, str], int], capsys: pytest.CaptureFixture[str], code: int
+    tmp_path: Path, run: Callable[[Path, str], int], capsys: pytest.CaptureFixture[str], code: int, stride: int
 ) -> None:
     out = tmp_path / "out"
     run(out, "old")
     total = steps_of(lambda: run(out, "x"))
-    for number in range(1, total + 1, STRIDE[code]):
+    for number in range(1, total + 1, stride):
         run(out, "old")
         capsys.readouterr()
         with disk(At(number, lambda: OSError(code, os.strerror(code)), for_good=False)):
