@@ -174,6 +174,12 @@ def direct_solver(name: str | None = None) -> DirectSolver:
     return kinds[name]()
 
 
+def guiding_solver() -> DirectSolver:
+    """The solver of systems whose solutions guide an iteration: in single precision where that is there."""
+    solver = direct_solver()
+    return Pardiso(single=True) if solver.name == Pardiso.name else solver
+
+
 def section_solver() -> DirectSolver:
     """The solver of systems of some ten thousand unknowns, which each get a factor: symmetric as long as they are."""
     solver = direct_solver()

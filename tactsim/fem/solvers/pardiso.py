@@ -36,13 +36,21 @@ LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 
 
 class Pardiso:
-    """MKL Pardiso for nonsymmetric matrices, through pypardiso's binding; its memory goes when the object goes."""
+    """MKL Pardiso for nonsymmetric matrices, through pypardiso's binding; its memory goes when the object goes.
+
+    Parameters
+    ----------
+    single : in single precision, for solutions that guide an iteration, right to some six digits times the condition of the
+        matrix: half the memory to read, so half the time. What is not a number, or too large for it, must never reach MKL.
+    """
 
     name = "pardiso"
+    kind = GENERAL
 
-    def __init__(self) -> None:
-        self._solver = _fresh_binding(GENERAL)
-        for index, value in GENERAL_SETTINGS.items():
+    def __init__(self, *, single: bool = False) -> None:
+        self._solver = _fresh_binding(self.kind)
+        self._single = single
+        for index, value in (GENERAL_SETTINGS | {SINGLE_PRECISION: int(single)}).items():
             self._solver.iparm[index] = value
         self._system: tuple[Array, Array, Array] | None = None
 
@@ -55,7 +63,10 @@ class Pardiso:
         else:
             _, indptr, indices = self._system
             phase = 22
-        self._system = (self._entries(matrix), indptr, indices)
+        entries = self._entries(matrix)
+        if self._single and not np.abs(entries).max() < np.finfo(np.float32).max:
+            raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
+        self._system = (entries.astype(np.float32 if self._single else np.float64, copy=False), indptr, indices)
         _call_pardiso(self._solver, phase, self._system, np.zeros(matrix.shape[0]))
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
@@ -76,7 +87,10 @@ class Pardiso:
         """
         if self._system is None:
             raise InputError("factor a matrix before solving")
-        return _call_pardiso(self._solver, 33, self._system, right)
+        if not self._single:
+            return _call_pardiso(self._solver, 33, self._system, right)
+        size = float(np.abs(right).max())
+        return size * _call_pardiso(self._solver, 33, self._system, right / size) if size else np.zeros_like(right)
 
     def close(self) -> None:
         """Release MKL's memory; the next matrix may have another pattern."""
@@ -92,15 +106,15 @@ class SymmetricPardiso(Pardiso):
     ----------
     blocks : whether blocks of two by two may be pivots (Bunch-Kaufman), or single numbers only, which take less time; with MKL's
         default pivots the pressure of nearly incompressible tissue is wrong by percents, so that their user looks at the residual
+    single : as for `Pardiso`
     """
 
     name = "pardiso_symmetric"
+    kind = SYMMETRIC_INDEFINITE
 
-    def __init__(self, *, blocks: bool = True) -> None:
-        super().__init__()
-        self._solver = _fresh_binding(SYMMETRIC_INDEFINITE)
-        for index, value in (GENERAL_SETTINGS | {PIVOTING: int(blocks)}).items():
-            self._solver.iparm[index] = value
+    def __init__(self, *, blocks: bool = True, single: bool = False) -> None:
+        super().__init__(single=single)
+        self._solver.iparm[PIVOTING] = int(blocks)
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
         rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
@@ -112,38 +126,22 @@ class SymmetricPardiso(Pardiso):
         return starts.astype(np.int32) + 1, self._columns.astype(np.int32) + 1
 
     def _entries(self, matrix: csr_matrix) -> Array:
-        return self._upper_entries(matrix)
-
-    def _upper_entries(self, matrix: csr_matrix) -> Array:
         """Entries of the symmetric part on and above the diagonal."""
         return (matrix.data[self._upper] + matrix.data[self._mirror]) / 2
 
 
 class SinglePardiso(SymmetricPardiso):
-    """The symmetric factor in single precision: half the memory to read, so half the time, for solutions that guide an iteration.
+    """The symmetric factor in single precision, for solutions that guide an iteration.
 
     Pivots are single numbers: a fifth faster than blocks (0.35 s, not 0.45 s, of one thread for a grasp of 28 500 unknowns), and
     as good a guide. A negative definite block of pressures needs no others (Vanderbei 1995, doi:10.1137/0805005); incompressible
     tissue has zeros there, which the matching meets, and a pivot that MKL perturbs costs the iteration a step or two.
-    What is not a number, or too large for it, must never reach MKL.
     """
 
     name = "pardiso_single"
 
     def __init__(self) -> None:
-        super().__init__(blocks=False)
-        self._solver.iparm[SINGLE_PRECISION] = 1
-
-    def _entries(self, matrix: csr_matrix) -> Array:
-        entries = self._upper_entries(matrix)
-        if not np.abs(entries).max() < np.finfo(np.float32).max:
-            raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
-        return entries.astype(np.float32)
-
-    def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,), right to some six digits times the condition of the matrix."""
-        size = float(np.abs(right).max())
-        return size * super().solve(right / size) if size else np.zeros_like(right)
+        super().__init__(blocks=False, single=True)
 
 
 class QuasiDefinitePardiso(SinglePardiso):
@@ -167,8 +165,8 @@ class QuasiDefinitePardiso(SinglePardiso):
         self._added, self._scale = added, np.ones(len(added))
         self._solver.iparm[SCALING] = self._solver.iparm[MATCHING] = 0
 
-    def _upper_entries(self, matrix: csr_matrix) -> Array:
-        entries = super()._upper_entries(matrix)
+    def _entries(self, matrix: csr_matrix) -> Array:
+        entries = super()._entries(matrix)
         diagonal = self._rows == self._columns
         entries[diagonal] -= self._added
         sizes = np.abs(entries[diagonal])

@@ -19,7 +19,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import TaylorHood, tabulate
-from tactsim.fem.solvers.linear import direct_solver
+from tactsim.fem.solvers.linear import guiding_solver
 
 ELEMENTS = {2: (ElementTriP2, ElementTriP1), 3: (ElementTetP2, ElementTetP1)}
 """Quadratic and linear functions by dimension."""
@@ -32,18 +32,18 @@ YIELDING = 0.2
 
 
 class TwoLevel:
-    """Approximate inverse of displacement blocks (n d, n d) of one body, symmetric or not."""
+    """Approximate inverse of displacement blocks (n d, n d) of one body, symmetric or not, in single precision."""
 
     def __init__(self, body: Body):
         space = body.space
         self._interpolation = linear_interpolation(space)
         self._diagonal = tissue_diagonal(body)
         self._dim = space.dim
-        self._direct = direct_solver()
+        self._direct = guiding_solver()
         self.coarse_size = 0
 
-    def factor(self, block: bsr_matrix) -> None:
-        """Take a block of ``d x d`` blocks, its indices sorted.
+    def factor(self, block: bsr_matrix, free: Array) -> None:
+        """Take a matrix of ``d x d`` blocks in single precision, its indices sorted, and which unknowns (n, d) are free.
 
         Raises
         ------
@@ -54,16 +54,15 @@ class TwoLevel:
         rows = np.repeat(np.arange(count), np.diff(block.indptr))
         diagonal = block.data[np.flatnonzero(block.indices == rows)]
         try:
-            self._inverses = np.ascontiguousarray(np.linalg.inv(diagonal))
+            self._inverses = np.linalg.inv(diagonal.astype(float)).astype(np.float32)
         except np.linalg.LinAlgError as error:
             raise ConvergenceError("the tangent of a node is singular; is the material stable?") from error
-        free = free_rows(block)
         ruled = self._ruled_by_contact(diagonal, free)
         self._relaxed = np.flatnonzero(~ruled)
         graph = csr_matrix((np.ones(len(block.indices)), block.indices, block.indptr), shape=(count, count))
         self._block = block
         prolongation = blocked(self._coarse_nodes(graph @ ruled.astype(float) > 0), free)
-        coarse = (prolongation.T.tobsr((dim, dim)) @ (block @ prolongation)).tocsr()
+        coarse = (prolongation.T.tobsr((dim, dim)) @ (block @ prolongation)).tocsr().astype(float)
         coarse.sort_indices()
         self._prolongation, self._restriction = prolongation.tocsr(), prolongation.T.tocsr()
         coarse.setdiag(np.where(coarse.diagonal() == 0, 1.0, coarse.diagonal()))
@@ -73,14 +72,18 @@ class TwoLevel:
 
     def __call__(self, right: Array) -> Array:
         """One cycle for a right-hand side (n d,), beginning at zero."""
-        block, solution = self._block, np.zeros_like(right)
+        size = float(np.abs(right).max())
+        if not size:
+            return np.zeros_like(right)
+        block, right = self._block, (right / size).astype(np.float32)
+        solution = np.zeros_like(right)
         entries = (block.indptr, block.indices, block.data, self._inverses, self._relaxed)
         for _ in range(SWEEPS):
             _sweep(*entries, right, solution, True)
-        solution += self._prolongation @ self._direct.solve(self._restriction @ (right - block @ solution))
+        solution += self._prolongation @ self._direct.solve(self._restriction @ (right - block @ solution)).astype(np.float32)
         for _ in range(SWEEPS):
             _sweep(*entries, right, solution, False)
-        return solution
+        return size * solution.astype(float)
 
     def close(self) -> None:
         """Release the coarse factor."""
@@ -91,7 +94,7 @@ class TwoLevel:
 
         ``diagonal`` (n, d, d) holds their own blocks.
         """
-        relative = (diagonal + diagonal.swapaxes(1, 2)) / (2 * self._diagonal[:, None, None])
+        relative = (diagonal.astype(float) + diagonal.swapaxes(1, 2)) / (2 * self._diagonal[:, None, None])
         nodes, axes = np.nonzero(~free)
         relative[nodes, axes, axes] = 1.0
         eigenvalues = np.linalg.eigvalsh(relative)
@@ -131,12 +134,6 @@ def tissue_diagonal(body: Body) -> Array:
     return np.bincount(body.space.elements.ravel(), np.einsum("e,eq,eqa->ea", moduli, points.weights, square).ravel())
 
 
-def free_rows(block: bsr_matrix) -> Array:
-    """Which unknowns (n, d) are coupled with others: those that are fixed have one entry, on the diagonal."""
-    sums = np.add.reduceat(np.abs(block.data).sum(axis=2), block.indptr[:-1], axis=0)
-    return sums != np.abs(block.diagonal()).reshape(sums.shape)
-
-
 def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:
     """Interpolation of vectors by the weights (n, m) of ``nodes`` with zeros where a component (n, d) is not free.
 
@@ -147,7 +144,7 @@ def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:
     rows = np.repeat(np.arange(nodes.shape[0]), np.diff(nodes.indptr))
     whole = nodes.data == 1.0
     columns[nodes.indices[whole]] = free[rows[whole]]
-    data = np.zeros((nodes.nnz, dim, dim))
+    data = np.zeros((nodes.nnz, dim, dim), np.float32)
     for i in range(dim):
         data[:, i, i] = nodes.data * free[rows, i] * columns[nodes.indices, i]
     return bsr_matrix((data, nodes.indices, nodes.indptr), shape=(nodes.shape[0] * dim, nodes.shape[1] * dim))
@@ -157,7 +154,7 @@ def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:
 def _sweep(indptr, indices, data, inverses, nodes, right, solution, forwards):  # type: ignore[no-untyped-def]
     """Gauss-Seidel over some ``nodes``, in place; ``inverses`` (n, d, d) of the own blocks of all."""
     count, dim = len(nodes), inverses.shape[1]
-    left = np.zeros(dim)
+    left = np.zeros(dim, data.dtype)
     for turn in range(count):
         node = nodes[turn if forwards else count - 1 - turn]
         for i in range(dim):
