@@ -52,7 +52,7 @@ class Counting(IterativeSolver):
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,)."""
-        before = self._count() if isinstance(self._solver, ReusedFactor) else 0
+        before = self._count() if isinstance(self._solver.current, ReusedFactor) else 0
         try:
             return self._solver.solve(right, accuracy)
         finally:
@@ -67,7 +67,8 @@ class Counting(IterativeSolver):
 
     def _count(self) -> int:
         """Steps of the last solution by iteration, or of all solutions with a factor."""
-        return self._solver.solutions if isinstance(self._solver, ReusedFactor) else self._solver.iterations
+        current = self._solver.current
+        return current.solutions if isinstance(current, ReusedFactor) else current.iterations
 
 
 def child(scale: float, settings: Sequence[str], *, factor: bool = False) -> dict[str, float]:

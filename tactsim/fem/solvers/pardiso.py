@@ -55,7 +55,13 @@ class Pardiso:
         self._system: tuple[Array, Array, Array] | None = None
 
     def factor(self, matrix: csr_matrix) -> None:
-        """Factor the matrix; analyses the pattern on the first call."""
+        """Factor the matrix; analyses the pattern on the first call.
+
+        Raises
+        ------
+        ConvergenceError
+            If it holds numbers that are not finite, or too large for single precision where that is asked.
+        """
         if self._system is None:
             indptr, indices = self._structure(matrix)
             self._release = weakref.finalize(self, _call_pardiso, self._solver, -1, (np.zeros(0),) * 3, np.zeros(0))

@@ -9,7 +9,7 @@ Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES); Karlin et al. 1988, doi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -28,8 +28,6 @@ MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
 FINEST = 1e-12
 """Smallest error over its size that is asked of an iteration."""
-FAILED = 1e-6
-"""Residual over the right side above which the iteration with a new factor has failed; round-off ends others near `FINEST`."""
 
 
 class ReusedFactor(IterativeSolver):
@@ -38,13 +36,14 @@ class ReusedFactor(IterativeSolver):
     Parameters
     ----------
     direct : makes the factors
-    sturdier : makes the solver that takes over for good once the iteration with a new factor of ``direct`` fails
+    largest_left : residual over the right-hand side above which the iteration with a new factor is an error, beside twice the
+        accuracy; otherwise the user of the solution has to look at it
     """
 
-    def __init__(self, direct: DirectSolver, sturdier: Callable[[], DirectSolver] | None = None):
+    def __init__(self, direct: DirectSolver, *, largest_left: float = math.inf):
         self.factorisations = self.solutions = 0
         self.name = f"{direct.name}, reused"
-        self._direct, self._sturdier = direct, sturdier
+        self._direct, self._largest_left = direct, largest_left
         self._system: LinearSystem | None = None
         self._current, self._spent = False, WORTH_A_FACTOR
 
@@ -60,7 +59,7 @@ class ReusedFactor(IterativeSolver):
         InputError
             If there is no matrix yet.
         ConvergenceError
-            If the right-hand side holds numbers that are not finite.
+            If the right-hand side holds numbers that are not finite, or the solution leaves more than it may.
         """
         if self._system is None:
             raise InputError("factor a matrix before solving")
@@ -76,12 +75,10 @@ class ReusedFactor(IterativeSolver):
         if not self._current:
             self._factor_anew(self._system)
         solution, left = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
-        if not left <= max(2 * accuracy, FAILED) and self._sturdier is not None:
-            self._direct.close()
-            self._direct, self._sturdier = self._sturdier(), None
-            self.name = f"{self._direct.name}, reused"
-            self._factor_anew(self._system)
-            solution, _ = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
+        if not left <= max(2 * accuracy, self._largest_left):
+            raise ConvergenceError(
+                f"with a new factor ({self._direct.name}) the iteration left {left:.1e} of the right-hand side"
+            )
         return solution
 
     def _factor_anew(self, system: LinearSystem) -> None:

@@ -11,6 +11,7 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
 from tactsim.fem.solvers.linear import LOOSENESS, direct_solver, solved
+from tactsim.fem.solvers.reused_factor import ReusedFactor
 from tactsim.fem.solvers.solver_choice import factor_seconds, iteration_seconds, solver_for
 from tactsim.fem.solvers.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -140,8 +141,20 @@ def test_linear_functions_are_interpolated_exactly():
 
 def test_the_size_decides():
     body, _, _ = system((2, 2, 2))
-    assert not isinstance(solver_for(body), BlockPreconditioned)
-    assert isinstance(solver_for(body, largest_factor=10), BlockPreconditioned)
+    assert isinstance(solver_for(body).current, ReusedFactor)
+    assert isinstance(solver_for(body, largest_factor=10).current, BlockPreconditioned)
+
+
+def test_a_factor_takes_over_where_the_iteration_fails(monkeypatch):
+    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 2)
+    body, matrix, right = system((5, 5, 3), contact=False)
+    solver = solver_for(body, largest_factor=10)
+    computed = solved(solver, matrix, right, 1e-8)
+    assert isinstance(solver.current, ReusedFactor)
+    assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.LARGEST_FACTOR", 10)
+    with pytest.raises(ConvergenceError, match="iterative solver left"):
+        solved(solver_for(body, largest_factor=10), matrix, right, 1e-8)
 
 
 def test_a_factor_is_cheaper_for_small_bodies_and_the_iteration_for_large_ones():

@@ -14,6 +14,7 @@ from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers import pardiso
 from tactsim.fem.solvers.linear import direct_solver, section_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SinglePardiso, SymmetricPardiso
+from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import MOST_OF_ONE, ReusedFactor
 from tactsim.fem.solvers.solver_choice import giving_way
 from tactsim.fem.solvers.symmetric_factor import EXACT
@@ -182,14 +183,23 @@ class Misguiding(SinglePardiso):
 
 def test_where_a_guide_fails_a_sturdier_one_takes_over_for_good():
     matrix, right = tangent_of(3, axes=3)
-    alone, helped = ReusedFactor(Misguiding()), ReusedFactor(Misguiding(), SinglePardiso)
-    with pytest.raises(ConvergenceError):
+    sturdier = ReusedFactor(SinglePardiso())
+    alone = ReusedFactor(Misguiding(), largest_left=1e-6)
+    helped = Relay(ReusedFactor(Misguiding(), largest_left=1e-6), lambda: sturdier)
+    with pytest.raises(ConvergenceError, match="left"):
         solved(alone, matrix, right, 1e-8)
+    with pytest.raises(ConvergenceError, match="singular"):
+        solved(ReusedFactor(Misguiding()), matrix, right, 1e-8)
     computed = solved(helped, matrix, right, 1e-8)
     assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
-    assert (helped.name, helped.factorisations) == ("pardiso_single, reused", 2)
+    assert (helped.current, sturdier.factorisations) == (sturdier, 1)
     solved(helped, changed(matrix, 1e-3), right, 1e-8)
-    assert helped.factorisations == 2
+    assert (helped.current, sturdier.factorisations) == (sturdier, 1)
+    last = Relay(ReusedFactor(Misguiding(), largest_left=1e-6))
+    with pytest.raises(ConvergenceError, match="left"):
+        solved(last, matrix, right, 1e-8)
+    with pytest.raises(InputError):
+        Relay(sturdier).solve(right)
 
 
 def changed(matrix, amount, *, skew=0.0):

@@ -1,0 +1,60 @@
+"""A fast solver, and sturdier ones that take over for good where it fails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tactsim.array import Array
+from tactsim.errors import ConvergenceError, InputError
+from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
+
+
+class Relay(IterativeSolver):
+    """The first of some solvers until a solution with it fails, from then on the next; only the last one's failure is an error.
+
+    Parameters
+    ----------
+    first : the fastest
+    others : make the sturdier ones, in this order
+    """
+
+    def __init__(self, first: IterativeSolver, *others: Callable[[], IterativeSolver]):
+        self.current = first
+        self._others = list(others)
+        self._system: LinearSystem | None = None
+
+    @property
+    def name(self) -> str:  # type: ignore[override]  # of the class elsewhere
+        """Of the solver that solves now."""
+        return self.current.name
+
+    def factor(self, system: LinearSystem) -> None:
+        """Take a system and make its preconditioner."""
+        self._system = system
+        self.current.factor(system)
+
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``.
+
+        Raises
+        ------
+        InputError
+            If there is no system yet.
+        ConvergenceError
+            If the last of the solvers fails.
+        """
+        if self._system is None:
+            raise InputError("factor a matrix before solving")
+        while self._others:
+            try:
+                return self.current.solve(right, accuracy)
+            except ConvergenceError:
+                self.current.close()
+                self.current = self._others.pop(0)()
+                self.current.factor(self._system)
+        return self.current.solve(right, accuracy)
+
+    def close(self) -> None:
+        """Release the memory of the solver that solves now."""
+        self.current.close()
+        self._system = None
