@@ -51,6 +51,7 @@ class BlockPreconditioned(IterativeSolver):
         self._lumped = np.asarray(pressure_mass(body, BULK * shear).sum(axis=1)).ravel()
         self._split, self._dim = body.space.displacement_size, body.space.dim
         self._schur = guiding_solver()
+        self._factored_schur: Array | None = None
         self._matrix: csr_matrix | None = None
         self.iterations = 0
 
@@ -74,9 +75,14 @@ class BlockPreconditioned(IterativeSolver):
         if not diagonal.all():
             raise ConvergenceError("an unknown has no stiffness; is the material stable?")
         self._scale = 1 / np.sqrt(np.abs(diagonal))
-        self._schur.close()
-        self._schur.factor(schur)
+        self._factor_schur(schur)
         self._displacements.factor(*blocks.stiffness(matrix, self._dilatation.data, BULK))
+
+    def _factor_schur(self, schur: csr_matrix) -> None:
+        """Factor it unless it is the one that was: that of incompressible tissue never changes."""
+        if self._factored_schur is None or not np.array_equal(self._factored_schur, schur.data):
+            self._schur.factor(schur)
+            self._factored_schur = schur.data
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,) of the last matrix, its scaled residual over the right-hand side's ``accuracy``.
@@ -113,7 +119,7 @@ class BlockPreconditioned(IterativeSolver):
         """Release the factors' memory."""
         self._displacements.close()
         self._schur.close()
-        self._matrix = None
+        self._matrix = self._factored_schur = None
 
     def _above(self, left: Array, goal: float, largest: float) -> bool:
         """Whether a residual exceeds the goal, or its largest entry what a solution may leave."""

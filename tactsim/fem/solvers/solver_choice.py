@@ -25,8 +25,8 @@ FACTORS, SOLUTIONS = 0.23, 7.0
 PREPARATION, STEP = 0.75, 0.075
 """Seconds of the preconditioner and of one step of the iteration; both grow with the unknowns."""
 STEPS = 8.0
-"""Steps per system: 7 at 28 506 unknowns, 8 at 82 832. Whole systems took 0.41 and 1.02 s by iteration there, 0.33 and 1.60 s
-by factor."""
+"""Steps per system: 7 at 28 506 unknowns, 8 at 82 832. Whole systems took 0.35 and 1.05 s by iteration there, 0.36 and 1.60 s
+by factor. The constants meet at 52 000, not where those do, for the factor alone gains from a second thread."""
 LARGEST_FACTOR = 400_000
 """Unknowns up to which a factor takes over where the iteration fails; it takes some 10 GB there."""
 

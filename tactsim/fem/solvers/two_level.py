@@ -40,6 +40,7 @@ class TwoLevel:
         self._diagonal = tissue_diagonal(body)
         self._dim = space.dim
         self._direct = guiding_solver()
+        self._pattern: csr_matrix | None = None
         self.coarse_size = 0
 
     def factor(self, block: bsr_matrix, free: Array) -> None:
@@ -66,9 +67,10 @@ class TwoLevel:
         coarse.sort_indices()
         self._prolongation, self._restriction = prolongation.tocsr(), prolongation.T.tocsr()
         coarse.setdiag(np.where(coarse.diagonal() == 0, 1.0, coarse.diagonal()))
-        self._direct.close()
+        if self._pattern is None or not _same(self._pattern, coarse):
+            self._direct.close()  # contact rules other nodes; the analysis of a pattern takes as long as a factor
         self._direct.factor(coarse)
-        self.coarse_size = coarse.shape[0]
+        self._pattern, self.coarse_size = coarse, coarse.shape[0]
 
     def __call__(self, right: Array) -> Array:
         """One cycle for a right-hand side (n d,), beginning at zero."""
@@ -88,6 +90,7 @@ class TwoLevel:
     def close(self) -> None:
         """Release the coarse factor."""
         self._direct.close()
+        self._pattern = None
 
     def _ruled_by_contact(self, diagonal: Array, free: Array) -> Array:
         """Which nodes (n,) a contact makes much stiffer than their tissue, or takes stiffness from, where they are free (n, d).
@@ -111,6 +114,11 @@ class TwoLevel:
         nodes = hstack([diags(soft) @ linear, alone], format="csr")
         nodes.eliminate_zeros()
         return nodes
+
+
+def _same(first: csr_matrix, second: csr_matrix) -> bool:
+    """Whether two matrices have one pattern."""
+    return np.array_equal(first.indptr, second.indptr) and np.array_equal(first.indices, second.indices)
 
 
 def linear_interpolation(space: TaylorHood) -> csr_matrix:
