@@ -21,9 +21,12 @@ from tactsim.case.loading import load_case
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
 from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
+from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
+from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
-from tactsim.fem.solvers.solver_choice import solver_for
+from tactsim.fem.solvers.solver_choice import factored, giving_way
 
 CASE = Path(__file__).parents[1] / "cases" / "grasp_lump_icf.yaml"
 CELLS = {"size": 4.0, "inclusion_size": 2.0, "edge_size": 1.6}
@@ -39,7 +42,7 @@ class Counting(IterativeSolver):
     name = "counting"
 
     def __init__(self, body: Body, *, factor: bool = False):
-        self._solver = solver_for(body, largest_factor=sys.maxsize if factor else 0)
+        self._solver = factored(QuasiDefinitePardiso(giving_way(body))) if factor else Relay(BlockPreconditioned(body))
         self._begin = 0.0
         self.iterations: list[int] = []
         self.accuracies: list[float] = []

@@ -7,6 +7,7 @@ import ctypes
 import functools
 import os
 import weakref
+from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from tactsim.fem.threads import SERIAL_UNKNOWNS
 
 GENERAL, SYMMETRIC_INDEFINITE = 11, -2
 """Pardiso's kinds of matrices."""
+ANALYSE, ANALYSE_AND_FACTOR, FACTOR, SOLVE, RELEASE = 11, 12, 22, 33, -1
+"""Its phases."""
 GENERAL_SETTINGS = {0: 1, 1: 2, 7: 0, 9: 13, 10: 1, 12: 1}
 """User settings, nested dissection, refinement only after perturbed pivots, perturbation 1e-13, scaling and matching: MKL's
 defaults for nonsymmetric matrices but for the refinement. Two rounds of it for every solution
@@ -28,11 +31,21 @@ SINGLE_PRECISION, PIVOTING = 27, 20
 """Which of Pardiso's settings ask for matrices and vectors in single precision, and for blocks of two by two as pivots."""
 SCALING, MATCHING = 10, 12
 """Which of them ask for scaling and for the matching of large entries to the diagonal."""
+ENTRIES, OPERATIONS = 17, 18
+"""Which of them hold, if asked by -1, the entries of the factor and the millions of operations for it once it is analysed."""
 NO_MEMORY = (-2, -9)
 """Pardiso's error codes when memory runs out (oneMKL Developer Reference, pardiso, table of error indicators)."""
 
 LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 """Environment variable in which pypardiso takes the path of MKL's library."""
+
+
+@dataclass(frozen=True)
+class FactorSize:
+    """How large a factor will be: its ``entries`` and the floating-point ``operations`` that make it."""
+
+    entries: float
+    operations: float
 
 
 class Pardiso:
@@ -62,13 +75,20 @@ class Pardiso:
         ConvergenceError
             If it holds numbers that are not finite, or too large for single precision where that is asked.
         """
+        self._take(matrix, ANALYSE_AND_FACTOR if self._system is None else FACTOR)
+
+    def analyse(self, matrix: csr_matrix) -> FactorSize:
+        """Size of the factors of matrices of this pattern, whose values do not matter if nothing is matched; factor them next."""
+        self._solver.iparm[ENTRIES] = self._solver.iparm[OPERATIONS] = -1
+        self._take(matrix, ANALYSE)
+        return FactorSize(float(self._solver.iparm[ENTRIES]), 1e6 * float(self._solver.iparm[OPERATIONS]))
+
+    def _take(self, matrix: csr_matrix, phase: int) -> None:
         if self._system is None:
             indptr, indices = self._structure(matrix)
-            self._release = weakref.finalize(self, _call_pardiso, self._solver, -1, (np.zeros(0),) * 3, np.zeros(0))
-            phase = 12
+            self._release = weakref.finalize(self, _call_pardiso, self._solver, RELEASE, (np.zeros(0),) * 3, np.zeros(0))
         else:
             _, indptr, indices = self._system
-            phase = 22
         entries = self._entries(matrix)
         if self._single and not np.abs(entries).max() < np.finfo(np.float32).max:
             raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
@@ -94,9 +114,9 @@ class Pardiso:
         if self._system is None:
             raise InputError("factor a matrix before solving")
         if not self._single:
-            return _call_pardiso(self._solver, 33, self._system, right)
+            return _call_pardiso(self._solver, SOLVE, self._system, right)
         size = float(np.abs(right).max())
-        return size * _call_pardiso(self._solver, 33, self._system, right / size) if size else np.zeros_like(right)
+        return size * _call_pardiso(self._solver, SOLVE, self._system, right / size) if size else np.zeros_like(right)
 
     def close(self) -> None:
         """Release MKL's memory; the next matrix may have another pattern."""
@@ -185,7 +205,7 @@ class QuasiDefinitePardiso(SinglePardiso):
 
 
 def _call_pardiso(solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array) -> Array:
-    """One phase of Pardiso: 12 analyse and factor, 22 factor, 33 solve, -1 release; ``system`` is data, indptr and indices."""
+    """One phase of Pardiso; ``system`` is data, indptr and indices."""
     single = bool(solver.iparm[SINGLE_PRECISION])
     right = np.ascontiguousarray(right, dtype=np.float32 if single else np.float64)
     solution = np.zeros_like(right)

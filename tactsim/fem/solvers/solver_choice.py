@@ -3,30 +3,30 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressure_mass
 from tactsim.fem.solvers.linear import LinearSolver, direct_solver
-from tactsim.fem.solvers.pardiso import Pardiso, QuasiDefinitePardiso, SinglePardiso
+from tactsim.fem.solvers.pardiso import FactorSize, Pardiso, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 
-REFERENCE = 1e5
-"""Unknowns at which the constants below hold. They are processor seconds of grasps with friction, on one core beside other work,
-of 28 506 and 82 832 unknowns (``benchmarks/scale.py``); only their ratios decide."""
-FACTOR, FACTOR_GROWTH = 5.9, 1.8
-"""Seconds of a factor in single precision, 0.58 and 4.2 as measured, and the power of the unknowns by which they grow; the
-limit is 2 (George 1973, doi:10.1137/0710032, nested dissection; in space)."""
-SOLUTION, SOLUTION_GROWTH = 0.09, 1.2
-"""Those of a solution with it, 0.020 and 0.073; the limit is 4/3."""
+OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 4.2e10, 1e9
+"""Speeds of a factor in single precision and of solutions with it. Grasps of 28 506 and 82 832 unknowns
+(``benchmarks/scale.py``): 2.2e10 and 1.6e11 operations in 0.54 and 3.6 s, 1.8e7 and 7.7e7 entries in 17 and 66 ms; plates of
+66 642 and 173 802 (``benchmarks/stretch.py``): 2.3e10 and 9.5e10 in 0.61 and 2.7 s, 2.9e7 and 8.9e7 in 32 and 95 ms. All in
+seconds of one core beside other work, as those below; only their ratios decide."""
 FACTORS, SOLUTIONS = 0.23, 7.0
 """Factors and solutions per system."""
-PREPARATION, STEP = 0.75, 0.075
-"""Seconds of the preconditioner and of one step of the iteration; both grow with the unknowns."""
+PREPARATION, STEP = 7.5e-6, 7.5e-7
+"""Seconds of the preconditioner and of one step of the iteration for each unknown."""
 STEPS = 8.0
-"""Steps per system: 7 at 28 506 unknowns, 8 at 82 832. Whole systems took 0.35 and 1.05 s by iteration there, 0.36 and 1.60 s
-by factor. The constants meet at 52 000, not where those do, for the factor alone gains from a second thread."""
+"""Steps per system: 7 in the grasp of 28 506 unknowns, 8 in that of 82 832. Whole systems took 0.35 and 1.05 s by iteration
+there, 0.36 and 1.60 s by factor; the whole path of the smaller plate 75 s by iteration and 52 s by factor."""
+SMALLEST_ITERATED = 25_000
+"""Unknowns below which a factor is cheaper in any body, so that none need be analysed."""
 LARGEST_FACTOR = 400_000
 """Unknowns up to which a factor takes over where the iteration fails; it takes some 10 GB there."""
 
@@ -37,39 +37,43 @@ GIVING_WAY = 1e-4
 more, and the rounding of single precision, 6e-8, is 6e-4 of what 1e-4 leaves as a pivot at worst."""
 
 
-def factor_seconds(unknowns: float) -> float:
-    """Seconds per system of a body of this size by a factor that is reused, on one core."""
-    size = unknowns / REFERENCE
-    return FACTORS * FACTOR * size**FACTOR_GROWTH + SOLUTIONS * SOLUTION * size**SOLUTION_GROWTH
+def factor_seconds(size: FactorSize) -> float:
+    """Seconds per system of a body whose factors are of this size, by a factor that is reused, on one core."""
+    return FACTORS * size.operations / OPERATIONS_PER_SECOND + SOLUTIONS * size.entries / ENTRIES_PER_SECOND
 
 
 def iteration_seconds(unknowns: float) -> float:
-    """Seconds per system of a body of this size by the iteration, on one core."""
-    return (PREPARATION + STEPS * STEP) * unknowns / REFERENCE
+    """Seconds per system of a body of so many unknowns by the iteration, on one core."""
+    return (PREPARATION + STEPS * STEP) * unknowns
 
 
-def solver_for(body: Body, *, largest_factor: int | None = None) -> LinearSolver:
-    """A factor that is reused, or the iteration, whichever costs less; the iteration is relieved by the factor where it fails.
-
-    ``largest_factor`` unknowns, if given, decide instead: a larger body gets the iteration.
-    """
+def solver_for(body: Body) -> LinearSolver:
+    """A factor that is reused, or the iteration, whichever costs less in this body by the size of its factor."""
+    size = body.space.size
     if direct_solver().name != Pardiso.name:
         return direct_solver()
-    size = body.space.size
-    iterates = iteration_seconds(size) < factor_seconds(size) if largest_factor is None else size > largest_factor
-    if not iterates:
-        return Relay(_guided_factor(body), _matched_factor)
-    factors = (lambda: _guided_factor(body), _matched_factor) if size <= LARGEST_FACTOR else ()
-    return Relay(BlockPreconditioned(body), *factors)
+    if size > LARGEST_FACTOR:
+        return BlockPreconditioned(body)
+    guide = QuasiDefinitePardiso(giving_way(body))
+    if size < SMALLEST_ITERATED or factor_seconds(guide.analyse(_ones(body))) <= iteration_seconds(size):
+        return factored(guide)
+    guide.close()
+    return iterated(body)
 
 
-def _guided_factor(body: Body) -> ReusedFactor:
-    """Of what gives way a little: the fastest, whose pivots need not suffice."""
-    return ReusedFactor(QuasiDefinitePardiso(giving_way(body)), largest_left=FAILED)
+def factored(guide: QuasiDefinitePardiso) -> Relay:
+    """The factor of what gives way a little, whose pivots need not suffice; after it the matched one."""
+    return Relay(ReusedFactor(guide, largest_left=FAILED), lambda: ReusedFactor(SinglePardiso()))
 
 
-def _matched_factor() -> ReusedFactor:
-    return ReusedFactor(SinglePardiso())
+def iterated(body: Body) -> Relay:
+    """The iteration; after it the matched factor."""
+    return Relay(BlockPreconditioned(body), lambda: ReusedFactor(SinglePardiso()))
+
+
+def _ones(body: Body) -> csr_matrix:
+    """A matrix of the pattern of the body's tangents."""
+    return body.pattern.matrix(np.ones(len(body.pattern.indices)))
 
 
 def giving_way(body: Body) -> Array:

@@ -11,14 +11,16 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
 from tactsim.fem.solvers.linear import LOOSENESS, direct_solver, solved
+from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
-from tactsim.fem.solvers.solver_choice import factor_seconds, iteration_seconds, solver_for
+from tactsim.fem.solvers.solver_choice import factor_seconds, factored, giving_way, iterated, solver_for
 from tactsim.fem.solvers.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 SIZE = np.array([0.02, 0.02, 0.01])
 BULK = {"exactly": None, "nearly": 1e6}
 FRICTION = 0.6
+RUBBER = MooneyRivlin2(c10=1000.0, c01=685.0)
 
 
 def system(cells, *, bulk_modulus=None, contact=True, hold=True, giving_way=0.0):
@@ -139,27 +141,45 @@ def test_linear_functions_are_interpolated_exactly():
     np.testing.assert_allclose(linear_interpolation(body.space) @ nodes[: body.space.corner_count], nodes, atol=1e-15)
 
 
-def test_the_size_decides():
-    body, _, _ = system((2, 2, 2))
-    assert isinstance(solver_for(body).current, ReusedFactor)
-    assert isinstance(solver_for(body, largest_factor=10).current, BlockPreconditioned)
-
-
 def test_a_factor_takes_over_where_the_iteration_fails(monkeypatch):
     monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 2)
     body, matrix, right = system((5, 5, 3), contact=False)
-    solver = solver_for(body, largest_factor=10)
+    solver = iterated(body)
     computed = solved(solver, matrix, right, 1e-8)
     assert isinstance(solver.current, ReusedFactor)
     assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
-    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.LARGEST_FACTOR", 10)
     with pytest.raises(ConvergenceError, match="iterative solver left"):
-        solved(solver_for(body, largest_factor=10), matrix, right, 1e-8)
+        solved(BlockPreconditioned(body), matrix, right, 1e-8)
 
 
-def test_a_factor_is_cheaper_for_small_bodies_and_the_iteration_for_large_ones():
-    sizes = np.geomspace(3e3, 3e6, 50)
-    cheaper = np.array([iteration_seconds(size) < factor_seconds(size) for size in sizes])
-    assert (np.diff(cheaper.astype(int)) >= 0).all()
-    assert not cheaper[sizes < 3e4].any()
-    assert cheaper[sizes > 1e6].all()
+@pytest.mark.skipif(direct_solver().name != "pardiso", reason="only Pardiso tells the size of its factors")
+def test_the_size_of_the_factor_decides(monkeypatch):
+    small, _, _ = system((2, 2, 2))
+    cube, slender = (body_of(box(SIZE, cells), "solid", RUBBER) for cells in ((6, 6, 6), (54, 2, 2)))
+    assert cube.space.size < slender.space.size
+    assert isinstance(solver_for(small).current, ReusedFactor)
+    sizes = {}
+    for name, body in {"cube": cube, "slender": slender}.items():
+        analysed = QuasiDefinitePardiso(giving_way(body))
+        sizes[name] = analysed.analyse(body.pattern.matrix(np.ones(len(body.pattern.indices))))
+        analysed.close()
+    assert sizes["slender"].operations < 0.5 * sizes["cube"].operations
+    assert factor_seconds(sizes["slender"]) < factor_seconds(sizes["cube"])
+    between = (factor_seconds(sizes["slender"]) + factor_seconds(sizes["cube"])) / 2
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.SMALLEST_ITERATED", 0)
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.iteration_seconds", lambda unknowns: between)
+    assert isinstance(solver_for(slender).current, ReusedFactor)
+    assert isinstance(solver_for(cube).current, BlockPreconditioned)
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.LARGEST_FACTOR", 10)
+    assert isinstance(solver_for(slender), BlockPreconditioned)
+
+
+@pytest.mark.skipif(direct_solver().name != "pardiso", reason="only Pardiso has two phases")
+def test_what_was_analysed_is_factored():
+    body, matrix, right = system((3, 3, 2), contact=False)
+    factor = QuasiDefinitePardiso(giving_way(body))
+    size = factor.analyse(body.pattern.matrix(np.ones(len(body.pattern.indices))))
+    assert matrix.nnz / 2 < size.entries < matrix.shape[0] ** 2 / 2
+    assert size.operations > size.entries
+    computed, expected = (solved(factored(one), matrix, right, 1e-10) for one in (factor, QuasiDefinitePardiso(giving_way(body))))
+    np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
