@@ -16,8 +16,8 @@ from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.linear import solved
-from tactsim.fem.solvers.pardiso import SinglePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
+from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.neo_hookean import NeoHookean
 
@@ -49,7 +49,7 @@ def solve(problem: dict[str, Array]) -> dict[str, object]:
     begin = time.perf_counter()
     body = body_of(problem)
     fixed = (3 * np.concatenate([problem["bottom"], problem["top"]])[:, None] + np.arange(3)).ravel()
-    solver = ReusedFactor(SinglePardiso())
+    solver = solver_for(body)
     posed = Problem(body, fixed, solver=solver, options=NewtonOptions(tolerance=float(problem["tolerance"])))
     setup, seconds, iterations = time.perf_counter() - begin, [], []
     path = [np.zeros(body.space.size)]
@@ -69,13 +69,15 @@ def solve(problem: dict[str, Array]) -> dict[str, object]:
     used = time.process_time() - used
     reaction, _ = body.space.split(body.residual(path[-1], solved.kinematics))
     solver.close()
+    reused = getattr(solver, "current", None)
+    counts = (reused.factorisations, reused.solutions) if isinstance(reused, ReusedFactor) else (np.nan, np.nan)
     return {
         "setup_seconds": setup,
         "step_seconds": seconds,
         "processor_seconds": used,
         "iterations": iterations,
-        "factorisations": solver.factorisations,
-        "solutions": solver.solutions,
+        "factorisations": counts[0],
+        "solutions": counts[1],
         "unknowns": body.space.size,
         "forces": reaction[problem["top"]],
         "version": tactsim.__version__,

@@ -22,9 +22,10 @@ FACTORS, SOLUTIONS = 0.23, 7.0
 """Factors and solutions per system."""
 PREPARATION, STEP = 7.5e-6, 7.5e-7
 """Seconds of the preconditioner and of one step of the iteration for each unknown."""
-STEPS = 8.0
-"""Steps per system: 7 in the grasp of 28 506 unknowns, 8 in that of 82 832. Whole systems took 0.35 and 1.05 s by iteration
-there, 0.36 and 1.60 s by factor; the whole path of the smaller plate 75 s by iteration and 52 s by factor."""
+STEPS = 12.0
+"""Steps per system: 7 in the grasp of 28 506 unknowns and 8 in that of 82 832, which ask for few digits; some 20 without contact.
+Whole systems of the grasps took 0.35 and 1.05 s by iteration, 0.36 and 1.60 s by factor; the path of the smaller plate 75 s by
+iteration and 52 s by factor; that of a block of 121 811 unknowns (``benchmarks/peers.py``) 47 and 41 s."""
 SMALLEST_ITERATED = 25_000
 """Unknowns below which a factor is cheaper in any body, so that none need be analysed."""
 LARGEST_FACTOR = 400_000
