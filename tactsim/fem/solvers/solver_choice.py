@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressure_mass
-from tactsim.fem.solvers.linear import LinearSolver, direct_solver
+from tactsim.fem.solvers.linear import LinearSolver, SuperLU, direct_solver
 from tactsim.fem.solvers.pardiso import FactorSize, Pardiso, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
@@ -29,8 +29,9 @@ iteration and 52 s by factor; that of a block of 121 811 unknowns (``benchmarks/
 SMALLEST_ITERATED = 25_000
 """Unknowns below which a factor is cheaper in any body, so that none need be analysed."""
 LARGEST_FACTOR = 400_000
-"""Unknowns up to which a factor takes over where the iteration fails; it takes some 10 GB there."""
-
+"""Unknowns from which a factor would not fit: by the growth from the grasps above it would have 6e8 entries there."""
+LARGEST_SUPERLU = 5_000
+"""Unknowns up to which SuperLU serves where Pardiso is not installed: 10 023 take 7.5 s by factor, 1.5 s by iteration to 1e-8."""
 FAILED = 1e-6
 """Residual over the right-hand side above which a guide has failed; round-off ends other iterations near 1e-12."""
 GIVING_WAY = 1e-4
@@ -51,10 +52,10 @@ def iteration_seconds(unknowns: float) -> float:
 def solver_for(body: Body) -> LinearSolver:
     """A factor that is reused, or the iteration, whichever costs less in this body by the size of its factor."""
     size = body.space.size
-    if direct_solver().name != Pardiso.name:
-        return direct_solver()
     if size > LARGEST_FACTOR:
         return BlockPreconditioned(body)
+    if direct_solver().name != Pardiso.name:
+        return Relay(BlockPreconditioned(body), lambda: ReusedFactor(SuperLU())) if size > LARGEST_SUPERLU else SuperLU()
     guide = QuasiDefinitePardiso(giving_way(body))
     if size < SMALLEST_ITERATED or factor_seconds(guide.analyse(_ones(body))) <= iteration_seconds(size):
         return factored(guide)

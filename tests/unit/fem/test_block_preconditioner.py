@@ -10,7 +10,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
-from tactsim.fem.solvers.linear import LOOSENESS, direct_solver, solved
+from tactsim.fem.solvers.linear import LOOSENESS, SuperLU, direct_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 from tactsim.fem.solvers.solver_choice import factor_seconds, factored, giving_way, iterated, solver_for
@@ -172,6 +172,19 @@ def test_the_size_of_the_factor_decides(monkeypatch):
     assert isinstance(solver_for(cube).current, BlockPreconditioned)
     monkeypatch.setattr("tactsim.fem.solvers.solver_choice.LARGEST_FACTOR", 10)
     assert isinstance(solver_for(slender), BlockPreconditioned)
+
+
+def test_without_pardiso_small_bodies_get_a_factor_and_others_the_iteration(monkeypatch):
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.direct_solver", SuperLU)
+    body, matrix, right = system((4, 4, 3), contact=False)
+    assert isinstance(solver_for(body), SuperLU)
+    monkeypatch.setattr("tactsim.fem.solvers.solver_choice.LARGEST_SUPERLU", 10)
+    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 2)
+    solver = solver_for(body)
+    assert isinstance(solver.current, BlockPreconditioned)
+    computed = solved(solver, matrix, right, 1e-8)
+    assert solver.name == "superlu, reused"
+    assert np.linalg.norm(matrix @ computed - right) <= 2e-8 * np.linalg.norm(right)
 
 
 @pytest.mark.skipif(direct_solver().name != "pardiso", reason="only Pardiso has two phases")
