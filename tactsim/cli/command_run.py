@@ -42,12 +42,12 @@ longer than --time-limit ends as a failed one: what was accepted so far is writt
 """
 EXAMPLES = """\
 examples:
-  tactsim run cases/annulus_icf.yaml
-  tactsim run cases/annulus_icf.yaml --out soft --set experiment.specimen.thickness="6 mm"
+  tactsim run annulus_icf
+  tactsim run annulus_icf --out soft --set experiment.specimen.thickness="6 mm"
   tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
-  tactsim run cases/grasp_lump_icf.yaml --time-limit "5 min"
+  tactsim run grasp_lump_icf --time-limit "5 min"
   tactsim run grasp_plain grasp_lump_icf --out grasps
-  tactsim run cases/annulus_icf.yaml --figures pdf
+  tactsim run annulus_icf --figures pdf
 """
 
 

@@ -138,7 +138,7 @@ def _parser(first: str = "") -> argparse.ArgumentParser:
     parser = _Parser(
         prog="tactsim",
         description="Physics simulation of tactile sensing on soft tissue.",
-        epilog=f"example:\n  tactsim run cases/annulus_icf.yaml\n\n{EXIT_CODES}",
+        epilog=f"example:\n  tactsim run annulus_icf\n\n{EXIT_CODES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"tactsim {__version__}")

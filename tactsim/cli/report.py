@@ -62,7 +62,7 @@ def format_values(quantity: Quantity) -> str:
     if not finite.size:
         return f"{shape} values, none finite"
     low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
-    return f"{shape} values, {low} to {high}"
+    return f"{shape} values, {low} to {high}" if low != high or finite.size < values.size else f"{shape} values, all {low}"
 
 
 LISTED = 4

@@ -43,7 +43,7 @@ Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 class Localization(Experiment):
     """Estimate from a stored grasp, held against the inclusions that it was computed with.
 
-    Run a grasp first, for example ``tactsim run cases/grasp_lump_icf.yaml --out results/grasp_lump_icf``, and the same grasp with
+    Run a grasp first, for example ``tactsim run grasp_lump_icf --out results/grasp_lump_icf``, and the same grasp with
     ``material`` of the inclusion set to that of the tissue as ``reference``. Then::
 
         experiment:

@@ -76,6 +76,12 @@ def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -
         ("kind: pretence", "kind: pretence\n  steps: '3'", "6: experiment.steps: '3' is not allowed; expected a whole number"),
         ("kind: pretence", "kind: pretence\n  steps: 1.5", "6: experiment.steps: 1.5 is not allowed; expected a whole number"),
         ("kind: pretence", "kind: pretence\n  friction: nan", "6: experiment.friction: 'nan' is not allowed; expected a number"),
+        (
+            "kind: pretence",
+            "kind: pretence\n  friction: 0,6",
+            "6: experiment.friction: '0,6' is not allowed; expected a number; decimals begin with a point, not a comma",
+        ),
+        ("modulus: 3 kPa}", "modulus: 3,5 kPa}", "10: experiment.specimen.layers.0.material.5 kPa: unknown key"),
         ("kind: pretence", "kind: pretence\n  pause: nan s", "6: experiment.pause: 'nan s' is not finite; "),
         (
             "{kind: soft, modulus: 3 kPa}",

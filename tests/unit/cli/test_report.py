@@ -23,6 +23,8 @@ RESULT = pretended_result(Status.CONVERGED, "done", ())
         (None, "Pa", "none"),
         ([[1.0, None], [3.0, 2.0]], "N", "2 x 2 values, 1 N to 3 N"),
         ([None], "N", "1 values, none finite"),
+        ([45e3] * 5, "Pa", "5 values, all 45 kPa"),
+        ([None, *[45e3] * 4], "Pa", "5 values, 45 kPa to 45 kPa"),
         (math.nan, "N", "nan N"),
     ],
 )
