@@ -221,6 +221,12 @@ def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(key for member in _members(fragment, schema) for key in member.get("properties", {})))
 
 
+def unit_at(model: type[BaseModel], value: Any, path: Path) -> str:
+    """The SI unit of the quantity at a key path of ``value``, empty where there is none."""
+    fragment = _schema_at(_schema_of(model), value, path)
+    return next((str(member["unit"]) for member in _members(fragment, _schema_of(model)) if "unit" in member), "")
+
+
 def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
     """The part of the schema for a key path, following in every union the member of the ``kind`` that the file names."""
     fragment = _narrowed(schema, schema, root)
