@@ -279,5 +279,6 @@ def test_the_signature_of_every_kind_reads_without_machinery() -> None:
     assert len(classes) > 40
     for cls in classes:
         text = str(inspect.signature(cls))
-        assert " at 0x" not in text and "Annotated" not in text, f"{cls.__name__}: {text}"
+        assert " at 0x" not in text, cls.__name__
+        assert "Annotated" not in text, cls.__name__
     assert str(inspect.signature(ts.Sphere)) == "(*, center: tuple[float, float, float], radius: float)"

@@ -89,7 +89,7 @@ def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf) -> dict[st
     """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key."""
     experiments = [result.provenance.get("case", {}).get("experiment", {}) for result in results.values()]
     cases = [dict(_leaves(experiment, ())) for experiment in experiments]
-    differing = {}
+    differing: dict[str, tuple[str, ...]] = {}
     for path in dict.fromkeys(path for case in cases for path in case):
         values = [case.get(path) for case in cases]
         if len(set(map(_text, values))) > 1:

@@ -143,6 +143,12 @@ class IndentationSetup(FrozenModel):
     def drive(self) -> Displaced | Timed:
         """What moves the body: the clock of the simulation, or none."""
 
+    def doubts(self) -> list[str]:
+        """Sizes and materials that look like a wrong unit."""
+        from tactsim.experiments.indentation.record import contact_oddities
+
+        return contact_oddities(self)
+
     def posed(self) -> Posed:
         """The body as it stands: upright on the axis."""
         return Posed(self.body, np.array([0.0, 1.0]), self.inner_punch)

@@ -74,9 +74,7 @@ def test_numbers_of_other_kinds_leave_gaps() -> None:
         quantities = {name: Quantity(value, "Pa", name) for name, value in values.items()}
         return Result(kind="pretence", status=Status.CONVERGED, reason="", quantities=quantities)
 
-    comparison = compared(
-        {"a": result(one=2e3, both=1.0), "b": result(two=5.0, both=1 + 1e-9)}, lambda experiment, path: ""
-    )
+    comparison = compared({"a": result(one=2e3, both=1.0), "b": result(two=5.0, both=1 + 1e-9)}, lambda experiment, path: "")
     assert {column.head: column.values for column in comparison.columns} == {
         "one [kPa]": (2.0, None),
         "both [Pa]": (1.0, 1 + 1e-9),

@@ -55,6 +55,11 @@ def test_a_step_is_one_line() -> None:
     assert "share 0.5" in step_line(record, {}), "without units every value is printed, in SI"
 
 
+def test_a_step_says_how_far_the_run_is() -> None:
+    record = StepRecord(3, 5, 1e-12, {"time": 0.5})
+    assert step_line(record, {"time": "s"}, ("time", 2.0)).startswith("step    3  25%  time 500 ms")
+
+
 def test_a_line_shows_the_first_values_that_the_units_name() -> None:
     names = [f"value_{number}" for number in range(7)]
     line = step_line(StepRecord(1, 2, 0.0, dict.fromkeys(names, 1.0)), dict.fromkeys(names, "1"))
