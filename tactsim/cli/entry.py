@@ -78,7 +78,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_environment(os.environ, Path())
         words = list(sys.argv[1:] if arguments is None else arguments)
         parser = _parser(next(iter(words), ""))
-        parsed = parser.parse_args(words)
+        parsed, unknown = parser.parse_known_args(words)
+        if unknown:
+            command = f" {words[0]}" if words[0] in [command.NAME for command in COMMANDS] else ""
+            raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: tactsim{command} --help")
         if "run" not in parsed:
             console.out(parser.format_help())
             console.error("name one of the commands; tactsim COMMAND --help says more")
