@@ -45,7 +45,7 @@ def test_a_wrong_command_line_is_bad_input(arguments: list[str], capsys: pytest.
 def test_an_unknown_option_leads_to_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "a", "--sett", "x=1"]) == 2
     assert capsys.readouterr().err == "error: unrecognized arguments: --sett x=1\nsee: tactsim run --help\n"
-    assert main(["--sett", "run"]) == 2
+    assert main(["--sett"]) == 2
     assert capsys.readouterr().err.endswith("see: tactsim --help\n")
 
 
