@@ -40,12 +40,12 @@ Overrides = Sequence[str] | Mapping[str, Any]
 """``path.to.key=value`` as text, or key path -> value as a case file would hold it."""
 
 
-def load_case(path: str | Path, overrides: Overrides = ()) -> Case:
-    """The validated case in a file, or the shipped case of a name such as ``annulus_icf``.
+def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
+    """The validated case in a file, the shipped case of a name such as ``annulus_icf``, or the case that a mapping describes.
 
     Parameters
     ----------
-    path : of the file; a file comes before a shipped case
+    path : of the file, which comes before a shipped case; or what such a file holds, ``{"schema": ..., "experiment": ...}``
     overrides : ``{"experiment.recess": "0.4 mm"}``, or text such as ``experiment.recess=0.4 mm``; validated like the file
 
     Raises
@@ -58,8 +58,8 @@ def load_case(path: str | Path, overrides: Overrides = ()) -> Case:
     return validated_case(*read_document(path, overrides))
 
 
-def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document, Place]:
-    """What a case file says, after the overrides, and how messages name its places; nothing is validated yet.
+def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> tuple[Document, Place]:
+    """What a case file, or a mapping, says after the overrides, and how messages name its places; nothing is validated yet.
 
     Raises
     ------
@@ -68,15 +68,11 @@ def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document
     StorageError
         If the file is missing or cannot be read.
     """
-    path = case_path(path)
-    text = read_case_text(path)
-    try:
-        document = replace(read_yaml(text), folder=Path(path).parent, first=_first_commands(text) if path.parent == CASES else "")
-    except YamlProblems as error:
-        raise case_error(error.problems, _place_in(path, {})) from None
-    if not isinstance(document.value, dict):
-        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
-        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+    if isinstance(path, Mapping):
+        path, document = "case", Document(written(path))
+    else:
+        path = case_path(path)
+        document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
     named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     for override, value in named:
@@ -89,6 +85,19 @@ def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document
             raise case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
         overridden[key_path] = override.partition("=")[0].strip()
     return document, _place_in(path, overridden)
+
+
+def _read_file(path: Path) -> Document:
+    """What a case file says."""
+    text = read_case_text(path)
+    try:
+        document = replace(read_yaml(text), folder=path.parent, first=_first_commands(text) if path.parent == CASES else "")
+    except YamlProblems as error:
+        raise case_error(error.problems, _place_in(path, {})) from None
+    if not isinstance(document.value, dict):
+        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
+        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+    return document
 
 
 def _first_commands(text: str) -> str:
