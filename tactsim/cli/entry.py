@@ -78,10 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_environment(os.environ, Path())
         words = list(sys.argv[1:] if arguments is None else arguments)
         parser = _parser(next(iter(words), ""))
-        parsed, unknown = parser.parse_known_args(words)
-        if unknown:
-            command = f" {words[0]}" if words[0] in [command.NAME for command in COMMANDS] else ""
-            raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: tactsim{command} --help")
+        parsed = _parsed(parser, words)
         if "run" not in parsed:
             console.out(parser.format_help())
             console.error("name one of the commands; tactsim COMMAND --help says more")
@@ -115,6 +112,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _defect(error, debug)
     finally:
         console.flush()
+
+
+def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+    """The arguments of a command line.
+
+    Raises
+    ------
+    InputError
+        If one is unknown, with the help of the command that does not know it.
+    """
+    parsed, unknown = parser.parse_known_args(words)
+    if unknown:
+        command = f" {words[0]}" if words[0] in [command.NAME for command in COMMANDS] else ""
+        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: tactsim{command} --help")
+    return parsed
 
 
 def _defect(error: Exception, debug: bool) -> int:

@@ -196,13 +196,6 @@ class GraspSetup(FrozenModel):
         """Where the mesh comes from, as far as the case says without making it."""
         return chosen_source(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS])
 
-    def doubts(self) -> list[str]:
-        """Taxels beside the block, and sizes and materials that look like a wrong unit."""
-        from tactsim.experiments.grasp.overhang import overhang_warnings
-        from tactsim.experiments.grasp.warnings import unlikely
-
-        return [*overhang_warnings(self), *unlikely(self)]
-
     def sourced(self) -> SourcedBlock:
         """The mesh; tetrahedra are finer at the edges of jaws that are smaller than the block and in its middle."""
         centred = not any(self.upper.offset + self.lower.offset)
