@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import inspect
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -16,8 +18,35 @@ else:
     ModelMetaclass = type(BaseModel)
 
 
+class _Fields:
+    """The signature of a model as ``help`` shows it: its fields and their types without the machinery of pydantic."""
+
+    def __get__(self, instance: object, model: type[BaseModel]) -> inspect.Signature:
+        if instance is not None:
+            raise AttributeError("__signature__")
+        fields = {name: field for name, field in model.model_fields.items() if name != "kind"}
+        typed = SimpleNamespace(__annotations__={name: field.annotation for name, field in fields.items()})
+        types = get_type_hints(typed)  # of which it leaves the annotations out, within others too
+        empty = inspect.Parameter.empty
+        return inspect.Signature(
+            [
+                inspect.Parameter(
+                    name,
+                    inspect.Parameter.KEYWORD_ONLY,
+                    default=empty if field.is_required() else field.get_default(call_default_factory=True),
+                    annotation=types[name],
+                )
+                for name, field in fields.items()
+            ]
+        )
+
+
 class _MadeInPython(ModelMetaclass):
     """What is wrong with a value made in Python raises the message that a case file has for it; fields may go by position."""
+
+    def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any):
+        super().__init__(name, bases, namespace, **options)
+        cls.__signature__ = _Fields()
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
         named = dict(zip((name for name in cls.model_fields if name != "kind"), values, strict=False))  # type: ignore[attr-defined]

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
 from tactsim.errors import Refused, shown, suggestion
-from tactsim.units import format_quantity
+from tactsim.units import DECIMAL_POINT, format_quantity
 
 Path = tuple[str | int, ...]
 
@@ -35,7 +35,7 @@ def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> d
     messages: dict[Path, list[str]] = {}
     for detail in _details(error):
         path = _path_in_file(detail["loc"], value, str(detail["type"]))
-        if detail["type"] in ("too_short", "too_long") and _fits(detail.get("ctx", {}), _value_at(value, path)):
+        if detail["type"] in ("too_short", "too_long") and _fits(detail.get("ctx", {}), value_at(value, path)):
             continue  # pydantic counts only the valid entries, and the others have their own message
         place, message = _explained(detail, path, value, schema)
         of_place = messages.setdefault(place, [])
@@ -90,11 +90,12 @@ def _is_member(key: str | int, rest: tuple[str | int, ...], value: dict[str, Any
 def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, Any]) -> tuple[Path, str]:
     """The key path to blame and the message for one refusal."""
     error_type, context = str(detail["type"]), detail.get("ctx", {})
-    value = _value_at(root, path)
+    value = value_at(root, path)
     fragment = _schema_at(schema, root, path)
     if error_type == "extra_forbidden":
         allowed = _keys(_schema_at(schema, root, path[:-1]), schema)
-        return path, f"unknown key{suggestion(str(path[-1]), allowed)}; allowed: {', '.join(allowed) or 'none'}"
+        comma = f"; {DECIMAL_POINT}" if str(path[-1]).isdecimal() else ""
+        return path, f"unknown key{suggestion(str(path[-1]), allowed)}; allowed: {', '.join(allowed) or 'none'}{comma}"
     if error_type == "missing":
         return path, f"missing; expected {_expectation(fragment, schema)}"
     if error_type == "union_tag_not_found":
@@ -113,7 +114,12 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         return path, f"{as_written(value)} is not allowed{suggestion(str(value), choices)}; choices: {context['expected']}"
     return path, _out_of_bounds(
         context, value, fragment
-    ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}"
+    ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}{_comma(value)}"
+
+
+def _comma(value: Any) -> str:
+    """What to say of a text that would be a number with a decimal point."""
+    return f"; {DECIMAL_POINT}" if isinstance(value, str) and re.fullmatch(r"[-+]?\d*,\d+", value) else ""
 
 
 def _blamed_within(path: Path, value: Any, message: str) -> tuple[Path, str]:
@@ -176,7 +182,8 @@ def _tag_path(context: dict[str, Any], path: Path) -> Path:
     return (*path, str(context["discriminator"]).strip("'"))
 
 
-def _value_at(value: Any, path: Path) -> Any:
+def value_at(value: Any, path: Path) -> Any:
+    """What plain data hold at a key path, None where they hold nothing."""
     for key in path:
         try:
             value = value[key]
@@ -214,12 +221,18 @@ def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(key for member in _members(fragment, schema) for key in member.get("properties", {})))
 
 
+def unit_at(model: type[BaseModel], value: Any, path: Path) -> str:
+    """The SI unit of the quantity at a key path of ``value``, empty where there is none."""
+    fragment = _schema_at(_schema_of(model), value, path)
+    return next((str(member["unit"]) for member in _members(fragment, _schema_of(model)) if "unit" in member), "")
+
+
 def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
     """The part of the schema for a key path, following in every union the member of the ``kind`` that the file names."""
     fragment = _narrowed(schema, schema, root)
     for position, key in enumerate(path):
         fragment = _entry(fragment, key)
-        fragment = _narrowed(fragment, schema, _value_at(root, path[: position + 1]))
+        fragment = _narrowed(fragment, schema, value_at(root, path[: position + 1]))
     return fragment
 
 

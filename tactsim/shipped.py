@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,8 +28,14 @@ def case_path(named: str | Path) -> Path:
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:
-        raise UnknownName("case", path.name, known)
+        raise UnknownName("case", path.name, known, listed_by="tactsim list")
     return known[path.name]
+
+
+def shipped_name(path: str | Path) -> str:
+    """The name of the shipped case that a file is called after, empty if none is."""
+    name = Path(path).stem
+    return name if Path(path).suffix == ".yaml" and os.path.isfile(CASES / f"{name}.yaml") else ""
 
 
 def shipped_cases() -> Iterator[Path]:

@@ -36,6 +36,7 @@ _FACTOR = rf"(?:{_WORD})(?:(?:\*\*|\^)-?\d)?|[%°]"
 _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
 
 
+DECIMAL_POINT = "decimals begin with a point, not a comma"
 FEW_UNITS = "m, mm, inch, g, s, min, h, N, kgf, dyn, Pa, kPa, bar, mmHg, cmH2O, psi, V, A, ohm, S, F, J, eV, Hz, deg, rad, %"
 
 
@@ -120,8 +121,9 @@ def parse_quantity(text: str, unit: str) -> float:
 
     expected = f"expected a number with a unit of the dimension of {unit}, like '1 {unit}'"
     parts = _QUANTITY.fullmatch(text.strip())
-    if parts is None:
-        raise InvalidQuantity(f"{shown(text)} is not a quantity; {expected}")
+    if parts is None or (parts["unit"] or "").startswith(","):
+        point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected
+        raise InvalidQuantity(f"{shown(text)} is not a quantity; {point}")
     value, given_unit = float(parts["number"]), parts["unit"]
     if not math.isfinite(value):
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")

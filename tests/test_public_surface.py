@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 from dataclasses import replace
@@ -271,3 +272,13 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
     with pytest.raises(ts.InputError, match="uniform"):
         ts.sweep(ts.ClosedForm.example().vary({"outer_radius": ts.uniform("4 mm", "2 mm")}), samples=2, out=tmp_path / "c.zarr")
     assert not (tmp_path / "b.zarr").exists()
+
+
+def test_the_signature_of_every_kind_reads_without_machinery() -> None:
+    classes = [cls for point in ts.kinds().values() for cls in point.values()]
+    assert len(classes) > 40
+    for cls in classes:
+        text = str(inspect.signature(cls))
+        assert " at 0x" not in text, cls.__name__
+        assert "Annotated" not in text, cls.__name__
+    assert str(inspect.signature(ts.Sphere)) == "(*, center: tuple[float, float, float], radius: float)"

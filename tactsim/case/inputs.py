@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactsim.case.loading import Place
+from tactsim.case.loading import Place, in_words
 from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Document, Problem
 from tactsim.errors import StorageError
@@ -21,12 +21,11 @@ def check_inputs(case: Case, document: Document, place: Place) -> list[str]:
     """
     told = []
     for key, path in input_paths(case.experiment, ("experiment",)):
-        where, name = place(Problem(key, document.line(key), "")), ".".join(map(str, key))
-        where = where if where == f"--set {name}" else f"{where}: {name}"
         try:
             found = located(path)
         except Unreadable as error:
-            raise StorageError(f"{where}: {error}") from None
+            first = f"; run first\n{document.first}" if str(path) in document.first else ""
+            raise StorageError(in_words(Problem(key, document.line(key), f"{error}{first}"), place)) from None
         if found == "elsewhere":
-            told.append(f"{name}: {one_line(path)} lies neither beside the case nor in the working folder")
+            told.append(f"{'.'.join(map(str, key))}: {one_line(path)} lies neither beside the case nor in the working folder")
     return told

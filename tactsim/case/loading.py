@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,11 +17,11 @@ from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experim
 from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
-from tactsim.errors import CaseError, InputError, UnknownName, suggestion
-from tactsim.outside.files import LIMITS, TooLarge, opened
+from tactsim.errors import CaseError, InputError, StorageError, UnknownName, suggestion
+from tactsim.outside.files import LIMITS, TooLarge, Unreadable, opened
 from tactsim.outside.text import one_line
-from tactsim.refusals import as_written
-from tactsim.shipped import case_path
+from tactsim.refusals import as_written, value_at
+from tactsim.shipped import CASES, case_path, shipped_name
 from tactsim.units import written
 
 LONGEST_MESSAGE = 2000
@@ -38,12 +40,12 @@ Overrides = Sequence[str] | Mapping[str, Any]
 """``path.to.key=value`` as text, or key path -> value as a case file would hold it."""
 
 
-def load_case(path: str | Path, overrides: Overrides = ()) -> Case:
-    """The validated case in a file, or the shipped case of a name such as ``annulus_icf``.
+def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
+    """The validated case in a file, the shipped case of a name such as ``annulus_icf``, or the case that a mapping describes.
 
     Parameters
     ----------
-    path : of the file; a file comes before a shipped case
+    path : of the file, which comes before a shipped case; or what such a file holds, ``{"schema": ..., "experiment": ...}``
     overrides : ``{"experiment.recess": "0.4 mm"}``, or text such as ``experiment.recess=0.4 mm``; validated like the file
 
     Raises
@@ -56,8 +58,8 @@ def load_case(path: str | Path, overrides: Overrides = ()) -> Case:
     return validated_case(*read_document(path, overrides))
 
 
-def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document, Place]:
-    """What a case file says, after the overrides, and how messages name its places; nothing is validated yet.
+def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> tuple[Document, Place]:
+    """What a case file, or a mapping, says after the overrides, and how messages name its places; nothing is validated yet.
 
     Raises
     ------
@@ -66,15 +68,11 @@ def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document
     StorageError
         If the file is missing or cannot be read.
     """
-    path = case_path(path)
-    text = read_case_text(path)
-    try:
-        document = replace(read_yaml(text), folder=Path(path).parent)
-    except YamlProblems as error:
-        raise case_error(error.problems, _place_in(path, {})) from None
-    if not isinstance(document.value, dict):
-        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
-        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+    if isinstance(path, Mapping):
+        path, document = "case", Document(written(path))
+    else:
+        path = case_path(path)
+        document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
     named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     for override, value in named:
@@ -87,6 +85,25 @@ def read_document(path: str | Path, overrides: Overrides = ()) -> tuple[Document
             raise case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
         overridden[key_path] = override.partition("=")[0].strip()
     return document, _place_in(path, overridden)
+
+
+def _read_file(path: Path) -> Document:
+    """What a case file says."""
+    text = read_case_text(path)
+    try:
+        document = replace(read_yaml(text), folder=path.parent, first=_first_commands(text) if path.parent == CASES else "")
+    except YamlProblems as error:
+        raise case_error(error.problems, _place_in(path, {})) from None
+    if not isinstance(document.value, dict):
+        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
+        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+    return document
+
+
+def _first_commands(text: str) -> str:
+    """The indented lines of the comment at the head of a case: commands that make what it reads."""
+    head = itertools.takewhile(lambda line: line.startswith("#"), text.splitlines())
+    return "\n".join(line[1:] for line in head if line.startswith("#   "))
 
 
 def read_case_text(path: str | Path) -> str:
@@ -103,6 +120,10 @@ def read_case_text(path: str | Path) -> str:
         content = opened(path, KIND).read()
     except TooLarge:
         raise CaseError(f"{one_line(path)}: larger than {LIMITS[KIND]} bytes, which no case needs") from None
+    except Unreadable as error:
+        if os.path.exists(path) or not (name := shipped_name(path)):
+            raise
+        raise StorageError(f"{error}; tactsim comes with a case of this name: write {name}, without folder and ending") from None
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -117,6 +138,8 @@ def validated_case(document: Document, place: Place) -> Case:
     ------
     CaseError
         With one line for every fault.
+    StorageError
+        If a file that its bodies come from is missing or damaged.
     """
     _check_version(document, place)
     problems = _kind_problems(document)
@@ -130,6 +153,8 @@ def validated_case(document: Document, place: Place) -> Case:
         problems += problems_of(error, document, model)
     except InputError as error:
         problems.append(Problem(("experiment",), document.line(("experiment",)), str(error)))
+    except StorageError as error:
+        raise StorageError(in_words(_blamed_file(document, str(error)), place)) from None
     if problems:
         raise case_error(problems, place)
     return case
@@ -170,6 +195,13 @@ def _kind_problems(document: Document) -> list[Problem]:
     return [Problem(path, document.line(path), message)]
 
 
+def _blamed_file(document: Document, message: str) -> Problem:
+    """A file that cannot be read, at the key that names it."""
+    named = (key for key in document.lines if key[-1:] == ("path",) and str(value_at(document.value, key)) in message)
+    key = next(named, ("experiment",))
+    return Problem(key, document.line(key), message)
+
+
 def _choices() -> str:
     return f"choices: {', '.join(experiment_kinds())}"
 
@@ -186,13 +218,17 @@ def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
     return place
 
 
+def in_words(problem: Problem, place: Place) -> str:
+    """A problem after its place and its key path."""
+    where, key = place(problem), one_line(".".join(map(str, problem.path)))
+    return ": ".join(part for part in (where, "" if where == f"--set {key}" else key, problem.message) if part)
+
+
 def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     """One error with a line for each problem, in the order of the file."""
     lines = []
     for problem in sorted(problems, key=lambda problem: problem.line)[: MOST_PROBLEMS + 1]:
-        where, key = place(problem), one_line(".".join(map(str, problem.path)))
-        told = (where, "" if where == f"--set {key}" else key, one_line(problem.message, LONGEST_MESSAGE))
-        lines.append(": ".join(part for part in told if part))
+        lines.append(in_words(replace(problem, message=one_line(problem.message, LONGEST_MESSAGE)), place))
     told_once = list(dict.fromkeys(lines))
     if len(problems) > MOST_PROBLEMS:
         told_once = [*told_once[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]

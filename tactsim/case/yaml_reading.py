@@ -55,6 +55,8 @@ class Document:
     lines: dict[Path, int] = field(default_factory=dict)
     folder: FilePath | None = None
     """Folder of the file, in which the files that it names are looked for first."""
+    first: str = ""
+    """Commands to run before a shipped case, which make what it reads."""
 
     def line(self, path: Path) -> int:
         """The line of the key path, or of the nearest enclosing key that the text holds."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError
+from tactsim.errors import InputError, UnknownName
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -59,9 +59,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False) -> None:
     """Print the table, and write it with its figure if a folder is given."""
-    from tactsim.results.comparison import compared
+    from tactsim.results.comparison import compared, shown_number
 
-    comparison = compared(results)
+    comparison = compared(results, _unit_of)
     width = max(6, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
     given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
@@ -73,7 +73,7 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
     for key, row in zip(comparison.inputs, given, strict=True):
         console.out("  ".join([f"{key:<{width}}", *(f"{value:>{cell}}" for value, cell in zip(row, cells, strict=True))]))
     for column in comparison.columns if everything else comparison.differing:
-        numbers = ("-" if value is None else f"{value:.5g}" for value in column.values)
+        numbers = (shown_number(value) or "-" for value in column.values)
         console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
     if out is not None:
         from tactsim.cli.figures.comparison import comparison_png
@@ -83,6 +83,17 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
         texts = {"comparison.csv": comparison.csv_text(), "comparison.md": comparison.markdown_text()}
         write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
         console.out(f"comparison {one_line(out)}")
+
+
+def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:
+    """SI unit of a key of an experiment by the schema of its kind; empty for a kind that this tactsim does not have."""
+    from tactsim.case.model import experiment_class
+    from tactsim.refusals import unit_at
+
+    try:
+        return unit_at(experiment_class(str(experiment.get("kind"))), experiment, path)
+    except UnknownName:
+        return ""
 
 
 def _folders(place: Path) -> list[Path]:

@@ -29,7 +29,7 @@ EXAMPLES = """\
 examples:
   tactsim material
   tactsim material icf_stable --save icf.png
-  tactsim material cases/annulus_icf.yaml
+  tactsim material annulus_icf
   tactsim material --fit my_rubber.csv --form stable --save fit.png
   tactsim material --fit my_rubber.csv --strains 0.05 1 --absolute
   tactsim material --relaxation held.csv --rise "0.2 s"

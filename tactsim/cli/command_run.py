@@ -42,12 +42,12 @@ longer than --time-limit ends as a failed one: what was accepted so far is writt
 """
 EXAMPLES = """\
 examples:
-  tactsim run cases/annulus_icf.yaml
-  tactsim run cases/annulus_icf.yaml --out soft --set experiment.specimen.thickness="6 mm"
+  tactsim run annulus_icf
+  tactsim run annulus_icf --out soft --set experiment.specimen.thickness="6 mm"
   tactsim run case.yaml --set experiment.specimen.layers.0.thickness=6mm --quiet
-  tactsim run cases/grasp_lump_icf.yaml --time-limit "5 min"
+  tactsim run grasp_lump_icf --time-limit "5 min"
   tactsim run grasp_plain grasp_lump_icf --out grasps
-  tactsim run cases/annulus_icf.yaml --figures pdf
+  tactsim run annulus_icf --figures pdf
 """
 
 
@@ -123,8 +123,12 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             listed = check_inputs(case, document, place)
         directory = out or Path("results") / path.stem
         with claimed(directory, replace=arguments.force or arguments.out is None or len(arguments.cases) > 1) as folder:
+            progress = _progress(case, arguments)
+            if progress is not None:
+                for doubt in case.experiment.doubts():
+                    console.note(f"warning: {doubt}")
             with collected_warnings() as raised:
-                result = case.experiment.run(_progress(case, arguments), time_limit=seconds)
+                result = case.experiment.run(progress, time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
             result = replace(result, provenance=case.provenance(case_file=path.name, overrides=arguments.set))
             with interruption.deferred():
@@ -157,7 +161,7 @@ def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord
 
     if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
         return None
-    return lambda record: console.note(step_line(record, case.experiment.history_units))
+    return lambda record: console.note(step_line(record, case.experiment.history_units, case.experiment.extent))
 
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:

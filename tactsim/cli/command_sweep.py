@@ -39,9 +39,9 @@ three they are marked failed, with the reason. If a sample failed the exit code 
 """
 EXAMPLES = """\
 examples:
-  tactsim sweep cases/sweep_closed_form.yaml --out fast.zarr
-  tactsim sweep cases/sweep_lumps.yaml --out lumps.zarr --samples 200 --workers 2
-  tactsim sweep cases/sweep_lumps.yaml --out lumps.zarr --resume
+  tactsim sweep sweep_closed_form --out fast.zarr
+  tactsim sweep sweep_lumps --out lumps.zarr --samples 200 --workers 2
+  tactsim sweep sweep_lumps --out lumps.zarr --resume
 """
 PROGRESS_SECONDS = 5.0
 """Between lines of progress."""

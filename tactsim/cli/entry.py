@@ -78,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_environment(os.environ, Path())
         words = list(sys.argv[1:] if arguments is None else arguments)
         parser = _parser(next(iter(words), ""))
-        parsed = parser.parse_args(words)
+        parsed = _parsed(parser, words)
         if "run" not in parsed:
             console.out(parser.format_help())
             console.error("name one of the commands; tactsim COMMAND --help says more")
@@ -114,6 +114,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         console.flush()
 
 
+def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+    """The arguments of a command line.
+
+    Raises
+    ------
+    InputError
+        If one is unknown, with the help of the command that does not know it.
+    """
+    parsed, unknown = parser.parse_known_args(words)
+    if unknown:
+        command = f" {words[0]}" if words[0] in [command.NAME for command in COMMANDS] else ""
+        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: tactsim{command} --help")
+    return parsed
+
+
 def _defect(error: Exception, debug: bool) -> int:
     """Report an error that tactsim does not raise on purpose; the exit code."""
     trace = traceback.format_exc() if debug else "run again with --debug for the details"
@@ -138,7 +153,7 @@ def _parser(first: str = "") -> argparse.ArgumentParser:
     parser = _Parser(
         prog="tactsim",
         description="Physics simulation of tactile sensing on soft tissue.",
-        epilog=f"example:\n  tactsim run cases/annulus_icf.yaml\n\n{EXIT_CODES}",
+        epilog=f"example:\n  tactsim run annulus_icf\n\n{EXIT_CODES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"tactsim {__version__}")

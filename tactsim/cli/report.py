@@ -62,7 +62,7 @@ def format_values(quantity: Quantity) -> str:
     if not finite.size:
         return f"{shape} values, none finite"
     low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
-    return f"{shape} values, {low} to {high}"
+    return f"{shape} values, {low} to {high}" if low != high or finite.size < values.size else f"{shape} values, all {low}"
 
 
 LISTED = 4
@@ -71,12 +71,19 @@ VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 
 
-def step_line(record: StepRecord, units: Mapping[str, str]) -> str:
-    """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``."""
+def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, float] | None = None) -> str:
+    """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``.
+
+    Parameters
+    ----------
+    record, units : the step, and the unit of each of its values
+    extent : the value that grows during the run and its last value, of which the step has reached so many per cent
+    """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
     values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
+    reached = f" {record.values.get(extent[0], 0.0) / extent[1]:4.0%}" if extent else ""
     effort = f"{record.newton_iterations} iterations, residual {record.residual:.1e}"
-    return "  ".join([f"step {record.step:4d}", *values, effort])
+    return "  ".join([f"step {record.step:4d}{reached}", *values, effort])
 
 
 def _duration(timing: Mapping[str, float]) -> str:

@@ -85,6 +85,10 @@ class Runnable(CaseKind):
         """The history value that grows during a run and its last value, in SI; None if the end is not known beforehand."""
         return None
 
+    def doubts(self) -> list[str]:
+        """What looks wrong in the case, such as a unit: told on a terminal before it is computed, and a warning of the result."""
+        return []
+
     def vary(self, places: Mapping[str, Any]) -> Variation:
         """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``."""
         return Variation(self, dict(places))

@@ -117,12 +117,11 @@ def stiffness_ratio_of(contrast: float) -> float:
     return max(0.0, (5 + 3 * contrast) / (5 - 2 * contrast))
 
 
-def stiffness_words(contrast: float) -> str:
-    """The stiffness of a ball of this contrast in words."""
-    ratio = stiffness_ratio_of(contrast)
-    if ratio > MOST_TOLD_APART:
-        return f"more than {MOST_TOLD_APART:g} times as stiff as the tissue at this closing"
-    return f"{ratio:.2g} times as stiff as the tissue at this closing"
+def stiffness_words(contrast: float, deviation: float = 0.0) -> str:
+    """The stiffness of a ball of this contrast in words, from one standard deviation of the contrast below to one above."""
+    low, high = (stiffness_ratio_of(contrast + off) for off in (-deviation, deviation))
+    least, most = (f"{one:.2g}" if one <= MOST_TOLD_APART else f"more than {MOST_TOLD_APART:g}" for one in (low, high))
+    return f"{most if least == most else f'{least} to {most}'} times as stiff as the tissue at this closing"
 
 
 def _ball(radius: float, cell: Array) -> Array:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from tactsim.results.result import Result
 from tactsim.units import compact_unit, conversion
+
+UnitOf = Callable[[Mapping[str, Any], tuple[str | int, ...]], str]
+"""SI unit of a number by the experiment of its case and its key path in it; empty without one."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +39,12 @@ class Comparison:
     statuses: tuple[str, ...]
     columns: tuple[Column, ...]
     inputs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Key of the case in SI -> its value in each result, where they differ."""
+    """Key of the case with its unit -> its value in each result, where they differ."""
 
     @property
     def differing(self) -> tuple[Column, ...]:
         """The columns in which the results are not all the same."""
-        return tuple(column for column in self.columns if len(set(column.values)) > 1)
+        return tuple(column for column in self.columns if len(set(map(shown_number, column.values))) > 1)
 
     def csv_text(self) -> str:
         """A row for each result; what it does not have is empty."""
@@ -61,12 +64,16 @@ class Comparison:
         lines.append(f"| status | {' | '.join(self.statuses)} |")
         lines += [f"| {_cell(key)} | {' | '.join(map(_cell, values))} |" for key, values in self.inputs.items()]
         for column in self.columns:
-            numbers = " | ".join("" if value is None else f"{value:.5g}" for value in column.values)
-            lines.append(f"| {column.head} | {numbers} |")
+            lines.append(f"| {column.head} | {' | '.join(map(shown_number, column.values))} |")
         return "\n".join(lines) + "\n"
 
 
-def compared(results: Mapping[str, Result]) -> Comparison:
+def shown_number(value: float | None) -> str:
+    """Five digits, empty for None."""
+    return "" if value is None else f"{value:.5g}"
+
+
+def compared(results: Mapping[str, Result], unit_of: UnitOf) -> Comparison:
     """The numbers of results by their names, in the order in which they come."""
     names: dict[str, tuple[str, str]] = {}
     for result in results.values():
@@ -75,24 +82,44 @@ def compared(results: Mapping[str, Result]) -> Comparison:
                 names.setdefault(name, (quantity.unit, quantity.description))
     columns = [_column(name, *about, results) for name, about in names.items()]
     statuses = tuple(str(result.status) for result in results.values())
-    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results))
+    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results, unit_of))
 
 
-def _differing_inputs(results: Mapping[str, Result]) -> dict[str, tuple[str, ...]]:
-    """Values of the cases, by key and in SI, that are not the same in all results; empty where a case has no such key."""
-    cases = [dict(_leaves(result.provenance.get("case", {}).get("experiment", {}), "")) for result in results.values()]
-    keys = dict.fromkeys(key for case in cases for key in case)
-    given = {key: tuple(case.get(key, "") for case in cases) for key in keys}
-    return {f"{key} (SI)": values for key, values in given.items() if len(set(values)) > 1}
+def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf) -> dict[str, tuple[str, ...]]:
+    """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key."""
+    experiments = [result.provenance.get("case", {}).get("experiment", {}) for result in results.values()]
+    cases = [dict(_leaves(experiment, ())) for experiment in experiments]
+    differing: dict[str, tuple[str, ...]] = {}
+    for path in dict.fromkeys(path for case in cases for path in case):
+        values = [case.get(path) for case in cases]
+        if len(set(map(_text, values))) > 1:
+            unit = next(unit_of(one, path) for one, case in zip(experiments, cases, strict=True) if path in case)
+            name = ".".join(map(str, path))
+            differing |= dict([_in_unit(name, values, unit)])
+    return differing
 
 
-def _leaves(value: Any, path: str) -> Iterator[tuple[str, str]]:
-    """Key path and text of everything in a case that is no list or mapping."""
+def _in_unit(name: str, values: list[Any], unit: str) -> tuple[str, tuple[str, ...]]:
+    """The head and the texts of a row of the cases' values, which are numbers in SI if they have a unit."""
+    sizes = [abs(value) for value in values if isinstance(value, int | float)]
+    readable = compact_unit(max(sizes, default=0.0), unit)
+    factor = conversion(unit, readable) if readable else 1.0
+    return f"{name} [{readable}]" if readable else name, tuple(_text(value, factor) for value in values)
+
+
+def _text(value: Any, factor: float = 1.0) -> str:
+    if value is None:
+        return ""
+    return f"{factor * value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _leaves(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+    """Key path and value of everything in a case that is no list or mapping."""
     if isinstance(value, Mapping | list | tuple):
         for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
-            yield from _leaves(item, f"{path}.{key}" if path else str(key))
+            yield from _leaves(item, (*path, key))
     else:
-        yield path, f"{value:.5g}" if isinstance(value, float) else str(value)
+        yield path, value
 
 
 def _column(name: str, unit: str, description: str, results: Mapping[str, Result]) -> Column:

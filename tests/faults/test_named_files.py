@@ -97,6 +97,45 @@ def test_a_missing_result_is_reported_with_file_line_and_key(capsys: pytest.Capt
     assert "localize_lump.yaml:12: experiment.grasp: cannot read the file results/grasp_lump_icf" in capsys.readouterr().err
 
 
+def test_a_shipped_case_says_what_to_run_before_it(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "localize_lump"]) == 5
+    printed = capsys.readouterr().err
+    assert "; run first\n   tactsim run grasp_lump_icf --out results/grasp_lump_icf\n   tactsim run grasp_plain --out" in printed
+    assert main(["run", "localize_lump", "--set", "experiment.grasp=mine"]) == 5
+    assert "run first" not in capsys.readouterr().err
+
+
+def test_the_comment_of_a_stranger_is_no_advice(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text("#   rm -r results/mine\n" + (CASES / "localize_lump.yaml").read_text().replace("results/", "results/mine"))
+    assert main(["run", str(case)]) == 5
+    assert "run first" not in capsys.readouterr().err
+
+
+def test_a_missing_surface_is_reported_with_file_line_and_key(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text((CASES / "grasp_stl.yaml").read_text().replace("meshes/lump.stl", "mine.stl"))
+    assert main(["run", str(case)]) == 5
+    line = next(k for k, text in enumerate(case.read_text().splitlines(), 1) if "mine.stl" in text)
+    key = "experiment.inclusions.0.shape.path"
+    assert capsys.readouterr().err.startswith(f"error: {case}:{line}: {key}: cannot read the surface mine.stl")
+    assert main(["run", "grasp_stl", "--set", f"{key}=mine.stl"]) == 5
+    assert capsys.readouterr().err.startswith(f"error: --set {key}: cannot read the surface mine.stl")
+
+
+def test_the_path_of_a_checkout_leads_to_the_name(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "cases/annulus_icf.yaml"]) == 5
+    assert "tactsim comes with a case of this name: write annulus_icf, without folder" in capsys.readouterr().err
+    assert main(["run", "cases/mine.yaml"]) == 5
+    assert "comes with" not in capsys.readouterr().err
+    assert main(["run", "annulus_ifc"]) == 2
+    assert capsys.readouterr().err == "error: unknown case 'annulus_ifc' (did you mean 'annulus_icf'?); tactsim list lists all\n"
+
+
 @pytest.mark.parametrize("path", ["a\\0b", "", " "])
 def test_a_path_that_cannot_be_is_bad_input(case: Path, capsys: pytest.CaptureFixture[str], path: str) -> None:
     assert main(["run", str(case), "--set", f'{KEY}="{path}"']) == 2

@@ -8,7 +8,6 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.warnings import unlikely
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.record import contact_oddities
 from tactsim.materials.library import named_material
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
@@ -56,7 +55,7 @@ def far_apart():
 def test_a_layer_of_metres_is_reported(thickness):
     case = Indentation.example()
     wide = case.specimen.model_copy(update={"thickness": thickness})
-    warnings = contact_oddities(case.model_copy(update={"specimen": wide}))
+    warnings = case.model_copy(update={"specimen": wide}).doubts()
     assert "specimen.thickness is 4 m; usual for tissue: 20 µm to 500 mm: is its unit right?" in warnings
 
 
@@ -82,7 +81,7 @@ def test_the_result_of_a_run_reports_them():
 @pytest.mark.parametrize("kind", [Indentation, Grasp])
 def test_nothing_is_reported_of_usual_cases(kind):
     case = kind.example()
-    assert (contact_oddities if kind is Indentation else unlikely)(case) == []
+    assert case.doubts() == []
 
 
 @pytest.mark.parametrize("name", ["icf_stable", "b1a_stable", "atrial", "lump", "artery_wall", "icf_printed", "b1a_printed"])

@@ -45,7 +45,7 @@ def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: 
         ("-inf m", "is not finite"),
         ("1e308 km", "is not finite"),
         ("m", "is not a quantity"),
-        ("1,5 mm", "has an unknown unit"),
+        ("1,5 mm", "decimals begin with a point, not a comma"),
         ("1_0 m", "has an unknown unit"),
         ("٣ m", "is not a quantity"),
         ("3 m**9**9**9**9", "has an unknown unit"),

@@ -35,6 +35,22 @@ FLAGS = """--headless=new --no-sandbox --disable-gpu --use-angle=swiftshader --e
 --no-first-run --disable-background-networking --disable-component-update --disable-sync --window-size=1280,800"""
 PATIENCE = 60.0
 """Time in s for what takes a second on an idle machine."""
+COLOURED = """
+const canvas = document.querySelector('#top canvas'), pen = canvas.getContext('2d');
+const { width, height } = canvas, data = pen.getImageData(0, 0, width, height).data, columns = new Set();
+for (let k = 0; k < data.length; k += 4) {
+  const bluish = data[k + 3] === 255 && data[k + 2] > data[k] + 40;
+  if (bluish && k / 4 / width < 0.7 * height) columns.add((k / 4) % width);
+}
+return [columns.size && Math.max(...columns) - Math.min(...columns), Number(canvas.dataset.scale)];"""
+"""Width in pixels over which the top view is coloured, and pixels per mm."""
+OPAQUE = """
+const canvas = document.querySelector('#top canvas'), pen = canvas.getContext('2d');
+const { width, height } = canvas, data = pen.getImageData(0, 0, width, height).data;
+let count = 0;
+for (let k = 3; k < data.length; k += 4) count += data[k] === 255;
+return count;"""
+"""Pixels of the top view that nothing shows through, as through the hatching."""
 SCRIPT = "<script>document.title = 'taken over'</script>"
 
 
@@ -260,17 +276,42 @@ def test_a_map_covers_the_block_and_shades_what_no_taxel_reads(browser: webdrive
         until(lambda: "Off by" in words(browser, "estimate"))
         assert "hatched: no taxel there" in words(browser, "legend")
         assert "2, 3, 4 greyed: no grasp without a lump to compare with" in words(browser, "missing")
-        script = """
-        const canvas = document.querySelector('#top canvas'), pen = canvas.getContext('2d');
-        const { width, height } = canvas, data = pen.getImageData(0, 0, width, height).data, columns = new Set();
-        for (let k = 0; k < data.length; k += 4) {
-          const bluish = data[k + 3] === 255 && data[k + 2] > data[k] + 40;
-          if (bluish && k / 4 / width < 0.7 * height) columns.add((k / 4) % width);
-        }
-        return [Math.max(...columns) - Math.min(...columns), Number(canvas.dataset.scale)];"""
-        coloured, scale = browser.execute_script(script)
+        coloured, scale = browser.execute_script(COLOURED)
         # three taxels of 9 mm at a pitch of 10 mm reach over 29 mm; from centre to centre of the outer ones it is 20 mm
         assert coloured / scale == pytest.approx(29, abs=1)
+
+
+def test_a_map_without_a_reference_at_its_closing_is_unknown_and_not_zero(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    folder, plain = grasp_folder(tmp_path / "a"), grasp_folder(tmp_path / "b", taxel_forces(1, lump=0.0), lump=False)
+    with served(opened_content(folder, reference=[str(plain)])) as address:
+        browser.get(address)
+        until(lambda: "Off by" in words(browser, "estimate"))
+        before = browser.execute_script(OPAQUE)
+        browser.find_element(By.TAG_NAME, "body").send_keys(Keys.HOME)
+        until(lambda: "known at a closing of 1 mm only" in words(browser, "estimate"))
+        until(lambda: browser.execute_script(OPAQUE) < before / 3)  # the outlines and words are left
+        label = browser.find_element(By.CSS_SELECTOR, "#top canvas").get_attribute("aria-label")
+        assert label == "top view: unknown, see the estimate"
+
+
+def test_the_labels_in_space_stay_whole_on_a_telephone(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    size = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        with served(opened_content(grasp_folder(tmp_path / "a"))) as address:
+            browser.get(address)
+            until(lambda: camera(browser) and "Off by" in words(browser, "estimate"))
+            sides = """
+            const within = document.getElementById('space-labels').getBoundingClientRect();
+            return [...document.querySelectorAll('#space-labels span')].map((one) => {
+              const { left, right } = one.getBoundingClientRect();
+              return Math.min(left - within.left, within.right - right);
+            });"""
+            rooms = browser.execute_script(sides)
+            assert len(rooms) == 4
+            assert min(rooms) > -0.6, "in pixels, of which a place has tenths"
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: webdriver.Chrome, tmp_path: Path) -> None:

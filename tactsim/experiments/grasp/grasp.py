@@ -33,6 +33,13 @@ class Grasp(GraspSetup, Experiment):
             mesh=StructuredSource(kind="structured", cells=(4, 4, 2)),
         )
 
+    def doubts(self) -> list[str]:
+        """Taxels beside the block, and sizes and materials that look like a wrong unit."""
+        from tactsim.experiments.grasp.overhang import overhang_warnings
+        from tactsim.experiments.grasp.warnings import unlikely
+
+        return [*overhang_warnings(self), *unlikely(self)]
+
     def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
         from tactsim.experiments.grasp.path import grasp_path

@@ -105,7 +105,7 @@ class GraspSetup(FrozenModel):
     block: Block
     """The tissue."""
     inclusions: Annotated[tuple[Embedded, ...], Field(max_length=32)] = ()
-    """Lumps and arteries in it."""
+    """Lumps and arteries in it, such as {shape: {kind: sphere, center: [20 mm, 20 mm, 12 mm], radius: 4 mm}, material: lump}."""
     upper: JawSettings = JawSettings()
     """The jaw above."""
     lower: JawSettings = JawSettings()

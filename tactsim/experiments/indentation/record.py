@@ -12,13 +12,11 @@ from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
-from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.materials.library import set_with_constants_of
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.solid_model import SolidModel
 from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
-from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
@@ -173,7 +171,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def warnings(self) -> list[str]:
         """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
-        warnings = [*self.quality.warnings(), *contact_oddities(self.setup), *self.unstable("a displacement of {}")]
+        warnings = [*self.quality.warnings(), *self.setup.doubts(), *self.unstable("a displacement of {}")]
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])
         return warnings
@@ -207,17 +205,6 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "recess": self.setup.recess,
             "solver": self.solver_report(mesh_adaptations=self.adaptations),
         }
-
-
-def contact_oddities(setup: IndentationSetup) -> list[str]:
-    """What in the case looks like a wrong unit."""
-    specimen, shape = setup.specimen, setup.body.contact_shape
-    layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(specimen.layers)}
-    materials = {f"{name}.material": layer.material for name, layer in layers.items()} | {"specimen.material": specimen.material}
-    tissue = {"specimen.thickness": specimen.thickness, "specimen.radius": specimen.radius}
-    tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
-    bodies = {f"body.{name}": radius for name, radius in shape.radii.items()}
-    return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
 
 
 def contact_assumptions(setup: IndentationSetup) -> list[str]:

@@ -143,6 +143,19 @@ class IndentationSetup(FrozenModel):
     def drive(self) -> Displaced | Timed:
         """What moves the body: the clock of the simulation, or none."""
 
+    def doubts(self) -> list[str]:
+        """Sizes and materials that look like a wrong unit."""
+        from tactsim.fem.assembly.material_forms import interpreted_warnings
+        from tactsim.mechanics.outcome.plausibility import oddities
+
+        layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(self.specimen.layers)}
+        materials = {f"{name}.material": layer.material for name, layer in layers.items()}
+        materials |= {"specimen.material": self.specimen.material}
+        tissue = {"specimen.thickness": self.specimen.thickness, "specimen.radius": self.specimen.radius}
+        tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
+        bodies = {f"body.{name}": radius for name, radius in self.body.contact_shape.radii.items()}
+        return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
+
     def posed(self) -> Posed:
         """The body as it stands: upright on the axis."""
         return Posed(self.body, np.array([0.0, 1.0]), self.inner_punch)

@@ -30,7 +30,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.lump_response import stiffness_ratio_of
+from tactsim.localization.lump_response import stiffness_ratio_of, stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
 from tactsim.results.quantity import Quantity
@@ -43,7 +43,7 @@ Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 class Localization(Experiment):
     """Estimate from a stored grasp, held against the inclusions that it was computed with.
 
-    Run a grasp first, for example ``tactsim run cases/grasp_lump_icf.yaml --out results/grasp_lump_icf``, and the same grasp with
+    Run a grasp first, for example ``tactsim run grasp_lump_icf --out results/grasp_lump_icf``, and the same grasp with
     ``material`` of the inclusion set to that of the tissue as ``reference``. Then::
 
         experiment:
@@ -204,6 +204,8 @@ def _stiffness_quantities(estimate: Estimate, true: tuple[tuple[float, float], .
     contrast = estimate.inclusions[0].contrast if estimate.inclusions else None
     if contrast is not None and np.isfinite(stiffness_ratio_of(contrast)):
         text = "stiffness of the strongest inclusion over that of the tissue at the working strain, taken for a small ball"
+        if (covariance := estimate.inclusions[0].covariance) is not None:
+            text += f"; within a standard deviation {stiffness_words(contrast, float(np.sqrt(covariance[4][4])))}"
         quantities["estimated_stiffness_ratio"] = Quantity(stiffness_ratio_of(contrast), "1", text)
     if true:
         working, rest = ([pair[k] for pair in true] for k in (0, 1))

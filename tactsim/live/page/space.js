@@ -65,10 +65,12 @@ export class Space {
     }));
   }
 
+  // On a narrow screen the labels at the sides stay whole.
   #placeLabels() {
+    const room = this.labels.clientWidth;
     for (const { at, place } of this.marks) {
-      const seen = at.clone().project(this.camera);
-      place.style.left = `${(50 * (seen.x + 1)).toFixed(2)}%`;
+      const seen = at.clone().project(this.camera), half = place.offsetWidth / 2;
+      place.style.left = `${Math.max(half, Math.min(room - half, (room / 2) * (seen.x + 1))).toFixed(1)}px`;
       place.style.top = `${(50 * (1 - seen.y)).toFixed(2)}%`;
     }
   }

@@ -122,6 +122,7 @@ export class View {
     }
     this.picture.getContext("2d").putImageData(this.pixels, 0, 0);
     this.#hatchUnknown(pen);
+    if (!frame.meaning) return;
     pen.imageSmoothingEnabled = false;
     const [height, width] = this.scene.shape, across = this.#reach(this.across, width), up = this.#reach(this.up, height);
     // Over the outer halves of the outer taxels the picture goes on as at their centres: source and length in it, from and to in mm.
@@ -134,7 +135,7 @@ export class View {
     }
   }
 
-  // Where no taxel reads, the block is hatched.
+  // Where no taxel reads, the block is hatched; without usable readings all of it is, for no colour would be true.
   #hatchUnknown(pen) {
     const [x0, y0] = this.#at(0, this.scene.size[this.up]), [x1, y1] = this.#at(this.scene.size[this.across], 0);
     const left = Math.min(x0, x1), right = Math.max(x0, x1);
@@ -263,6 +264,7 @@ export class View {
   }
 
   #drawScale(pen, box, frame, unit) {
+    if (!frame.meaning) { this.words = "unknown, see the estimate"; return; }
     const k = { front: 0, left: 1, top: 2 }[this.kind], summed = [this.scene.rows, this.scene.columns, 2][k];
     const end = frame.scales[k] * (unit === "kPa" ? 1e-3 / (this.scene.area * summed) : 1);
     const small = unit === "N" && end < 0.1, factor = small ? 1e3 : 1;

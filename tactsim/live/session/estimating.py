@@ -122,7 +122,7 @@ def _uncertainty(one: EstimatedInclusion) -> list[str]:
     deviations = np.sqrt(np.diag(one.covariance))
     x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
     lines = [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm (one standard deviation)"]
-    return lines if one.contrast is None else [*lines, stiffness_words(one.contrast).capitalize()]
+    return lines if one.contrast is None else [*lines, stiffness_words(one.contrast, float(deviations[4])).capitalize()]
 
 
 def _errors(scene: PageScene, estimate: Estimate) -> list[str]:

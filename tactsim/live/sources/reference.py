@@ -171,7 +171,7 @@ class Reference:
         if len(closings) < 2:
             raise InputError(
                 f"the reference is known at a closing of {format_quantity(float(closings[0]), 'm')} only, here it is "
-                f"{format_quantity(frame.closing, 'm')}; needed between: a reference that closes in several steps "
+                f"{format_quantity(frame.closing, 'm')}; needed: a reference that closes in several steps "
                 "(--set experiment.time.steps=12), or several results (more --reference FOLDER)"
             )
         if closings[0] > 0:

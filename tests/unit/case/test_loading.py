@@ -9,6 +9,7 @@ import pytest
 from pretence import CASE_TEXT, Pretence
 
 from tactsim.case import Case, load_case
+from tactsim.case.yaml_reading import read_yaml
 from tactsim.errors import CaseError, StorageError
 from tactsim.outside.files import LIMITS
 
@@ -76,6 +77,12 @@ def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -
         ("kind: pretence", "kind: pretence\n  steps: '3'", "6: experiment.steps: '3' is not allowed; expected a whole number"),
         ("kind: pretence", "kind: pretence\n  steps: 1.5", "6: experiment.steps: 1.5 is not allowed; expected a whole number"),
         ("kind: pretence", "kind: pretence\n  friction: nan", "6: experiment.friction: 'nan' is not allowed; expected a number"),
+        (
+            "kind: pretence",
+            "kind: pretence\n  friction: 0,6",
+            "6: experiment.friction: '0,6' is not allowed; expected a number; decimals begin with a point, not a comma",
+        ),
+        ("modulus: 3 kPa}", "modulus: 3,5 kPa}", "10: experiment.specimen.layers.0.material.5 kPa: unknown key"),
         ("kind: pretence", "kind: pretence\n  pause: nan s", "6: experiment.pause: 'nan s' is not finite; "),
         (
             "{kind: soft, modulus: 3 kPa}",
@@ -154,3 +161,14 @@ def test_unreadable_files(tmp_path: Path, pretended: None) -> None:
     for path in (tmp_path, tmp_path / "missing.yaml", tmp_path / "dangling.yaml", tmp_path / ("x" * 4096), "a\0b"):
         with pytest.raises(StorageError, match="cannot read the case file"):
             load_case(path)
+
+
+def test_a_mapping_is_a_case_and_refused_in_the_words_of_a_file(pretended: None) -> None:
+    value = read_yaml(CASE_TEXT).value
+    assert load_case(value, {"experiment.steps": 7}).experiment.steps == 7
+    assert "steps" not in value["experiment"], "the mapping stays as it is"
+    assert load_case(value) == load_case(read_yaml(CASE_TEXT).value)
+    with pytest.raises(CaseError, match=r"^case: titel: unknown key \(did you mean 'title'\?\)"):
+        load_case(value | {"titel": "A"})
+    with pytest.raises(CaseError, match=r"^--set experiment.steps: 'x' is not allowed"):
+        load_case(value, {"experiment.steps": "x"})

@@ -42,8 +42,8 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert Path("designs/comparison/comparison.png").read_bytes().startswith(b"\x89PNG")
     table = Path("designs/comparison/comparison.md").read_text()
     assert table.startswith("| | small | large |")
-    assert "| outer_radius (SI) | 0.003 | 0.004 |" in table
-    assert [row["outer_radius (SI)"] for row in rows] == ["0.003", "0.004"]
+    assert "| outer_radius [mm] | 3 | 4 |" in table
+    assert [row["outer_radius [mm]"] for row in rows] == ["3", "4"]
     assert main(["run", *cases, "--out", "designs"]) == 0, "results of tactsim give way"
 
 
@@ -53,7 +53,7 @@ def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: p
     assert main(["compare", "designs"]) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].split() == ["large", "small"]
-    assert shown[2].split() == ["outer_radius", "(SI)", "0.004", "0.003"], "what differs between the cases stands first"
+    assert shown[2].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
     assert not any(line.startswith("points") for line in shown)
     assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
     assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
@@ -74,12 +74,12 @@ def test_numbers_of_other_kinds_leave_gaps() -> None:
         quantities = {name: Quantity(value, "Pa", name) for name, value in values.items()}
         return Result(kind="pretence", status=Status.CONVERGED, reason="", quantities=quantities)
 
-    comparison = compared({"a": result(one=2e3, both=1.0), "b": result(two=5.0, both=1.0)})
+    comparison = compared({"a": result(one=2e3, both=1.0), "b": result(two=5.0, both=1 + 1e-9)}, lambda experiment, path: "")
     assert {column.head: column.values for column in comparison.columns} == {
         "one [kPa]": (2.0, None),
-        "both [Pa]": (1.0, 1.0),
+        "both [Pa]": (1.0, 1 + 1e-9),
         "two [Pa]": (None, 5.0),
     }
-    assert [column.name for column in comparison.differing] == ["one", "two"]
+    assert [column.name for column in comparison.differing] == ["one", "two"], "what five digits do not tell apart is the same"
     assert "| one [kPa] | 2 |  |" in comparison.markdown_text()
     assert InputError.exit_code == 2

@@ -58,6 +58,16 @@ def test_progress_reports_every_accepted_step(capsys: pytest.CaptureFixture[str]
     assert " ".join(lines[1].split()) == "step 2 displacement 200 µm reaction_force 20 mN 4 iterations, residual 1.0e-11"
 
 
+def test_what_looks_wrong_is_said_before_it_is_computed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(Pretence, "doubts", lambda self: ["a block of 4 km"])
+    assert main(["run", "case.yaml", "--progress"]) == 0
+    assert capsys.readouterr().err.splitlines()[0] == "warning: a block of 4 km"
+    assert main(["run", "case.yaml"]) == 0
+    assert capsys.readouterr().err == "", "nobody watches, and the result says it"
+
+
 def test_a_run_that_fails_is_written_and_presents_no_threshold(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--set", "experiment.fail_at=2"]) == 3
     assert status_of("results/case") == "failed"

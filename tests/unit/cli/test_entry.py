@@ -42,6 +42,13 @@ def test_a_wrong_command_line_is_bad_input(arguments: list[str], capsys: pytest.
     assert "--help" in error
 
 
+def test_an_unknown_option_leads_to_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "a", "--sett", "x=1"]) == 2
+    assert capsys.readouterr().err == "error: unrecognized arguments: --sett x=1\nsee: tactsim run --help\n"
+    assert main(["--sett"]) == 2
+    assert capsys.readouterr().err.endswith("see: tactsim --help\n")
+
+
 @pytest.mark.parametrize("debug", [False, True])
 def test_a_defect_is_reported_as_such(debug: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     def broken(arguments: object) -> int:

@@ -23,6 +23,8 @@ RESULT = pretended_result(Status.CONVERGED, "done", ())
         (None, "Pa", "none"),
         ([[1.0, None], [3.0, 2.0]], "N", "2 x 2 values, 1 N to 3 N"),
         ([None], "N", "1 values, none finite"),
+        ([45e3] * 5, "Pa", "5 values, all 45 kPa"),
+        ([None, *[45e3] * 4], "Pa", "5 values, 45 kPa to 45 kPa"),
         (math.nan, "N", "nan N"),
     ],
 )
@@ -51,6 +53,11 @@ def test_a_step_is_one_line() -> None:
     line = step_line(record, {"displacement": "m", "share": "1"})
     assert line == "step   12  displacement 620 µm  share 0.5  4 iterations, residual 2.1e-10"
     assert "share 0.5" in step_line(record, {}), "without units every value is printed, in SI"
+
+
+def test_a_step_says_how_far_the_run_is() -> None:
+    record = StepRecord(3, 5, 1e-12, {"time": 0.5})
+    assert step_line(record, {"time": "s"}, ("time", 2.0)).startswith("step    3  25%  time 500 ms")
 
 
 def test_a_line_shows_the_first_values_that_the_units_name() -> None:

@@ -208,7 +208,7 @@ def test_the_model_of_the_tissue_follows_the_closing(tmp_path: Path, monkeypatch
         np.testing.assert_allclose(found.values, share * table.values, rtol=3e-2)  # a parabola by monotone cubics
     single = Reference.open([str(grasp_folder(tmp_path / "b", forces[-1:], lump=False))])
     np.testing.assert_array_equal(single.response(1e-3).values, table.values)
-    with pytest.raises(InputError, match=r"known at a closing of 1 mm only, here it is 600 µm; needed between: .*steps=12"):
+    with pytest.raises(InputError, match=r"known at a closing of 1 mm only, here it is 600 µm; needed: .*steps=12"):
         single.response(0.6e-3)
     two = Reference.open(
         [str(closed_by(grasp_folder(tmp_path / "c", forces[1:2], lump=False), 0.5e-3)), single.results[0].folder]

@@ -28,3 +28,6 @@ def test_a_rigid_ball_has_no_ratio_but_words():
     assert stiffness_ratio_of(-2.0) == 0.0
     assert stiffness_words(0.0) == "1 times as stiff as the tissue at this closing"
     assert "more than 10 times" in stiffness_words(4.0)
+    assert stiffness_words(-1.72, 1.75).startswith("0 to 1 times as stiff"), "not a hole, but not known either"
+    assert stiffness_words(3.5, 2.6).startswith("2.4 to more than 10 times as stiff")
+    assert stiffness_words(5.0, 1.0).startswith("more than 10 times as stiff")

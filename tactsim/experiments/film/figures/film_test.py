@@ -63,6 +63,8 @@ def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]
         for axis in axes.flat:
             despined(axis)
         entitle(figure, result.title or "Piezoresistive film under constant forces")
+        if result.assumptions:  # which line the film was identified to, and over what, which is not the line of these readings
+            figure.supxlabel(result.assumptions[0], x=0.01, ha="left", fontsize=8.5)
     return figure
 
 

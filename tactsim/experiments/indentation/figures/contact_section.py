@@ -28,6 +28,8 @@ SHOWN_RADII = 2.4
 SENSOR_COLOUR = "#d62728"
 GRID = 700
 """Points per direction on which a body's outline is traced."""
+WORDS = 0.22
+"""Height of the three lines above the inner sensor, over half the width of the picture."""
 
 
 def draw_contact_section(axis: Axes, result: Result, displacement: float) -> None:
@@ -38,6 +40,8 @@ def draw_contact_section(axis: Axes, result: Result, displacement: float) -> Non
     scene = result.scene_as(PressedBodyScene)
     body, height = scene.body, 1e3 * (scene.starting_height - displacement)
     limits = _window(section, body, height)
+    if scene.recess is not None and body.contact_shape.hole:
+        limits = (*limits[:2], max(limits[2], height + 1e3 * scene.recess + WORDS * limits[0]))
     _draw_pressure(axis, section, pressure, limits)
     draw_mesh(axis, section)
     r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))

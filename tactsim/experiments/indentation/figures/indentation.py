@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -116,13 +116,6 @@ def _mark_last(axis: Axes, result: Result, along: float, up: float) -> None:
     at = (last["displacement"] * along, last["reaction_force"] * up)
     axis.plot(*at, "X", color=FAILED_COLOUR, markersize=9)
     words = "interrupted here" if result.status is Status.INTERRUPTED else "stopped here"
-    _label(axis, at, f"{words} at\n{format_quantity(last['displacement'], 'm')}", FAILED_COLOUR)
-
-
-def _label(axis: Axes, at: tuple[float, float], text: str, colour: str) -> None:
-    """Text beside a point, toward the middle of the axes."""
-    x, y = axis.transLimits.transform(at)
-    shift = (-26 if x > 0.5 else 12, -4 if y > 0.5 else 12)
-    sides: dict[str, Any] = {"ha": "right" if x > 0.5 else "left", "va": "top" if y > 0.5 else "bottom"}
-    box = {"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.85}
-    axis.annotate(text, at, shift, textcoords="offset points", color=colour, zorder=6, bbox=box, **sides)
+    # In the corner below the curves, which rise: beside the cross it would lie on them and on the line of the inner sensor.
+    words = f"{words} at {format_quantity(last['displacement'], 'm')}"
+    axis.text(0.97, 0.05, words, transform=axis.transAxes, ha="right", va="bottom", color=FAILED_COLOUR, zorder=6)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tactsim.case import load_case
 from tactsim.errors import CaseError, InvalidQuantity, StorageError
 from tactsim.experiments.film.figures.film_test import _smooth
 from tactsim.experiments.film.film_creep import FilmCreep, MeasuredCreep
@@ -204,3 +205,11 @@ def test_errors_by_range_and_hysteresis():
     triangle = 1 - np.abs(2 * time - 1)
     assert hysteresis(triangle, triangle + 0.1 * (time > 0.5)) == pytest.approx(0.1, rel=0.05)
     assert hysteresis(np.ones(5), np.ones(5)) == 0
+
+
+def test_the_figure_says_to_which_line_the_film_was_identified():
+    result = load_case("film_lingstat").run(None)
+    figure = result.plot("film_test")
+    words = figure.get_supxlabel()
+    assert "identified to F = 20.94 C - 0.132" in words
+    assert "0.5 to 5 N at 1 s" in words, "the line of readings up to 8 N is another one"

@@ -328,3 +328,13 @@ def test_another_mesh_source_carries_the_content():
     assert sourced.origin == "built in layers"
     assert replace(sourced, origin="").content == sourced.content
     assert len(sourced.content) == 32
+
+
+def test_doubts_are_known_before_anything_is_solved():
+    plain = Grasp.example()
+    assert plain.doubts() == []
+    wide = plain.model_copy(update={"matrix": plain.matrix.model_copy(update={"pitch": 20e-3})})
+    beyond = [f"8 of 9 taxels of the {side} jaw reach beyond the block" for side in JAWS]
+    assert [doubt.split(":")[0] for doubt in wide.doubts()] == beyond
+    huge = plain.model_copy(update={"block": plain.block.model_copy(update={"size": (40.0, 40.0, 20.0)})})
+    assert any("block.size" in doubt for doubt in huge.doubts())

@@ -63,6 +63,31 @@ def test_a_run_that_did_not_end_well_is_marked(status):
     assert "because" in written
 
 
+def test_labels_of_a_run_that_stopped_early_lie_on_nothing():
+    early = replace(made_up(Status.FAILED), quantities={}, scene=scene_with(8e-4))
+    figure = indentation_figure(early)
+    figure.canvas.draw()
+    section, curve = figure.axes[0], next(axis for axis in figure.axes if "force on the body" in axis.get_ylabel())
+    (sensor,) = [text for text in section.texts if "inner sensor" in text.get_text()]
+    assert sensor.get_window_extent().y1 <= section.get_window_extent().y1 + 1, "not on the title"
+    (stopped,) = [text for text in curve.texts if "stopped here" in text.get_text()]
+    assert stopped.get_window_extent().y1 < curve.get_window_extent().y0 + 0.2 * curve.get_window_extent().height
+    assert not any(stopped.get_window_extent().contains(*point) for point in drawn_points(curve))
+
+
+def scene_with(recess):
+    return IndentationScene(body=Annulus(), recess=recess, starting_height=0.0, solver=SOLVER)
+
+
+def drawn_points(axis):
+    """Pixels of all lines of an axis, closely spaced."""
+    for line in axis.lines:
+        x, y = line.get_xydata().T
+        fine = np.linspace(0, len(x) - 1, 400)
+        at = [np.interp(fine, np.arange(len(x)), side) for side in (x, y)]
+        yield from axis.transData.transform(np.transpose(at))
+
+
 def test_rise_reaches_the_recess_on_its_own_axis():
     figure = indentation_figure(made_up())
     rise = next(axis for axis in figure.axes if "rise" in axis.get_ylabel())
