@@ -153,6 +153,8 @@ def validated_case(document: Document, place: Place) -> Case:
         problems += problems_of(error, document, model)
     except InputError as error:
         problems.append(Problem(("experiment",), document.line(("experiment",)), str(error)))
+    except Unreadable as error:
+        raise Unreadable(in_words(_blamed_file(document, str(error)), place), error.reason) from None
     except StorageError as error:
         raise StorageError(in_words(_blamed_file(document, str(error)), place)) from None
     if problems:
