@@ -6,6 +6,7 @@ than many cells (Apel 1999, Anisotropic Finite Elements: Local Estimates and App
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Sequence
 from functools import partial
@@ -20,7 +21,7 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
-from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
+from tactsim.mesh.graded.lines import SHEATHS, Line, lines_around, mirrored_line, sheath
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
 from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
 from tactsim.mesh.graded.sections import Hollow, as_hollow
@@ -60,17 +61,18 @@ def graded_block(
         corners, cells = product(lines), grid([len(line) - 1 for line in lines])
         simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
-    for finer in range(ATTEMPTS):
-        corners, cells, labels, places = _cells(inclusions, extent, settings, finer)
+    sheaths = SHEATHS if len(inclusions) == 1 and not inclusions[0].hollow else SHEATHS[-1:]
+    reason: ConvergenceError | None = None
+    for finer, shares in itertools.product(range(ATTEMPTS), sheaths):
+        corners, cells, labels, places = _cells(inclusions, extent, settings, finer, shares)
         simplices = _sixths(cells, places)
         try:
             return finished(corners, simplices, np.repeat(labels, 6))
         except ConvergenceError as error:
-            if finer == ATTEMPTS - 1:
-                names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))
-                verb = "suit" if len(inclusions) == 1 else "suit all of"
-                raise ConvergenceError(f"no graded cells {verb} {names}: {error}; take mesh.kind: tetrahedra") from None
-    raise AssertionError("every attempt returns or raises")
+            reason = error
+    names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))
+    verb = "suit" if len(inclusions) == 1 else "suit all of"
+    raise ConvergenceError(f"no graded cells {verb} {names}: {reason}; take mesh.kind: tetrahedra")
 
 
 def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str | None:
@@ -111,7 +113,7 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
 
 
 def _cells(
-    inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int
+    inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int, shares: Sequence[float]
 ) -> tuple[Array, Array, Array, Array]:
     """Corners (n, 3), cells (H, 8), their regions (H,) and the places (n,) in the order by which cells are split."""
     lumps, tubes = _sorted(inclusions, extent)
@@ -120,7 +122,7 @@ def _cells(
         _check_size([count - 1 for count in bundle.grid.shape[:3]])
         corners, cells, regions, distances = swept_cells(bundle)
         return corners, cells, _numbered(regions, order, inclusions, extent), _placed(distances)
-    corners, cells, labels = _cells_of_lumps(lumps, extent, settings, finer)
+    corners, cells, labels = _cells_of_lumps(lumps, extent, settings, finer, shares)
     return corners, cells, labels, _places_about(corners, [lump.ball for lump in lumps])
 
 
@@ -134,12 +136,14 @@ def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], ext
     return labels
 
 
-def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> tuple[Array, Array, Array]:
+def _cells_of_lumps(
+    lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int, shares: Sequence[float]
+) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) around one lump, or around several in a row."""
     if len(lumps) == 1:
         around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)
         _check_size([len(line.near) - 1 for line in around])
-        return _around(lumps[0].ball, around)
+        return _around(lumps[0].ball, around, shares)
     row = row_of(lumps, extent, settings, finer)
     _check_size([len(away) - 1 for away in row.away])
     corners, cells, labels = row_cells(row)
@@ -152,7 +156,7 @@ def _check_size(cells: Sequence[int]) -> None:
     check_unknowns(unknowns_of_cells(cells), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
 
 
-def _around(ball: BallImage, lines: Sequence[Line]) -> tuple[Array, Array, Array]:
+def _around(ball: BallImage, lines: Sequence[Line], shares: Sequence[float]) -> tuple[Array, Array, Array]:
     """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
     corners, outside = _around_box(lines)
     logical = product([np.linspace(-1, 1, line.across + 1) for line in lines])
@@ -162,9 +166,10 @@ def _around(ball: BallImage, lines: Sequence[Line]) -> tuple[Array, Array, Array
     wall = ball.center + directions(logical[shell]) @ ball.stretch
     steps = np.stack(np.unravel_index(shell, [line.across + 1 for line in lines])) + np.array([[line.first] for line in lines])
     on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.near) for line in lines))
-    added, rounded, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
-    numbers = np.concatenate([len(corners) + np.arange(len(inner) + len(shell)), on_box])
-    points = np.vstack([corners, added[: len(inner) + len(shell)]])
+    added, rounded, depth = stacked(inner, shell, quads, core, sheath(wall, corners[on_box], shares))
+    fresh = len(added) - len(shell)
+    numbers = np.concatenate([len(corners) + np.arange(fresh), on_box])
+    points = np.vstack([corners, added[:fresh]])
     cells = np.vstack([outside, numbers[rounded]])
     used, compact = np.unique(cells, return_inverse=True)
     labels = np.concatenate([np.zeros(len(outside), np.int64), (depth < 1).astype(np.int64)])

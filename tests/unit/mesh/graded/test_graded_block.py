@@ -34,7 +34,7 @@ def test_lumps_anywhere_are_meshed_soundly():
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02
         assert block.quality.curvature > 0
-        assert 8_000 < block.unknowns < 40_000
+        assert 8_000 < block.unknowns < 42_000
 
 
 def test_cells_are_thin_at_the_faces_and_thicker_inside():
@@ -61,8 +61,8 @@ def test_no_layer_of_cells_at_the_edge_of_a_pressed_face_is_thinner_than_elsewhe
     assert top > COARSE.edge_size - 1e-9
 
 
-@pytest.mark.parametrize(("gap", "cells"), [(1.2e-3, 1), (1.4e-3, 2), (1.9e-3, 2)])
-def test_the_gap_between_a_jaw_and_a_lump_has_two_cells_unless_it_is_thin(gap, cells):
+@pytest.mark.parametrize(("gap", "cells"), [(1.2e-3, 2), (1.4e-3, 3), (1.9e-3, 3)])
+def test_the_gap_between_a_jaw_and_a_lump_has_three_cells_unless_it_is_thin(gap, cells):
     lump = Sphere(center=(20e-3, 20e-3, 5e-3 + gap), radius=5e-3)
     even = COARSE.model_copy(update={"inclusion_size": 1.3e-3})  # six across, so that a corner lies on the pole
     nodes = graded_block(SIZE, [lump], even).mesh.nodes
