@@ -15,7 +15,7 @@ from tactsim.mesh.block import BlockMeshSettings
 SHEATHS: tuple[tuple[float, ...], ...] = ((0.5,), (0.6,), ())
 """Where layers of cells between one lump and the box around it end, as parts of the way; the next are tried where few cells leave
 their curved sides no room. With a single layer, however small the cells along the surface, a ball of 75 times the modulus of the
-tissue, 3 mm below a jaw, presses on its taxel 18 % too hard, with two 4 to 7 %, with three, for which there is rarely room, 1 %."""
+tissue, 3 mm below a jaw, presses on its taxel 18 % too hard, with two 4 to 7 %, with three, which rarely find room, 1 %."""
 EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that of the cells far from them, if none is given."""
 ROOM = 0.4
