@@ -93,12 +93,12 @@ def test_first_and_last_runs_of_a_case_are_kept_apart() -> None:
 
 def test_the_page_shows_shares_with_intervals_reasons_and_what_came_of_the_failed_ones() -> None:
     record = [ended(number, "converged") for number in range(9)] + [ended(9, "failed with reason"), ended(10, "refused")]
-    text = page(record, asked=1000, limit=300.0, patience=30.0)
+    text = page(record, asked=1000, limit=900.0, patience=30.0)
     assert "11 of 1000 asked of the kind `grasp`" in text
     assert "| grasp | 11 | 9 | 0 | 1 | 1 | 0 | 0 | 0 | 90.0 % [59.6 %, 98.2 %] |" in text  # Wilson's by hand for 9 of 10
     assert "| grasp 9 | failed with reason | 2 | because of \\| 9 |  |" in text
     assert "run again\n" not in text
-    again = page([*record, ended(9, "converged", program="b")], asked=1000, limit=300.0, patience=30.0)
+    again = page([*record, ended(9, "converged", program="b")], asked=1000, limit=900.0, patience=30.0)
     assert "| grasp 9 | failed with reason | 2 | because of \\| 9 | converged |" in again
     assert "| grasp | 1 | 1 | 0 | 0 | 0 | 0 | 0 | 0 | 100.0 % [20.7 %, 100.0 %] |" in again
     assert "`b` (1 cases)" in again
@@ -107,7 +107,7 @@ def test_the_page_shows_shares_with_intervals_reasons_and_what_came_of_the_faile
 def test_the_stored_page_is_that_of_the_stored_record() -> None:
     folder = Path(__file__).parents[3] / "docs" / "verification"
     text = (folder / "campaign.md").read_text(encoding="utf-8")
-    assert text == page(read_record(folder / "campaign.jsonl"), asked=1000, limit=300.0, patience=PATIENCE)
+    assert text == page(read_record(folder / "campaign.jsonl"), asked=1000, limit=900.0, patience=PATIENCE)
 
 
 def test_a_child_that_does_not_end_is_killed_and_counts_as_hung(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
