@@ -11,7 +11,7 @@ from tactsim.results.provenance import provenance
 
 
 def test_versions_code_case_and_seeds_are_reported() -> None:
-    given = {"case_file": "/home/someone/case.yaml", "overrides": ["a=/tmp/y.stl"], "seeds": {"readout.seed": 3}}
+    given = {"case_file": "/elsewhere/of/someone/case.yaml", "overrides": ["a=/elsewhere/y.stl"], "seeds": {"readout.seed": 3}}
     content = provenance({"title": "x"}, "abc", **given)
     assert content["versions"]["tactsim"] == __version__
     assert {"python", "numpy", "scipy", "scikit-fem"} <= set(content["versions"])
