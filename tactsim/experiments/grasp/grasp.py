@@ -35,10 +35,9 @@ class Grasp(GraspSetup, Experiment):
 
     def doubts(self) -> list[str]:
         """Taxels beside the block, and sizes and materials that look like a wrong unit."""
-        from tactsim.experiments.grasp.overhang import overhang_warnings
-        from tactsim.experiments.grasp.warnings import unlikely
+        from tactsim.experiments.grasp.warnings import doubts
 
-        return [*overhang_warnings(self), *unlikely(self)]
+        return doubts(self)
 
     def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""

@@ -10,7 +10,6 @@ import numpy as np
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
-from tactsim.experiments.grasp.overhang import overhang_warnings
 from tactsim.experiments.grasp.path import stiffest_block
 from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
 from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
@@ -18,7 +17,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import finer, ragged, smaller_elements, suction, uneven, unlikely
+from tactsim.experiments.grasp.warnings import doubts, finer, ragged, smaller_elements, suction, uneven
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
@@ -146,7 +145,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
-        warnings += [*overhang_warnings(self.experiment), *self.quality.warnings(), *unlikely(self.experiment)]
+        warnings += [*doubts(self.experiment), *self.quality.warnings()]
         return [*warnings, *self.unstable("a closing of {} per jaw")]
 
     def _asymmetry(self) -> float | None:

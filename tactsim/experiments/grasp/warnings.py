@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tactsim.experiments.grasp.overhang import overhang_warnings
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.assembly.material_forms import interpreted_warnings
@@ -64,6 +65,11 @@ def uneven(asymmetry: float | None) -> list[str]:
         f"the grasp is its own mirror image, but its taxels differ from theirs by up to {asymmetry:.1%} of the largest force: "
         "the mesh shows in the forces, and nothing smaller than this should be read from a single taxel; take smaller elements"
     ]
+
+
+def doubts(grasp: GraspSetup) -> list[str]:
+    """What looks wrong in a case before it is computed: taxels beside the block, and sizes and materials like a wrong unit."""
+    return [*overhang_warnings(grasp), *unlikely(grasp)]
 
 
 def unlikely(grasp: GraspSetup) -> list[str]:

@@ -155,6 +155,11 @@ def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: f
     return solution
 
 
+def has_pardiso() -> bool:
+    """Whether Pardiso is installed, and runs on this machine."""
+    return importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
+
+
 def direct_solver(name: str | None = None) -> DirectSolver:
     """The solver of this name (pardiso_single, pardiso_symmetric, pardiso or superlu), by default the fastest that is installed.
 
@@ -164,8 +169,7 @@ def direct_solver(name: str | None = None) -> DirectSolver:
         If there is no such solver.
     """
     if name is None:
-        installed = importlib.util.find_spec("pypardiso") is not None and platform.machine() in ("x86_64", "AMD64")
-        name = "pardiso" if installed else "superlu"
+        name = Pardiso.name if has_pardiso() else SuperLU.name
     kinds: dict[str, type[Pardiso] | type[SuperLU]] = {
         kind.name: kind for kind in (SinglePardiso, SymmetricPardiso, Pardiso, SuperLU)
     }
@@ -176,11 +180,9 @@ def direct_solver(name: str | None = None) -> DirectSolver:
 
 def guiding_solver() -> DirectSolver:
     """The solver of systems whose solutions guide an iteration: in single precision where that is there."""
-    solver = direct_solver()
-    return Pardiso(single=True) if solver.name == Pardiso.name else solver
+    return Pardiso(single=True) if has_pardiso() else SuperLU()
 
 
 def section_solver() -> DirectSolver:
     """The solver of systems of some ten thousand unknowns, which each get a factor: symmetric as long as they are."""
-    solver = direct_solver()
-    return SymmetricWhereItIs() if solver.name == Pardiso.name else solver
+    return SymmetricWhereItIs() if has_pardiso() else SuperLU()

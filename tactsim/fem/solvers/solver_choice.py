@@ -8,8 +8,8 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressure_mass
-from tactsim.fem.solvers.linear import LinearSolver, SuperLU, direct_solver
-from tactsim.fem.solvers.pardiso import FactorSize, Pardiso, QuasiDefinitePardiso, SinglePardiso
+from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
+from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 
@@ -54,8 +54,8 @@ def solver_for(body: Body) -> LinearSolver:
     size = body.space.size
     if size > LARGEST_FACTOR:
         return BlockPreconditioned(body)
-    if direct_solver().name != Pardiso.name:
-        return Relay(BlockPreconditioned(body), lambda: ReusedFactor(SuperLU())) if size > LARGEST_SUPERLU else SuperLU()
+    if not has_pardiso():
+        return iterated(body) if size > LARGEST_SUPERLU else SuperLU()
     guide = QuasiDefinitePardiso(giving_way(body))
     if size < SMALLEST_ITERATED or factor_seconds(guide.analyse(_ones(body))) <= iteration_seconds(size):
         return factored(guide)
@@ -65,12 +65,17 @@ def solver_for(body: Body) -> LinearSolver:
 
 def factored(guide: QuasiDefinitePardiso) -> Relay:
     """The factor of what gives way a little, whose pivots need not suffice; after it the matched one."""
-    return Relay(ReusedFactor(guide, largest_left=FAILED), lambda: ReusedFactor(SinglePardiso()))
+    return Relay(ReusedFactor(guide, largest_left=FAILED), _sturdiest)
 
 
 def iterated(body: Body) -> Relay:
-    """The iteration; after it the matched factor."""
-    return Relay(BlockPreconditioned(body), lambda: ReusedFactor(SinglePardiso()))
+    """The iteration; after it the factor whose pivots suffice."""
+    return Relay(BlockPreconditioned(body), _sturdiest)
+
+
+def _sturdiest() -> ReusedFactor:
+    """A factor whose pivots suffice for any tissue: the matched one, or SuperLU's without Pardiso."""
+    return ReusedFactor(SinglePardiso() if has_pardiso() else SuperLU())
 
 
 def _ones(body: Body) -> csr_matrix:

@@ -23,15 +23,10 @@ class TangentBlocks:
 
     def __init__(self, matrix: csr_matrix, split: int, dim: int):
         self._dim, self._split, self._size = dim, split, matrix.shape[0]
-        self._indptr = matrix.indptr
-        before = _entries_before(matrix.indptr, matrix.indices, split)
-        count = split // dim
-        in_blocks = before[:split:dim] // dim
-        self.block_starts = _starts(in_blocks)
-        self.block_indices = np.empty(self.block_starts[-1], np.int32)
-        _block_columns(matrix.indptr, matrix.indices, dim, self.block_starts, self.block_indices)
-        self.nodes = count
-        self._before = before
+        self._before = before = _entries_before(matrix.indptr, matrix.indices, split)
+        self._block_starts = _starts(before[:split:dim] // dim)
+        self._block_indices = np.empty(self._block_starts[-1], np.int32)
+        _block_columns(matrix.indptr, matrix.indices, dim, self._block_starts, self._block_indices)
         lengths = np.diff(matrix.indptr) - before
         self._gradient_starts, self._compliance_starts = _starts(lengths[:split]), _starts(lengths[split:])
         self._gradient_indices = _after(matrix.indptr, matrix.indices, before, 0, split) - split
@@ -42,12 +37,12 @@ class TangentBlocks:
 
         An unknown that is held has one entry in its row of A, on the diagonal.
         """
-        dim, count = self._dim, self.nodes
-        data = np.empty((len(self.block_indices), dim, dim), np.float32)
-        free = np.zeros((count, dim), np.bool_)
-        _take_blocks(matrix.indptr, matrix.data, self.block_starts, self.block_indices, data, free)
-        _add_where_free(self.block_starts, self.block_indices, free, added, factor, data)
-        return bsr_matrix((data, self.block_indices, self.block_starts), shape=(count * dim, count * dim)), free
+        dim, starts, indices = self._dim, self._block_starts, self._block_indices
+        data = np.empty((len(indices), dim, dim), np.float32)
+        free = np.zeros((len(starts) - 1, dim), np.bool_)
+        _take_blocks(matrix.indptr, matrix.data, starts, indices, data, free)
+        _add_where_free(starts, indices, free, added, factor, data)
+        return bsr_matrix((data, indices, starts), shape=(self._split, self._split)), free
 
     def gradient(self, matrix: csr_matrix) -> csr_matrix:
         """B'."""

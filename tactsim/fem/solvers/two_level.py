@@ -40,8 +40,7 @@ class TwoLevel:
         self._diagonal = tissue_diagonal(body)
         self._dim = space.dim
         self._direct = guiding_solver()
-        self._pattern: csr_matrix | None = None
-        self.coarse_size = 0
+        self._pattern: tuple[Array, Array] | None = None
 
     def factor(self, block: bsr_matrix, free: Array) -> None:
         """Take a matrix of ``d x d`` blocks in single precision, its indices sorted, and which unknowns (n, d) are free.
@@ -67,10 +66,11 @@ class TwoLevel:
         coarse.sort_indices()
         self._prolongation, self._restriction = prolongation.tocsr(), prolongation.T.tocsr()
         coarse.setdiag(np.where(coarse.diagonal() == 0, 1.0, coarse.diagonal()))
-        if self._pattern is None or not _same(self._pattern, coarse):
+        pattern = (coarse.indptr, coarse.indices)
+        if self._pattern is None or not all(map(np.array_equal, self._pattern, pattern)):
             self._direct.close()  # contact rules other nodes; the analysis of a pattern takes as long as a factor
         self._direct.factor(coarse)
-        self._pattern, self.coarse_size = coarse, coarse.shape[0]
+        self._pattern = pattern
 
     def __call__(self, right: Array) -> Array:
         """One cycle for a right-hand side (n d,), beginning at zero."""
@@ -114,11 +114,6 @@ class TwoLevel:
         nodes = hstack([diags(soft) @ linear, alone], format="csr")
         nodes.eliminate_zeros()
         return nodes
-
-
-def _same(first: csr_matrix, second: csr_matrix) -> bool:
-    """Whether two matrices have one pattern."""
-    return np.array_equal(first.indptr, second.indptr) and np.array_equal(first.indices, second.indices)
 
 
 def linear_interpolation(space: TaylorHood) -> csr_matrix:
