@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,65 @@ LEAST_QUALITY = 0.02
 _EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
+@dataclass(frozen=True)
+class Layers:
+    """Layers of cells between curved surfaces and the boxes around them.
+
+    Attributes
+    ----------
+    beneath : (n,) corner of the surface beneath each corner of a layer, of the surface itself and of the box; -1 elsewhere
+    share : (n,) way from the surface, as a part of that to the box
+    """
+
+    beneath: Array
+    share: Array
+
+    @classmethod
+    def none(cls, count: int) -> Layers:
+        """Corners (count,) in no layer."""
+        return cls(np.full(count, -1), np.zeros(count))
+
+    def with_body(self, inside: int, box: Array, ends: Array) -> Layers:
+        """These corners, then those of a body: some inside it, those of its surface, and as many at each end (k,) of a layer.
+
+        The last layer leads from the last end to the corners ``box`` (w,), which are among these.
+        """
+        wall = len(self.beneath) + inside + np.arange(len(box))
+        beneath, share = self.beneath.copy(), self.share.copy()
+        beneath[box], share[box] = wall, 1.0
+        return Layers(
+            np.concatenate([beneath, np.full(inside, -1), np.tile(wall, 1 + len(ends))]),
+            np.concatenate([share, np.zeros(inside), np.repeat([0.0, *ends], len(box))]),
+        )
+
+    def repeated(self, times: int) -> Layers:
+        """These corners several times, one after the other."""
+        count, copies = len(self.beneath), np.tile(self.beneath, (times, 1))
+        beneath = np.where(copies < 0, -1, copies + count * np.arange(times)[:, None])
+        return Layers(beneath.ravel(), np.tile(self.share, times))
+
+    def with_others(self, count: int) -> Layers:
+        """These corners, then so many in no layer."""
+        return Layers(np.append(self.beneath, np.full(count, -1)), np.append(self.share, np.zeros(count)))
+
+    def kept(self, used: Array) -> Layers:
+        """Corners ``used`` (m,), ascending, renumbered; those of surfaces beneath are among them."""
+        beneath = self.beneath[used]
+        return Layers(np.where(beneath < 0, -1, np.searchsorted(used, beneath)), self.share[used])
+
+    def bulges(self, mesh: QuadraticMesh, constraints: Constraints) -> tuple[Array, Array, Array]:
+        """Mid-nodes (m,) of edges in layers, the corners (m, 2) of the surface beneath each, and its way (m, 3) in m with it."""
+        edges, middles = _edges(mesh)
+        beneath, share = self.beneath[edges], self.share[edges].mean(axis=1)
+        on = constraints.on[beneath].all(axis=1)
+        within = (beneath >= 0).all(axis=1) & (beneath[:, 0] != beneath[:, 1]) & (share > 0) & (share < 1)
+        chosen = within & on[:, len(FACES) :].any(axis=1)
+        beneath, on = np.sort(beneath[chosen], axis=1), on[chosen]
+        straight = mesh.nodes[beneath].mean(axis=1)
+        bulge = Constraints(constraints.patches, on, constraints.size).restored(straight) - straight
+        return middles[chosen], beneath, (1 - share[chosen])[:, None] * bulge
+
+
 def fitted(
     corners: Array,
     simplices: Array,
@@ -42,6 +101,7 @@ def fitted(
     part: float = 1.0,
     slide: bool = True,
     smooth: bool = True,
+    layers: Layers | None = None,
 ) -> BlockMesh:
     """The block mesh made of labelled tetrahedra, nodes moved onto the surfaces.
 
@@ -52,6 +112,7 @@ def fitted(
     part : of the element size at inclusions that was asked for
     slide : whether nodes may move along curved surfaces for better shapes
     smooth : whether nodes may move for better shapes at all, and edges of the block that roll onto a jaw get two elements
+    layers : around the inclusions, in which edges bulge with them
 
     Raises
     ------
@@ -60,11 +121,14 @@ def fitted(
     """
     surfaces = Surfaces(size, [inclusion.solids(size) for inclusion in inclusions])
     walls = interfaces(corners, simplices, labels, surfaces)
-    corners, simplices, labels, walls = _kept(corners, simplices, labels, walls)
+    used = np.unique(simplices[labels >= 0])
+    layers = (Layers.none(len(corners)) if layers is None else layers).kept(used)
+    corners, simplices, labels, walls = _kept(used, corners, simplices, labels, walls)
     corners, simplices, labels = _split_between(corners, simplices, labels, walls)
     if smooth:
         corners, simplices, labels, walls = without_wedges(corners, simplices, labels, walls)
     constraints = walls.constraints(len(corners), surfaces)
+    layers = layers.with_others(len(corners) - len(layers.beneath))
     corners = constraints.restored(corners)
     if slide:
         constraints = constraints.holding_edges(corners, walls.triangles, walls.patch)
@@ -75,7 +139,7 @@ def fitted(
     ratios = mean_ratio(corners, simplices)
     if ratios.min() < LEAST_QUALITY:
         raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios.min():.2g}; allowed: {LEAST_QUALITY}")
-    mesh, straightened = curved(quadratic_mesh(corners, simplices, labels), walls, constraints)
+    mesh, straightened = curved(quadratic_mesh(corners, simplices, labels), walls, constraints, layers)
     seconds = time.perf_counter() - started
     return assembled(mesh, surfaces, inclusions, key=key, seconds=seconds, straightened=straightened, part=part)
 
@@ -141,8 +205,11 @@ def check(block: BlockMesh, size: Array) -> None:
         raise ConvergenceError("the mesh has an inverted element; take smaller elements at inclusions")
 
 
-def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> tuple[QuadraticMesh, int]:
-    """The mesh with the mid-nodes of interfaces on them, and the number of those that stay off them to keep elements valid."""
+def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints, layers: Layers) -> tuple[QuadraticMesh, int]:
+    """The mesh with the mid-nodes of interfaces on them, and the number of those that stay off them to keep elements valid.
+
+    In layers around an interface the mid-nodes of edges move with it, the less the farther they are from it.
+    """
     edges = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
     patch = np.tile(walls.patch, 3)
     unique, number = np.unique(edges, axis=0, return_inverse=True)
@@ -150,17 +217,24 @@ def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints) -> 
     on[number.reshape(-1), patch] = True
     bent = on[:, len(FACES) :].any(axis=1)
     middles = _middle_nodes(mesh, unique[bent])
-    straight = mesh.nodes[middles]
-    nodes = mesh.nodes.copy()
-    nodes[middles] = Constraints(constraints.patches, on[bent], constraints.size).restored(straight)
-    share, fitting = np.ones(len(middles)), nodes[middles].copy()
+    fitting = Constraints(constraints.patches, on[bent], constraints.size).restored(mesh.nodes[middles])
+    beside, pairs, moves = layers.bulges(mesh, constraints)
+    wall, owner = np.unique(np.vstack([unique[bent], pairs]), axis=0, return_inverse=True)
+    owner = owner.reshape(-1)
+    nodes, moved = mesh.nodes.copy(), np.concatenate([middles, beside])
+    ends = np.vstack([fitting, mesh.nodes[beside] + moves])
+    starts, nodes[moved] = mesh.nodes[moved], ends
+    share = np.ones(len(wall))
     while True:
         poor = jacobian_ratio(nodes, mesh.elements) < LEAST_CURVATURE
-        touched = np.isin(middles, mesh.elements[poor, 4:]) & (share > 0)
+        touched = np.zeros(len(wall), bool)
+        touched[owner[np.isin(moved, mesh.elements[poor, 4:])]] = True
+        touched &= share > 0
         if not touched.any():
             return mesh.moved(nodes), int((share < 1).sum())
         share[touched] = np.where(share[touched] > SMALLEST_SHARE, share[touched] / 2, 0.0)
-        nodes[middles] = np.where(share[:, None] < 1, straight + share[:, None] * (fitting - straight), fitting)
+        part = share[owner][:, None]
+        nodes[moved] = np.where(part < 1, starts + part * (ends - starts), ends)
 
 
 def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
@@ -190,11 +264,12 @@ def named_facets(mesh: QuadraticMesh, surfaces: Surfaces) -> dict[str, Array]:
     return {name: facets[numbers == number] for number, name in enumerate(names)}
 
 
-def _kept(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array, Interfaces]:
-    """Everything without the tetrahedra outside and in empty spaces, nodes renumbered."""
-    used, renumbered = np.unique(simplices[labels >= 0], return_inverse=True)
+def _kept(
+    used: Array, corners: Array, simplices: Array, labels: Array, walls: Interfaces
+) -> tuple[Array, Array, Array, Interfaces]:
+    """Everything without the tetrahedra outside and in empty spaces, the corners that are ``used`` renumbered."""
     triangles = np.searchsorted(used, walls.triangles)
-    return corners[used], renumbered.reshape(-1, 4), labels[labels >= 0], Interfaces(triangles, walls.patch)
+    return corners[used], np.searchsorted(used, simplices[labels >= 0]), labels[labels >= 0], Interfaces(triangles, walls.patch)
 
 
 def _split_between(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array]:
@@ -214,8 +289,13 @@ def _split_between(corners: Array, simplices: Array, labels: Array, walls: Inter
 
 def _middle_nodes(mesh: QuadraticMesh, pairs: Array) -> Array:
     """Numbers (m,) of the nodes between corners (m, 2), ascending."""
+    edges, middles = _edges(mesh)
     count = mesh.corner_count
+    return middles[np.searchsorted(edges[:, 0] * count + edges[:, 1], pairs[:, 0] * count + pairs[:, 1])]
+
+
+def _edges(mesh: QuadraticMesh) -> tuple[Array, Array]:
+    """Edges (m, 2) in order, by their corners ascending, and the node between them (m,)."""
     edges = np.concatenate([np.sort(mesh.elements[:, list(edge)], axis=1) for edge in _EDGES])
-    keys, first = np.unique(edges[:, 0] * count + edges[:, 1], return_index=True)
-    middles = mesh.elements[:, 4:].T.ravel()[first]
-    return middles[np.searchsorted(keys, pairs[:, 0] * count + pairs[:, 1])]
+    _, first = np.unique(edges[:, 0] * mesh.corner_count + edges[:, 1], return_index=True)
+    return edges[first], mesh.elements[:, 4:].T.ravel()[first]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,16 +22,17 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
-from tactsim.mesh.graded.lines import SHEATHS, Line, lines_around, mirrored_line, sheath
+from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
+from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
 from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
 from tactsim.mesh.graded.sections import Hollow, as_hollow
 from tactsim.mesh.graded.side_by_side import bundle_of
-from tactsim.mesh.structured_block import SIDES, blown, directions, grid, product, ranks, skin, stacked
+from tactsim.mesh.structured_block import SIDES, grid, product, ranks
 from tactsim.mesh.tetrahedra import mesh_key
 
 ATTEMPTS = 3
-"""Numbers of cells across that are tried, each larger than the last, until the shapes suit."""
+"""Numbers of cells across that are tried, each larger than the last and with ever fewer layers, until the shapes suit."""
 
 
 def graded_block(
@@ -58,16 +60,15 @@ def graded_block(
     if not inclusions:
         lines = [mirrored_line(float(length), settings) for length in extent]
         _check_size([len(line) - 1 for line in lines])
-        corners, cells = product(lines), grid([len(line) - 1 for line in lines])
-        simplices = _sixths(cells, _mirrored_places(corners, extent / 2, np.eye(3)))
+        corners, plain = product(lines), grid([len(line) - 1 for line in lines])
+        simplices = _sixths(plain, _order(np.abs(corners - extent / 2)))
         return finished(corners, simplices, np.zeros(len(simplices), np.int64))
-    sheaths = SHEATHS if len(inclusions) == 1 and not inclusions[0].hollow else SHEATHS[-1:]
     reason: ConvergenceError | None = None
-    for finer, shares in itertools.product(range(ATTEMPTS), sheaths):
-        corners, cells, labels, places = _cells(inclusions, extent, settings, finer, shares)
-        simplices = _sixths(cells, places)
+    for finer, fewer in itertools.product(range(ATTEMPTS), range(LEAST_LAYERS)):
+        cells = _cells(inclusions, extent, settings, finer, partial(layer_ends, settings=settings, fewer=fewer))
+        simplices = _sixths(cells.cells, _order(cells.places))
         try:
-            return finished(corners, simplices, np.repeat(labels, 6))
+            return finished(cells.corners, simplices, np.repeat(cells.regions, 6), layers=cells.layers)
         except ConvergenceError as error:
             reason = error
     names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))
@@ -112,18 +113,15 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
     return lumps, tubes
 
 
-def _cells(
-    inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int, shares: Sequence[float]
-) -> tuple[Array, Array, Array, Array]:
-    """Corners (n, 3), cells (H, 8), their regions (H,) and the places (n,) in the order by which cells are split."""
+def _cells(inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int, layering: Layering) -> Cells:
+    """Cells around the inclusions, their regions numbered as these."""
     lumps, tubes = _sorted(inclusions, extent)
     if tubes:
         bundle, order = bundle_of(tubes, lumps[0] if lumps else None, extent, settings, finer)
         _check_size([count - 1 for count in bundle.grid.shape[:3]])
-        corners, cells, regions, distances = swept_cells(bundle)
-        return corners, cells, _numbered(regions, order, inclusions, extent), _placed(distances)
-    corners, cells, labels = _cells_of_lumps(lumps, extent, settings, finer, shares)
-    return corners, cells, labels, _places_about(corners, [lump.ball for lump in lumps])
+        cells = swept_cells(bundle, layering)
+        return replace(cells, regions=_numbered(cells.regions, order, inclusions, extent))
+    return _cells_of_lumps(lumps, extent, settings, finer, layering)
 
 
 def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], extent: Array) -> Array:
@@ -136,19 +134,17 @@ def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], ext
     return labels
 
 
-def _cells_of_lumps(
-    lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int, shares: Sequence[float]
-) -> tuple[Array, Array, Array]:
-    """Corners (n, 3), cells (H, 8) and regions (H,) around one lump, or around several in a row."""
+def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int, layering: Layering) -> Cells:
+    """Cells around one lump, or around several in a row."""
     if len(lumps) == 1:
         around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)
         _check_size([len(line.near) - 1 for line in around])
-        return _around(lumps[0].ball, around, shares)
+        return _around(lumps[0].ball, around, layering)
     row = row_of(lumps, extent, settings, finer)
     _check_size([len(away) - 1 for away in row.away])
-    corners, cells, labels = row_cells(row)
+    cells = row_cells(row, layering)
     numbers = np.array([0, *(1 + next(k for k, lump in enumerate(lumps) if lump is here) for here in row.lumps)])
-    return corners, cells, numbers[labels]
+    return replace(cells, regions=numbers[cells.regions])
 
 
 def _check_size(cells: Sequence[int]) -> None:
@@ -156,24 +152,15 @@ def _check_size(cells: Sequence[int]) -> None:
     check_unknowns(unknowns_of_cells(cells), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
 
 
-def _around(ball: BallImage, lines: Sequence[Line], shares: Sequence[float]) -> tuple[Array, Array, Array]:
-    """Corners (n, 3), cells (H, 8) and regions (H,) of a block with a lump."""
-    corners, outside = _around_box(lines)
-    logical = product([np.linspace(-1, 1, line.across + 1) for line in lines])
-    core = grid([line.across for line in lines])
-    shell, quads = skin(core, logical)
-    inner = ball.center + blown(logical) @ ball.stretch
-    wall = ball.center + directions(logical[shell]) @ ball.stretch
-    steps = np.stack(np.unravel_index(shell, [line.across + 1 for line in lines])) + np.array([[line.first] for line in lines])
-    on_box = np.ravel_multi_index(tuple(steps), tuple(len(line.near) for line in lines))
-    added, rounded, depth = stacked(inner, shell, quads, core, sheath(wall, corners[on_box], shares))
-    fresh = len(added) - len(shell)
-    numbers = np.concatenate([len(corners) + np.arange(fresh), on_box])
-    points = np.vstack([corners, added[:fresh]])
-    cells = np.vstack([outside, numbers[rounded]])
-    used, compact = np.unique(cells, return_inverse=True)
-    labels = np.concatenate([np.zeros(len(outside), np.int64), (depth < 1).astype(np.int64)])
-    return points[used], compact.reshape(cells.shape), labels
+def _around(ball: BallImage, lines: Sequence[Line], layering: Layering) -> Cells:
+    """Cells of a block with a lump, which is region 1."""
+    first, shape = np.array([[line.first] for line in lines]), tuple(len(line.near) for line in lines)
+    across = [line.across for line in lines]
+    places = product([from_boxes(len(line.near), line.first, line.across) for line in lines])
+    outside = Cells.plain(*_around_box(lines), places)
+    return with_lump(
+        outside, ball, across, lambda steps: np.ravel_multi_index(tuple(steps + first), shape), layering, region=1
+    ).used()
 
 
 def _around_box(lines: Sequence[Line]) -> tuple[Array, Array]:
@@ -191,36 +178,23 @@ def _around_box(lines: Sequence[Line]) -> tuple[Array, Array]:
     return corners, grid(counts)[~inside]
 
 
-def _places_about(corners: Array, balls: Sequence[BallImage]) -> Array:
-    """Places (n,) of corners as `_mirrored_places` gives them, each about the lump that is nearest to it."""
-    parts = [np.abs(np.linalg.solve(ball.stretch, (corners - ball.center).T).T) for ball in balls]
-    nearest = np.argmin([np.linalg.norm(part, axis=1).round(9) for part in parts], axis=0)
-    distances = np.choose(nearest[:, None], parts)
-    return _placed(distances)
+def _order(places: Array) -> Array:
+    """Order (n,) of corners by which cells are split, the same for a cell and for its mirror images about a middle.
 
-
-def _mirrored_places(corners: Array, center: Array, stretch: Array) -> Array:
-    """Places (n,) of corners in an order that is the same for a cell and for its mirror images about the centre.
-
-    What is farther from the lump comes first, in lengths in which it is a ball, so that a curved side sees the tip of its
-    tetrahedron; on the ball, what is nearest to a corner of the cube around it.
+    What is farther from the middle comes first, so that a curved side sees the tip of its tetrahedron; on a lump, what is nearest
+    to a corner of the cube around it. ``places`` (n, 3) are distances from the middle.
     """
-    return _placed(np.abs(np.linalg.solve(stretch, (corners - center).T).T))
-
-
-def _placed(distances: Array) -> Array:
-    """Places (n,) of corners by their distances (n, 3) from a middle, the farthest first."""
-    distances = (distances / distances.max()).round(9)
+    distances = (places / places.max()).round(9)
     return ranks((*distances.T, distances.max(axis=1), -np.linalg.norm(distances, axis=1).round(9)))
 
 
-def _sixths(cells: Array, places: Array) -> Array:
+def _sixths(cells: Array, order: Array) -> Array:
     """Six tetrahedra for each cell (H, 8): from its first corner to the two triangles of each side beyond, cut alike."""
     sides = cells[:, SIDES]
-    start = places[sides].argmin(axis=2)
+    start = order[sides].argmin(axis=2)
     turned = np.take_along_axis(sides, (start[:, :, None] + np.arange(4)) % 4, axis=2)
     triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2)
-    apex = np.take_along_axis(cells, places[cells].argmin(axis=1)[:, None], axis=1)
+    apex = np.take_along_axis(cells, order[cells].argmin(axis=1)[:, None], axis=1)
     beyond = (sides != apex[:, :, None]).all(axis=2)
     chosen = triangles[beyond][:, :, ::-1]  # (3 H, 2, 3), by cell
     tips = np.broadcast_to(np.repeat(apex, 3, axis=0)[:, :, None], (*chosen.shape[:2], 1))

@@ -12,10 +12,6 @@ from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 
-SHEATHS: tuple[tuple[float, ...], ...] = ((0.5,), (0.6,), ())
-"""Where layers of cells between one lump and the box around it end, as parts of the way; the next are tried where few cells leave
-their curved sides no room. With a single layer, however small the cells along the surface, a ball of 75 times the modulus of the
-tissue, 3 mm below a jaw, presses on its taxel 18 % too hard, with two 4 to 7 %, with three, which rarely find room, 1 %."""
 EDGE_SHARE = 1 / 3
 """Thickness of the cells at the faces over that of the cells far from them, if none is given."""
 ROOM = 0.4
@@ -66,11 +62,6 @@ class Line:
         below = (begin - self.near) / (begin or np.inf)
         above = (self.near - end) / ((self.near[-1] - end) or np.inf)
         return np.maximum(0.0, np.maximum(below, above))
-
-
-def sheath(wall: Array, box: Array, shares: Sequence[float]) -> list[Array]:
-    """Layers of corners (n, 3) from the ``wall`` of one lump to the ``box`` around it, those between at parts of the way."""
-    return [wall, *(wall + share * (box - wall) for share in shares), box]
 
 
 def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockMeshSettings, finer: int) -> list[Line]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded.cells import Cells, Layering, from_boxes, with_lump
 from tactsim.mesh.graded.lines import (
     LEAST_BETWEEN,
     NEAR,
@@ -28,7 +30,7 @@ from tactsim.mesh.graded.lines import (
     planes_across,
     spaced,
 )
-from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
+from tactsim.mesh.structured_block import grid, product
 
 
 @dataclass(frozen=True)
@@ -176,22 +178,26 @@ def _away(line: Array, first: Array, across: int) -> Array:
     return away
 
 
-def row_cells(row: Row) -> tuple[Array, Array, Array]:
-    """Corners (n, 3), cells (H, 8) and regions (H,): of the lump k in the row k + 1, of the tissue 0."""
-    corners = _grid_corners(row)
-    shape = [len(away) for away in row.away]
+def row_cells(row: Row, layering: Layering) -> Cells:
+    """Cells around a row: the lump k in it is region k + 1, the tissue 0."""
+    shape = tuple(len(away) for away in row.away)
     counts = [planes - 1 for planes in shape]
     place = product([np.arange(count) for count in counts])
     inside = np.zeros(len(place), bool)
     for first in row.first:
         inside |= ((place >= first) & (place < first + row.shared)).all(axis=1)
-    cells, labels = [grid(counts)[~inside]], [np.zeros(int((~inside).sum()), np.int64)]
+    places = product([from_boxes(shape[axis], row.first[:, axis], int(row.shared[axis])) for axis in range(3)])
+    cells = Cells.plain(_grid_corners(row), grid(counts)[~inside], places)
     for number, (lump, first) in enumerate(zip(row.lumps, row.first, strict=True), 1):
-        corners, rounded, depth = _rounded(corners, lump, first, row, shape)
-        cells.append(rounded)
-        labels.append(np.where(depth < 1, number, 0))
-    used, compact = np.unique(np.vstack(cells), return_inverse=True)
-    return corners[used], compact.reshape(-1, 8), np.concatenate(labels)
+        on_box = partial(_on_box, first=first, shape=shape)
+        turned = partial(_leaning, lump=lump, row=row)
+        cells = with_lump(cells, lump.ball, row.shared.tolist(), on_box, layering, region=number, turned=turned)
+    return cells.used()
+
+
+def _on_box(steps: Array, first: Array, shape: Sequence[int]) -> Array:
+    """Numbers (s,) of corners of a grid so many steps (3, s) from the first of a box."""
+    return np.ravel_multi_index(tuple(steps + first[:, None]), tuple(shape))
 
 
 def _grid_corners(row: Row) -> Array:
@@ -207,21 +213,6 @@ def _grid_corners(row: Row) -> Array:
             near, far = (lines[axis][index[:, row.axis], index[:, axis]] for lines in (row.near, row.far))
             corners[:, axis] = near + others * (far - near)
     return corners
-
-
-def _rounded(corners: Array, lump: Lump, first: Array, row: Row, shape: Sequence[int]) -> tuple[Array, Array, Array]:
-    """All corners with those of a lump added, its cells (H, 8) and the depth (H,) of each, below 1 in the lump."""
-    logical = product([np.linspace(-1, 1, cells + 1) for cells in row.shared])
-    core = grid(list(row.shared))
-    shell, quads = skin(core, logical)
-    steps = np.stack(np.unravel_index(shell, [cells + 1 for cells in row.shared])) + first[:, None]
-    on_box = np.ravel_multi_index(tuple(steps), tuple(shape))
-    inner = lump.center + _leaning(blown(logical), lump, row) @ lump.ball.stretch
-    wall = lump.center + _leaning(directions(logical[shell]), lump, row) @ lump.ball.stretch
-    added, cells, depth = stacked(inner, shell, quads, core, [wall, corners[on_box]])
-    fresh = len(inner) + len(shell)
-    numbers = np.concatenate([len(corners) + np.arange(fresh), on_box])
-    return np.vstack([corners, added[:fresh]]), numbers[cells], depth
 
 
 def _leaning(points: Array, lump: Lump, row: Row) -> Array:

@@ -76,7 +76,7 @@ def test_each_form_is_meshed_soundly(name):
 
 def test_cells_split_in_any_order_would_make_wedges(monkeypatch):
     generator = np.random.default_rng(1)
-    monkeypatch.setattr(graded_module, "_placed", lambda distances: generator.permutation(len(distances)))
+    monkeypatch.setattr(graded_module, "_order", lambda places: generator.permutation(len(places)))
     assert wedges(graded_block(SIZE, [CENTRED]).mesh, [CENTRED]) > 0
 
 
