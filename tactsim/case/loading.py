@@ -74,6 +74,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         path = case_path(path)
         document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
+    overrides = [overrides] if isinstance(overrides, str) else overrides
     named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     for override, value in named:
         try:

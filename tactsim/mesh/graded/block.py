@@ -22,10 +22,10 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.curving import fitted
+from tactsim.mesh.graded.bricks import Lump, brick_cells, bricks_of, check_apart
 from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
 from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
-from tactsim.mesh.graded.row import Lump, in_a_row, row_cells, row_of
 from tactsim.mesh.graded.sections import Hollow, as_hollow
 from tactsim.mesh.graded.side_by_side import bundle_of
 from tactsim.mesh.structured_block import SIDES, grid, product, ranks
@@ -40,16 +40,16 @@ def graded_block(
 ) -> BlockMesh:
     """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the inclusions.
 
-    A sphere or an ellipsoid may lie anywhere in the block, several in a row along one of its axes; tubes lead along one axis side
-    by side, one lump among them at most. Cells are wanted ``edge_size`` thick at the faces (by default a third of ``size``), each
-    next one longer by ``growth`` up to ``size``; on an inclusion they are at most about ``inclusion_size`` long, shorter where
-    longer ones would be badly curved.
+    A sphere or an ellipsoid may lie anywhere in the block, several where boxes along its axes hold them apart; tubes lead along
+    one axis side by side, one lump among them at most. Cells are wanted ``edge_size`` thick at the faces (by default a third of
+    ``size``), each next one longer by ``growth`` up to ``size``; on an inclusion they are at most about ``inclusion_size`` long,
+    shorter where longer ones would be badly curved.
 
     Raises
     ------
     InputError
-        If an inclusion is of another kind, they do not stand in a row or side by side or do not suit the block, or the cells are
-        too many.
+        If an inclusion is of another kind, they are not apart or side by side or do not suit the block, or the cells
+        are too many.
     ConvergenceError
         If the mesh misses the volumes or the shape asked for.
     """
@@ -84,7 +84,7 @@ def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str
         if tubes:
             bundle_of(tubes, lumps[0] if lumps else None, extent, BlockMeshSettings(), 0)
         elif len(lumps) > 1:
-            in_a_row(lumps)
+            check_apart(lumps)
     except InputError as error:
         return str(error)
     return None
@@ -135,16 +135,14 @@ def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], ext
 
 
 def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int, layering: Layering) -> Cells:
-    """Cells around one lump, or around several in a row."""
+    """Cells around one lump, or around several."""
     if len(lumps) == 1:
         around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)
         _check_size([len(line.near) - 1 for line in around])
         return _around(lumps[0].ball, around, layering)
-    row = row_of(lumps, extent, settings, finer)
-    _check_size([len(away) - 1 for away in row.away])
-    cells = row_cells(row, layering)
-    numbers = np.array([0, *(1 + next(k for k, lump in enumerate(lumps) if lump is here) for here in row.lumps)])
-    return replace(cells, regions=numbers[cells.regions])
+    bricks = bricks_of(lumps, extent, settings, finer)
+    _check_size([len(away) - 1 for away in bricks.away])
+    return brick_cells(bricks, layering)
 
 
 def _check_size(cells: Sequence[int]) -> None:

@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded.bricks import Lump
 from tactsim.mesh.graded.lines import (
     CORE_ROOM,
     LEAST_ALONG,
@@ -26,7 +27,6 @@ from tactsim.mesh.graded.lines import (
     spaced,
 )
 from tactsim.mesh.graded.planes_along import planes_along
-from tactsim.mesh.graded.row import Lump
 from tactsim.mesh.graded.sections import Hollow, Sections, leading_axis, sections_of
 
 
