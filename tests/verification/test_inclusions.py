@@ -97,7 +97,7 @@ def test_a_ball_concentrates_the_stress_as_eshelby_says(ratio, size, growth, ver
 INNER, OUTER, WALL, TUBE_TOLERANCE = 4e-3, 8e-3, NeoHookean(c10=10e3), 5e-3
 """Radii in m and material of a vessel; the tolerance is the demanded one."""
 RINGS_TOLERANCE = 1e-3
-"""Of two rings of cells in the wall and 24 around it: 4.6e-4 was found, 6e-3 with one ring and 16, 6e-5 with three and 40."""
+"""Of two rings of cells in the wall and 24 around it: 4.6e-4 was found, 6e-3 with one ring and 16, 2e-5 with three and 40."""
 
 
 def closed_form_stretch(pressure):

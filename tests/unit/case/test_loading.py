@@ -38,6 +38,10 @@ def test_overrides_are_validated_like_the_file(case_file: Path) -> None:
     assert case.output.fields == "last"
 
 
+def test_a_single_override_may_be_a_text_as_it_is(case_file: Path) -> None:
+    assert load_case(case_file, "output.fields=last").output.fields == "last"
+
+
 def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -> None:
     text = CASE_TEXT.replace("radius: 20 mm", "raduis: 20 mm").replace("thickness: 10 mm", "thickness: -1 mm")
     text = text.replace("modulus: 3 kPa", "modulus: 3 mm").replace("kind: stiff", "kind: stif") + "  friction: 3\n"

@@ -20,14 +20,14 @@ TWO_LUMPS = np.array(
         [[0.6037, 0.3582, 0.2831], [0.3624, 0.37, 0.3205], [0.2798, 0.3195, 0.7986]],
     ]
 )
-"""What cases/grasp_two_lumps.yaml reads in N: balls at (10, 10, 12) and (30, 30, 8) mm."""
+"""What cases/grasp_two_lumps.yaml read in N on tetrahedra: balls at (10, 10, 12) and (30, 30, 8) mm."""
 PLAIN = np.array(
     [
         [[0.2692, 0.3044, 0.2681], [0.3049, 0.345, 0.3051], [0.27, 0.3066, 0.268]],
         [[0.2718, 0.3066, 0.271], [0.3072, 0.3449, 0.3026], [0.2679, 0.3045, 0.2706]],
     ]
 )
-"""The same block without them, on the tetrahedra of cases/localize_two_lumps.yaml."""
+"""The same block without them, on like tetrahedra."""
 PLACES = np.array([[10e-3, 10e-3, 12e-3], [30e-3, 30e-3, 8e-3]])
 OFFERED = offered_estimators()
 DIFFERENCES = [name for name, one in OFFERED.items() if one.needs_reference and not one.gives_classes]

@@ -10,7 +10,7 @@ from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.curving import Layers
-from tactsim.mesh.graded.block import graded_block
+from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, layer_ends
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -124,13 +124,9 @@ def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
     with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):
         graded_block(SIZE, [needle], COARSE)
-    above_each_other = [
-        CENTRED,
-        Sphere(center=(27e-3, 27e-3, 14e-3), radius=3e-3),
-        Sphere(center=(27e-3, 13e-3, 6e-3), radius=3e-3),
-    ]
-    with pytest.raises(InputError, match="each must end before the next begins"):
-        GradedSource(kind="graded").sourced(SIZE, above_each_other)
+    askew = [CENTRED, Sphere(center=(27e-3, 27e-3, 14e-3), radius=3e-3), Sphere(center=(27e-3, 13e-3, 6e-3), radius=3e-3)]
+    with pytest.raises(InputError, match="along x, y or z one of each two must end before the other begins"):
+        GradedSource(kind="graded").sourced(SIZE, askew)
     with pytest.raises(InvalidQuantity, match="protrudes"):
         graded_block(SIZE, [Sphere(center=(20e-3, 20e-3, 3e-3), radius=5e-3)], COARSE)
 
@@ -166,6 +162,41 @@ def test_lumps_in_a_row_keep_their_numbers_and_places(axis):
     for number, lump in enumerate(lumps, 1):
         inside = np.linalg.norm(centres - lump.center, axis=1) < lump.radius
         np.testing.assert_array_equal(block.mesh.regions == number, inside)
+
+
+LUMPS = {
+    "corner": [(10, 10, 10), (30, 10, 10), (30, 30, 10)],
+    "askew corner": [(10, 12, 9), (30, 9, 12), (27, 30, 10)],
+    "square": [(10, 10, 10), (30, 10, 10), (30, 30, 10), (10, 30, 10)],
+    "one above, one beside": [(12, 20, 14.5), (12, 20, 5.5), (30, 20, 14.5)],
+    "cube": [(x, y, z) for x in (10, 30) for y in (10, 30) for z in (5, 15)],
+}
+
+
+@pytest.mark.parametrize("name", LUMPS)
+def test_lumps_in_no_row_fill_bricks(name):
+    lumps = [Sphere(center=tuple(1e-3 * np.array(place)), radius=3e-3) for place in LUMPS[name]]
+    assert graded_misfit(SIZE, lumps) is None
+    block = graded_block(SIZE, lumps, COARSE)
+    assert np.abs(block.volume_errors).max() < VOLUME_TOLERANCE
+    assert block.quality.minimum > 0.1
+    centres = block.mesh.nodes[block.mesh.elements[:, 4:]].mean(axis=1)
+    for number, lump in enumerate(lumps, 1):
+        np.testing.assert_array_equal(block.mesh.regions == number, np.linalg.norm(centres - lump.center, axis=1) < lump.radius)
+
+
+def test_a_row_that_leans_much_has_level_planes_and_one_that_leans_little_has_not():
+    def heights(lean):
+        pair = [
+            Sphere(center=(10e-3, 20e-3 - lean, 10e-3), radius=3e-3),
+            Sphere(center=(30e-3, 20e-3 + lean, 10e-3), radius=3e-3),
+        ]
+        nodes = graded_block(SIZE, pair, COARSE).mesh.nodes
+        return [np.unique(nodes[(nodes[:, 0] == end) & (nodes[:, 2] == 0), 1].round(9)) for end in (0.0, SIZE[0])]
+
+    np.testing.assert_allclose(*heights(10e-3), atol=1e-9)
+    left, right = heights(4e-3)
+    assert np.abs(left - right).max() > 1e-3
 
 
 @pytest.mark.parametrize("lean", [0.0, 6e-3])

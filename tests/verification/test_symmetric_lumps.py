@@ -1,0 +1,51 @@
+"""Two equal balls on a diagonal of the block press equal taxels equally: the mesh does not tell them apart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.mesh.graded import bricks
+
+SHARE, LEANING = 1e-4, 5e-4
+"""Difference allowed of taxels that are images of each other, over the largest taxel, and what leaning planes show at least."""
+
+
+def difference():
+    """Of taxels from their images in the diagonal plane, and of upper ones from lower ones turned about the middle."""
+    material = {"kind": "neo_hookean", "c10": 500e3}
+    centers = (10e-3, 10e-3, 10e-3), (30e-3, 30e-3, 10e-3)
+    result = Grasp.model_validate(
+        {
+            "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
+            "inclusions": [{"shape": {"kind": "sphere", "center": at, "radius": 4e-3}, "material": material} for at in centers],
+            "matrix": {"rows": 3, "columns": 3, "pitch": 10e-3, "size": 9e-3},
+            "contact": {"kind": "coulomb", "friction": 0.0},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-4, "duration": 1.0}]},
+            "mesh": {"kind": "graded", "size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 2.2e-3, "growth": 1.0},
+            "time": {"steps": 1},
+        }
+    ).run()
+    assert result.status == "converged"
+    upper, lower = (np.array(result.quantities[f"taxel_force_{side}"].value) for side in ("upper", "lower"))
+    differences = np.stack([upper - lower[::-1, ::-1], upper - upper.T])
+    return float(np.abs(differences).max() / upper.max())
+
+
+def test_taxels_over_balls_that_mirror_each_other_are_equal(verification_record):
+    found = difference()
+    assert found < SHARE
+    known = {
+        "reference": "taxels that are images of each other",
+        "kind": "invariance",
+        "mesh": "graded, 4 and 1.6 mm",
+        "tolerance": SHARE,
+    }
+    verification_record("equal taxels over two balls, difference", found, 0.0, scale=1.0, **known)
+
+
+@pytest.mark.slow
+def test_planes_that_lean_from_one_ball_to_the_other_would_tell_them_apart(monkeypatch):
+    monkeypatch.setattr(bricks, "LEAN", np.inf)
+    assert difference() > LEANING
