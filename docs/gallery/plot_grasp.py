@@ -16,7 +16,7 @@ import tactsim as ts
 
 # %%
 # Lengths carry their unit. ``icf_stable`` is a soft silicone of 10.7 kPa, the lump is twenty times as stiff. The mesh ``graded``
-# has few cells, thin at the faces and rounded around the one lump; without ``mesh`` the block is filled with tetrahedra.
+# has few cells, thin at the faces and rounded around the lump. It is the default here; the sizes given are coarser ones.
 grasp = ts.Grasp(
     block=ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable"),
     inclusions=[
