@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import FLATNESS, VOLUME_TOLERANCE, BlockMesh, Quality
 from tactsim.mesh.constrained import Constraints
 from tactsim.mesh.labelling import Interfaces, Surfaces, interfaces
+from tactsim.mesh.layers import Layers
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.smoothing import smoothed
@@ -27,66 +28,6 @@ SMALLEST_SHARE = 0.25
 """Fraction of the displacement onto its surface below which a mid-node returns to the midpoint of its edge."""
 LEAST_QUALITY = 0.02
 """Mean ratio below which a mesh is refused."""
-_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-
-
-@dataclass(frozen=True)
-class Layers:
-    """Layers of cells between curved surfaces and the boxes around them.
-
-    Attributes
-    ----------
-    beneath : (n,) corner of the surface beneath each corner of a layer, of the surface itself and of the box; -1 elsewhere
-    share : (n,) way from the surface, as a part of that to the box
-    """
-
-    beneath: Array
-    share: Array
-
-    @classmethod
-    def none(cls, count: int) -> Layers:
-        """Corners (count,) in no layer."""
-        return cls(np.full(count, -1), np.zeros(count))
-
-    def with_body(self, inside: int, box: Array, ends: Array) -> Layers:
-        """These corners, then those of a body: some inside it, those of its surface, and as many at each end (k,) of a layer.
-
-        The last layer leads from the last end to the corners ``box`` (w,), which are among these.
-        """
-        wall = len(self.beneath) + inside + np.arange(len(box))
-        beneath, share = self.beneath.copy(), self.share.copy()
-        beneath[box], share[box] = wall, 1.0
-        return Layers(
-            np.concatenate([beneath, np.full(inside, -1), np.tile(wall, 1 + len(ends))]),
-            np.concatenate([share, np.zeros(inside), np.repeat([0.0, *ends], len(box))]),
-        )
-
-    def repeated(self, times: int) -> Layers:
-        """These corners several times, one after the other."""
-        count, copies = len(self.beneath), np.tile(self.beneath, (times, 1))
-        beneath = np.where(copies < 0, -1, copies + count * np.arange(times)[:, None])
-        return Layers(beneath.ravel(), np.tile(self.share, times))
-
-    def with_others(self, count: int) -> Layers:
-        """These corners, then so many in no layer."""
-        return Layers(np.append(self.beneath, np.full(count, -1)), np.append(self.share, np.zeros(count)))
-
-    def kept(self, used: Array) -> Layers:
-        """Corners ``used`` (m,), ascending, renumbered; those of surfaces beneath are among them."""
-        beneath = self.beneath[used]
-        return Layers(np.where(beneath < 0, -1, np.searchsorted(used, beneath)), self.share[used])
-
-    def bulges(self, mesh: QuadraticMesh, constraints: Constraints) -> tuple[Array, Array, Array]:
-        """Mid-nodes (m,) of edges in layers, the corners (m, 2) of the surface beneath each, and its way (m, 3) in m with it."""
-        edges, middles = _edges(mesh)
-        beneath, share = self.beneath[edges], self.share[edges].mean(axis=1)
-        on = constraints.on[beneath].all(axis=1)
-        within = (beneath >= 0).all(axis=1) & (beneath[:, 0] != beneath[:, 1]) & (share > 0) & (share < 1)
-        chosen = within & on[:, len(FACES) :].any(axis=1)
-        beneath, on = np.sort(beneath[chosen], axis=1), on[chosen]
-        straight = mesh.nodes[beneath].mean(axis=1)
-        bulge = Constraints(constraints.patches, on, constraints.size).restored(straight) - straight
-        return middles[chosen], beneath, (1 - share[chosen])[:, None] * bulge
 
 
 def fitted(
@@ -289,13 +230,6 @@ def _split_between(corners: Array, simplices: Array, labels: Array, walls: Inter
 
 def _middle_nodes(mesh: QuadraticMesh, pairs: Array) -> Array:
     """Numbers (m,) of the nodes between corners (m, 2), ascending."""
-    edges, middles = _edges(mesh)
+    edges, middles = mesh.edges()
     count = mesh.corner_count
     return middles[np.searchsorted(edges[:, 0] * count + edges[:, 1], pairs[:, 0] * count + pairs[:, 1])]
-
-
-def _edges(mesh: QuadraticMesh) -> tuple[Array, Array]:
-    """Edges (m, 2) in order, by their corners ascending, and the node between them (m,)."""
-    edges = np.concatenate([np.sort(mesh.elements[:, list(edge)], axis=1) for edge in _EDGES])
-    _, first = np.unique(edges[:, 0] * mesh.corner_count + edges[:, 1], return_index=True)
-    return edges[first], mesh.elements[:, 4:].T.ravel()[first]

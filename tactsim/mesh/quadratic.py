@@ -45,6 +45,12 @@ class QuadraticMesh:
         """Number of corner nodes."""
         return int(self.elements[:, : self.dim + 1].max()) + 1
 
+    def edges(self) -> tuple[Array, Array]:
+        """Edges (m, 2) by their corners, ascending, and the node in the middle of each (m,)."""
+        pairs = np.concatenate([np.sort(self.elements[:, list(edge)], axis=1) for edge in _EDGES[self.dim]])
+        _, first = np.unique(pairs[:, 0] * self.corner_count + pairs[:, 1], return_index=True)
+        return pairs[first], self.elements[:, self.dim + 1 :].T.ravel()[first]
+
     def boundary_facets(self) -> tuple[Array, Array]:
         """Facets of one element only, outward oriented: node numbers (F, 3) edges or (F, 6) triangles, and their elements."""
         corners = np.concatenate([self.elements[:, list(facet)] for facet in _FACETS[self.dim]])

@@ -24,7 +24,6 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.cells import Cells, Layering, from_boxes, with_lump
@@ -40,28 +39,11 @@ from tactsim.mesh.graded.lines import (
     planes_across,
     spaced,
 )
+from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.structured_block import grid, product
 
 LEAN = 0.5
 """Way across a row over that along it, from lump to lump, above which lumps apart across it too have boxes apart there."""
-
-
-@dataclass(frozen=True)
-class Lump:
-    """A ball and its bounds (2, 3) in m."""
-
-    ball: BallImage
-    bounds: Array
-
-    @property
-    def half(self) -> Array:
-        """Half widths (3,) in m."""
-        return np.asarray(np.diff(self.bounds, axis=0)[0] / 2)
-
-    @property
-    def center(self) -> Array:
-        """Its middle (3,) in m."""
-        return self.ball.center
 
 
 @dataclass(frozen=True)
@@ -86,6 +68,15 @@ class Bricks:
     far: tuple[Array, ...]
     first: Array
     away: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class _Row:
+    """The axis along which lumps stand in a row, its planes (p,) in m, and the sides (n, 2) in m of the box of each lump."""
+
+    axis: int
+    planes: Array
+    sides: Array
 
 
 def check_apart(lumps: Sequence[Lump]) -> None:
@@ -136,11 +127,10 @@ def bricks_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings,
     near, far, first = [np.zeros(0)] * 3, [np.zeros(0)] * 3, np.zeros((len(lumps), 3), np.int64)
     for k in (k for k in range(3) if k not in leaning):
         near[k], far[k], first[:, k] = _level(lumps, k, float(extent[k]), int(shared[k]), settings)
-    for k in leaning:
-        assert row is not None
-        near[k], far[k], first[:, k] = _leading(
-            lumps, (row, k), (near[row], first[:, row]), float(extent[k]), shared=shared, settings=settings
-        )
+    if row is not None:
+        line = _Row(row, near[row], near[row][np.column_stack([first[:, row], first[:, row] + shared[row]])])
+        for k in leaning:
+            near[k], far[k], first[:, k] = _leading(lumps, k, line, float(extent[k]), across=int(shared[k]), settings=settings)
     away = tuple(_away(near[k][0] if near[k].ndim > 1 else near[k], first[:, k], int(shared[k])) for k in range(3))
     return Bricks(0 if row is None else row, tuple(lumps), shared, tuple(near), tuple(far), first, away)
 
@@ -172,26 +162,15 @@ def _level(
 
 
 def _leading(
-    lumps: Sequence[Lump],
-    axes: tuple[int, int],
-    row: tuple[Array, Array],
-    length: float,
-    *,
-    shared: Array,
-    settings: BlockMeshSettings,
+    lumps: Sequence[Lump], axis: int, row: _Row, length: float, *, across: int, settings: BlockMeshSettings
 ) -> tuple[Array, Array, Array]:
-    """Ascending places (p, planes) in m of planes along the second axis that lead from lump to lump in a row along the first.
-
-    The planes (p,) in m of the row and those (n,) at which its boxes begin are given.
-    """
-    (axis, other), (line, firsts) = axes, row
-    order = np.argsort([lump.center[axis] for lump in lumps])
-    middles, bounds = (np.array([getattr(lumps[k], name)[..., other] for k in order]) for name in ("center", "bounds"))
-    planes, begin = planes_across(middles, bounds, length, int(shared[other]), settings, pressed=other == 2)
-    sides = np.stack([line[firsts[order]], line[firsts[order] + shared[axis]]], axis=1)
-    alongs = np.array([lumps[k].center[axis] for k in order])
-    knots, owner = knots_between(alongs, middles, sides, length=float(line[-1]))
-    near, far = (_between(knots, [lines[k] for k in owner], line) for lines in planes)
+    """Ascending places (p, planes) in m of planes that lead from lump to lump, near and far, and where each box begins (n,)."""
+    order = np.argsort([lump.center[row.axis] for lump in lumps])
+    middles, bounds = (np.array([getattr(lumps[k], name)[..., axis] for k in order]) for name in ("center", "bounds"))
+    planes, begin = planes_across(middles, bounds, length, across, settings, pressed=axis == 2)
+    alongs = np.array([lumps[k].center[row.axis] for k in order])
+    knots, owner = knots_between(alongs, middles, row.sides[order], length=float(row.planes[-1]))
+    near, far = (_between(knots, [lines[k] for k in owner], row.planes) for lines in planes)
     return near, far, np.full(len(lumps), begin)
 
 

@@ -12,12 +12,12 @@ from tactsim.array import Array
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.curving import Layers
+from tactsim.mesh.layers import Layers
 from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
 
 LEAST_LAYERS = 3
 """Layers of cells between a body and the box around it, at least. With one, however small the cells along the surface, a ball of
-75 times the modulus of the tissue, 3 mm below a jaw, presses on its taxel 18 % too hard, with two 5 %, with three 1.6 %."""
+75 times the modulus of the tissue, 3 mm below a jaw, presses on its taxel 18 % too hard, with two 5 %, with three 1 %."""
 LAYER_GROWTH = 1.25
 """Thickness of a layer over that of the one beneath."""
 CORE_PLACE, WALL_PLACE = 0.4, 0.8

@@ -11,8 +11,8 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded.bricks import Lump
 from tactsim.mesh.graded.lines import REACH, ROOM, box_shares, edge_thickness, mirrored_line
+from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.sections import Hollow
 
 MOST_TURN = 0.3

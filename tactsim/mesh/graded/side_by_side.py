@@ -11,7 +11,6 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded.bricks import Lump
 from tactsim.mesh.graded.lines import (
     CORE_ROOM,
     LEAST_ALONG,
@@ -26,6 +25,7 @@ from tactsim.mesh.graded.lines import (
     planes_across,
     spaced,
 )
+from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.planes_along import planes_along
 from tactsim.mesh.graded.sections import Hollow, Sections, leading_axis, sections_of
 
