@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -161,7 +162,8 @@ def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord
 
     if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
         return None
-    return lambda record: console.note(step_line(record, case.experiment.history_units, case.experiment.extent))
+    begin, units, extent = time.monotonic(), case.experiment.history_units, case.experiment.extent
+    return lambda record: console.note(step_line(record, units, extent, time.monotonic() - begin))
 
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:

@@ -71,19 +71,27 @@ VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 
 
-def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, float] | None = None) -> str:
+def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, float] | None = None, elapsed: float = 0.0) -> str:
     """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``.
 
     Parameters
     ----------
     record, units : the step, and the unit of each of its values
     extent : the value that grows during the run and its last value, of which the step has reached so many per cent
+    elapsed : time in s since the run began; from a second on the time left is told, as if the rest took as long for its length
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
     values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
-    reached = f" {record.values.get(extent[0], 0.0) / extent[1]:4.0%}" if extent else ""
+    share = record.values.get(extent[0], 0.0) / extent[1] if extent else 0.0
+    reached = f" {share:4.0%}" if extent else ""
     effort = f"{record.newton_iterations} iterations, residual {record.residual:.1e}"
-    return "  ".join([f"step {record.step:4d}{reached}", *values, effort])
+    left = [f"about {_rough(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
+    return "  ".join([f"step {record.step:4d}{reached}", *values, effort, *left])
+
+
+def _rough(seconds: float) -> str:
+    """A time in s or in minutes, as far as a guess goes."""
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
 
 
 def _duration(timing: Mapping[str, float]) -> str:

@@ -57,7 +57,12 @@ def test_a_step_is_one_line() -> None:
 
 def test_a_step_says_how_far_the_run_is() -> None:
     record = StepRecord(3, 5, 1e-12, {"time": 0.5})
-    assert step_line(record, {"time": "s"}, ("time", 2.0)).startswith("step    3  25%  time 500 ms")
+    line = step_line(record, {"time": "s"}, ("time", 2.0))
+    assert line.startswith("step    3  25%  time 500 ms")
+    assert "left" not in line
+    assert step_line(record, {"time": "s"}, ("time", 2.0), 12.0).endswith("about 36 s left")
+    assert step_line(record, {"time": "s"}, ("time", 2.0), 60.0).endswith("about 3 min left")
+    assert "left" not in step_line(record, {"time": "s"}, ("time", 0.5), 12.0), "the run is at its end"
 
 
 def test_a_line_shows_the_first_values_that_the_units_name() -> None:
