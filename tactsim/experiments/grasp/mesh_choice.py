@@ -11,7 +11,6 @@ from tactsim.errors import ConvergenceError
 from tactsim.interfaces import Inclusion
 from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource, Size, SourcedBlock, TetrahedraSource
 from tactsim.mesh.any_inclusion import inclusion_name
-from tactsim.mesh.graded.block import graded_misfit
 
 
 def chosen_source(mesh: AnyBlockSource, size: Size, shapes: Sequence[Inclusion], jaws: Sequence[Jaw]) -> AnySource:
@@ -51,6 +50,8 @@ def check_served(mesh: AnyBlockSource, size: Size, shapes: Sequence[Inclusion]) 
     ValueError
         With the kind, the inclusion and what to take instead.
     """
+    from tactsim.mesh.graded.block import graded_misfit
+
     for number, shape in enumerate(shapes, 1):
         if shape.hollow and mesh.kind == "structured":
             raise ValueError(

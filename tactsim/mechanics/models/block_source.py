@@ -1,11 +1,14 @@
-"""Where the mesh of a block comes from: made of tetrahedra, built of cells, or read from a file."""
+"""Where the mesh of a block comes from: made of tetrahedra, built of cells, or read from a file.
+
+What makes a mesh is loaded when one is made, so that a wrong word in a case is told without it.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -15,16 +18,12 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.curving import assembled
-from tactsim.mesh.graded.block import graded_block, graded_misfit
-from tactsim.mesh.labelling import Surfaces
-from tactsim.mesh.mesh_store import content_hash, stored_block_mesh
-from tactsim.mesh.reading import read_mesh
-from tactsim.mesh.structured_block import morphed_block, structured_block
-from tactsim.mesh.wholeness import check_whole
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.mesh.labelling import Surfaces
 
 Size = tuple[float, float, float]
 FITS = 1e-6
@@ -45,6 +44,13 @@ class SourcedBlock:
     content: str
     origin: str
 
+    @classmethod
+    def of(cls, block: BlockMesh, origin: str) -> Self:
+        """A mesh that was just made."""
+        from tactsim.mesh.mesh_store import content_hash
+
+        return cls(block, content_hash(block.mesh), origin)
+
 
 def _sizes(source: BlockMeshSettings) -> BlockMeshSettings:
     """The element sizes of a source alone, by which meshes are named."""
@@ -58,6 +64,8 @@ class TetrahedraSource(BlockMeshSettings):
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m, shipped, from the cache, or made now."""
+        from tactsim.mesh.mesh_store import stored_block_mesh
+
         stored = stored_block_mesh(size, inclusions, _sizes(self))
         return SourcedBlock(stored.block, stored.content, stored.origin)
 
@@ -77,13 +85,14 @@ class LayersSource(BlockMeshSettings):
         """
         if len(inclusions) != 1:
             raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
-        block = morphed_block(size, inclusions[0], _sizes(self))
-        return SourcedBlock(block, content_hash(block.mesh), "built in layers")
+        from tactsim.mesh.structured_block import morphed_block
+
+        return SourcedBlock.of(morphed_block(size, inclusions[0], _sizes(self)), "built in layers")
 
 
 class GradedSource(BlockMeshSettings):
-    """Few cells, thin at the faces, rounded around spheres and ellipsoids in a row, in rings around tubes: the fastest for its
-    accuracy."""
+    """Few cells, thin at the faces, rounded around spheres and ellipsoids, in rings around tubes: the fastest for its accuracy.
+    Several lumps are served where along x, y or z one of each two ends before the other begins."""
 
     kind: Literal["graded"] = "graded"
     size: Positive = 6e-3
@@ -102,8 +111,9 @@ class GradedSource(BlockMeshSettings):
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m around its inclusions, if any."""
-        block = graded_block(size, inclusions, _sizes(self))
-        return SourcedBlock(block, content_hash(block.mesh), "graded cells")
+        from tactsim.mesh.graded.block import graded_block
+
+        return SourcedBlock.of(graded_block(size, inclusions, _sizes(self)), "graded cells")
 
 
 class StructuredSource(FrozenModel):
@@ -126,6 +136,8 @@ class StructuredSource(FrozenModel):
         InputError
             If the cells are so coarse that no element lies in an inclusion.
         """
+        from tactsim.mesh.structured_block import structured_block
+
         block = structured_block(size, self.cells, inclusions)
         for number, volume in enumerate(block.volumes[:, 0]):
             if volume == 0:
@@ -133,7 +145,7 @@ class StructuredSource(FrozenModel):
                     f"mesh.cells {list(self.cells)} are too coarse: no element lies in {block.region_names[number]}; "
                     "take more cells or mesh.kind: tetrahedra"
                 )
-        return SourcedBlock(block, content_hash(block.mesh), "structured")
+        return SourcedBlock.of(block, "structured")
 
 
 class FileSource(FrozenModel):
@@ -162,6 +174,12 @@ class FileSource(FrozenModel):
         InputError
             If the mesh has other regions or another size than the block of the case.
         """
+        from tactsim.mesh.curving import assembled
+        from tactsim.mesh.labelling import Surfaces
+        from tactsim.mesh.mesh_store import content_hash
+        from tactsim.mesh.reading import read_mesh
+        from tactsim.mesh.wholeness import check_whole
+
         started = time.perf_counter()
         numbered = None if self.regions is None else {_tag(name): region for name, region in self.regions.items()}
         mesh = read_mesh(self.path, numbered, unit=self.unit, tag=self.tag)
@@ -223,12 +241,14 @@ class AutomaticSource(FrozenModel):
 
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()
-    """The cells around spheres and ellipsoids in a row, and around tubes."""
+    """The cells around spheres, ellipsoids and tubes."""
     tetrahedra: TetrahedraSource = TetrahedraSource()
     """The tetrahedra otherwise."""
 
     def chosen(self, size: Size, inclusions: Sequence[Inclusion], *, covered: bool) -> GradedSource | TetrahedraSource:
         """What suits these inclusions in a block of this size in m, and jaws that cover it or not."""
+        from tactsim.mesh.graded.block import graded_misfit
+
         return self.graded if covered and graded_misfit(size, inclusions) is None else self.tetrahedra
 
 
