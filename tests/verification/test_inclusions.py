@@ -138,7 +138,7 @@ def pumped_stretch(pressure, meshed, steps=2):
 @pytest.mark.parametrize(
     ("meshed", "mesh", "tolerance"),
     [
-        (TETRAHEDRA, "solid, tetrahedra of 2.4 mm", TUBE_TOLERANCE),
+        pytest.param(TETRAHEDRA, "solid, tetrahedra of 2.4 mm", TUBE_TOLERANCE, marks=pytest.mark.slow),
         (RINGS, "solid, rings of 2 mm", RINGS_TOLERANCE),
     ],
     ids=["tetrahedra", "rings"],

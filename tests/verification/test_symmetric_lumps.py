@@ -23,7 +23,7 @@ def difference():
             "matrix": {"rows": 3, "columns": 3, "pitch": 10e-3, "size": 9e-3},
             "contact": {"kind": "coulomb", "friction": 0.0},
             "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-4, "duration": 1.0}]},
-            "mesh": {"kind": "graded", "size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 2.2e-3, "growth": 1.0},
+            "mesh": {"kind": "graded", "size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 3.6e-3, "growth": 1.0},
             "time": {"steps": 1},
         }
     ).run()
