@@ -76,6 +76,7 @@ class BlockMesh:
     seconds : time that meshing took
     key : hash of what was asked for
     part : of the element size at inclusions that was asked for, with which the mesh was made: with longer ones it missed a bound
+    fewer_layers : of graded cells around the inclusions, than are made where these are not close to each other or to a face
     """
 
     mesh: QuadraticMesh
@@ -86,6 +87,7 @@ class BlockMesh:
     seconds: float
     key: str
     part: float = 1.0
+    fewer_layers: int = 0
 
     @property
     def volume_errors(self) -> Array:

@@ -113,7 +113,14 @@ class GradedSource(BlockMeshSettings):
         """The mesh of a block of this size in m around its inclusions, if any."""
         from tactsim.mesh.graded.block import graded_block
 
-        return SourcedBlock.of(graded_block(size, inclusions, _sizes(self)), "graded cells")
+        block = graded_block(size, inclusions, _sizes(self))
+        fewer = block.fewer_layers
+        few = (
+            f", {fewer} layer{'s' * (fewer > 1)} fewer than usual around inclusions close to each other or to a face"
+            if fewer
+            else ""
+        )
+        return SourcedBlock.of(block, f"graded cells{few}")
 
 
 class StructuredSource(FrozenModel):

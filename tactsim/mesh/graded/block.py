@@ -69,7 +69,8 @@ def graded_block(
         cells = _cells(inclusions, extent, settings, finer, partial(layer_ends, settings=settings, fewer=fewer))
         simplices = _sixths(cells.cells, _order(cells.places))
         try:
-            return finished(cells.corners, simplices, np.repeat(cells.regions, 6), layers=cells.layers)
+            mesh = finished(cells.corners, simplices, np.repeat(cells.regions, 6), layers=cells.layers)
+            return replace(mesh, fewer_layers=fewer)
         except ConvergenceError as error:
             reason = error
     names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))

@@ -152,6 +152,18 @@ def test_two_lumps_as_sweeps_draw_them_are_meshed_soundly():
         assert block.quality.curvature > 0
 
 
+def test_bodies_too_close_for_all_layers_have_fewer_and_the_mesh_says_so():
+    near = [
+        Sphere(center=(14.6e-3, 25.4e-3, 12.7e-3), radius=4.35e-3),
+        Sphere(center=(24.6e-3, 28.8e-3, 10e-3), radius=5.06e-3),
+    ]
+    sourced = GradedSource(**SWEPT.model_dump(include={"size", "inclusion_size", "edge_size", "growth"})).sourced(SIZE, near)
+    assert sourced.block.fewer_layers > 0
+    assert "fewer than usual around inclusions close to each other" in sourced.origin
+    alone = GradedSource().sourced(SIZE, [CENTRED])
+    assert (alone.block.fewer_layers, alone.origin) == (0, "graded cells")
+
+
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_lumps_in_a_row_keep_their_numbers_and_places(axis):
     places = np.full((3, 3), [20e-3, 20e-3, 10e-3])
