@@ -137,7 +137,7 @@ def _plain(mesh: Any, part: Mapping[str, Any]) -> Any:
     if part["smooth"]:
         normals = vtkPolyDataNormals()
         normals.SetInputData(mesh)
-        normals.SplittingOff()
+        normals.SetFeatureAngle(CREASE_ANGLE)  # an end of a tube is flat, its rim sharp
         normals.Update()
         mesh = normals.GetOutput()
     actor = _actor(mesh)

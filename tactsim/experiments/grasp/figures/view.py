@@ -50,7 +50,7 @@ def view_figure(result: Result) -> Figure:
     images = pictures(surfaces, cameras)
     with styled():
         figure = new_figure(12.0, 5.8)
-        figure.set_layout_engine("constrained", h_pad=0.08)
+        figure.set_layout_engine("constrained", h_pad=0.12)
         axes = figure.subplots(1, 2)
         for axis, camera, image, words in zip(axes, cameras, images, ("from above", "from below"), strict=True):
             axis.imshow(image, interpolation="hanning")

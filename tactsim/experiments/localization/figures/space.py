@@ -26,6 +26,8 @@ SPACE = "space.png"
 TRUE_COLOUR, ESTIMATE_COLOUR = "#009e73", "#d1242f"
 FACETS = 30
 """Edges of triangles along the block's height."""
+WITHIN = 2e-3
+"""Distance from the faces of the block, over its size, at which bodies are cut."""
 UNKNOWN_RADIUS = 0.06
 """Radius over the block's height with which the place of an inclusion of unknown size is marked."""
 _BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
@@ -90,6 +92,6 @@ def _estimated(shown: ViewedGrasp) -> Iterator[Surface]:
 
 
 def _surface(body: Solid, size: Array, colour: str) -> Surface:
-    """The surface of a body, cut at the faces of the block."""
+    """The surface of a body, cut just within the faces of the block: of two surfaces in one place either would show in spots."""
     points, triangles = body.triangles(float(size[2]) / FACETS)
-    return Surface(np.clip(points, 0.0, size), triangles, colour, smooth=True)
+    return Surface(np.clip(points, WITHIN * size, (1 - WITHIN) * size), triangles, colour, smooth=True)
