@@ -16,8 +16,9 @@ SHARES = (1.0, 0.5, 0.25, 0.1)
 """Parts of a step that are tried until the worst tetrahedron is better, after moving back onto the surfaces."""
 POWER = 3
 """Exponent of the inverse mean ratio in the energy: the worse a tetrahedron, the more it counts."""
-BARRIER = 1e-3
-"""Determinant, as a part of the mean, below which the energy rises steeply but stays finite."""
+BARRIER, LEAST_BARRIER = 1e-3, 1e-5
+"""Determinant below which the energy rises steeply but stays finite, as a part of that at the start, and of the mean at least: one
+that begins flat would have no energy."""
 
 
 def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Array], restore: Callable[[Array], Array]) -> Array:
@@ -34,10 +35,11 @@ def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Arr
     for _ in range(ROUNDS):
         start, free = best / length, directions(best)
         size = np.abs(np.linalg.det(regular_map(start, simplices)))
+        barrier = np.maximum(BARRIER * size, LEAST_BARRIER * size.mean())
 
-        def objective(step: Array, start: Array = start, size: Array = size, free: Array = free) -> tuple[float, Array]:
+        def objective(step: Array, start: Array = start, barrier: Array = barrier, free: Array = free) -> tuple[float, Array]:
             moved = start + np.einsum("nij,nj->ni", free, step.reshape(-1, 3))
-            value, gradient = _energy(moved, simplices, BARRIER * size)
+            value, gradient = _energy(moved, simplices, barrier)
             return value, np.einsum("nij,ni->nj", free, gradient).ravel()
 
         minimum = scipy.optimize.minimize(
