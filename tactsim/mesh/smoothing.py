@@ -17,8 +17,8 @@ SHARES = (1.0, 0.5, 0.25, 0.1)
 POWER = 3
 """Exponent of the inverse mean ratio in the energy: the worse a tetrahedron, the more it counts."""
 BARRIER, LEAST_BARRIER = 1e-3, 1e-5
-"""Determinant below which the energy rises steeply but stays finite, as a part of that at the start, and of the mean at least: one
-that begins flat would have no energy."""
+"""Determinant below which the energy rises steeply but stays finite, as a part of that at the start and at least of the mean:
+what begins flat would have no energy."""
 
 
 def smoothed(corners: Array, simplices: Array, directions: Callable[[Array], Array], restore: Callable[[Array], Array]) -> Array:
