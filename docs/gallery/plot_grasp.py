@@ -52,8 +52,8 @@ result
 result["taxel_force_upper"].to("mN").array.round(1)
 
 # %%
-# A grasp has five figures of its own. The maps show the mean pressure on each sensor of both jaws, seen from above, with the
-# outline of the lump.
+# A grasp has figures of its own, and one more, of its course, if it takes several steps. The maps show the mean pressure on each
+# sensor of both jaws, seen from above, with the outline of the lump.
 figures = result.plot()
 print(list(figures))
 figures["grasp_maps"]
