@@ -12,7 +12,7 @@ from tactsim.mesh.graded import lines as graded_lines
 
 SHARE = 0.03
 """Difference allowed of a taxel's force over the largest taxel's."""
-FINE, COARSE = 1.2e-3, 5e-3
+FINE, COARSE = 1.5e-3, 5e-3
 """Cells at the ball in m: six across, and as few as there may be."""
 
 
