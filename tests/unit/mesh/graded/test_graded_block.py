@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from lumps import irregular, same_mirrored, write_cells
+from scipy.spatial import KDTree
 
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
+from tactsim.mesh.graded import bricks
 from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, layer_ends
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
@@ -195,6 +197,22 @@ def test_lumps_in_no_row_fill_bricks(name):
     centres = block.mesh.nodes[block.mesh.elements[:, 4:]].mean(axis=1)
     for number, lump in enumerate(lumps, 1):
         np.testing.assert_array_equal(block.mesh.regions == number, np.linalg.norm(centres - lump.center, axis=1) < lump.radius)
+
+
+def strayed(image, nodes):
+    """Part of the nodes (n, 3) whose images are no nodes."""
+    return (KDTree(nodes).query(image)[0] > 1e-9).mean()
+
+
+def test_two_lumps_on_a_diagonal_have_a_mesh_that_is_its_own_image_unless_planes_lean(monkeypatch):
+    pair = [Sphere(center=(10e-3, 10e-3, 10e-3), radius=4e-3), Sphere(center=(30e-3, 30e-3, 10e-3), radius=4e-3)]
+    settings = BlockMeshSettings(size=4e-3, inclusion_size=1.6e-3, edge_size=3.6e-3, growth=1.0)
+    nodes = graded_block(SIZE, pair, settings).mesh.nodes
+    assert strayed(SIZE - nodes, nodes) == 0
+    assert strayed(nodes[:, [1, 0, 2]], nodes) < 5e-3, "in the diagonal plane, but for the middles of some cut sides"
+    monkeypatch.setattr(bricks, "LEAN", np.inf)
+    nodes = graded_block(SIZE, pair, settings).mesh.nodes
+    assert strayed(nodes[:, [1, 0, 2]], nodes) > 0.5
 
 
 def test_a_row_that_leans_much_has_level_planes_and_one_that_leans_little_has_not():
