@@ -21,8 +21,8 @@ from tactsim.errors import ConvergenceError, InputError, StorageError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.curving import assembled
-from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.fitting.curving import assembled
+from tactsim.mesh.fitting.labelling import Surfaces
 from tactsim.mesh.manifest import shipped_entry
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.shipped import shipped_folders

@@ -14,8 +14,8 @@ from tactsim.interfaces import Inclusion
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_along, check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.curving import assembled, fitted
-from tactsim.mesh.labelling import Surfaces
+from tactsim.mesh.fitting.curving import assembled, fitted
+from tactsim.mesh.fitting.labelling import Surfaces
 from tactsim.mesh.quadratic import quadratic_mesh
 from tactsim.mesh.tetrahedra import mesh_key
 

@@ -28,8 +28,8 @@ from tactsim.interfaces.solid import Triangles
 from tactsim.mesh.affordable import check_unknowns, estimated_unknowns
 from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.curving import fitted
-from tactsim.mesh.labelling import Surfaces, tidied
+from tactsim.mesh.fitting.curving import fitted
+from tactsim.mesh.fitting.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import at_jaw_edges, background
 from tactsim.mesh.solid import outward
 from tactsim.outside.arrays import read_arrays

@@ -9,7 +9,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import FLATNESS
-from tactsim.mesh.labelling import Surfaces, neighbours_of
+from tactsim.mesh.fitting.labelling import Surfaces, neighbours_of
 from tactsim.mesh.quadratic import QuadraticMesh
 
 NEAR = 1.0

@@ -23,7 +23,7 @@ from tactsim.outside.input_path import InputPath
 from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
-    from tactsim.mesh.labelling import Surfaces
+    from tactsim.mesh.fitting.labelling import Surfaces
 
 Size = tuple[float, float, float]
 FITS = 1e-6
@@ -181,8 +181,8 @@ class FileSource(FrozenModel):
         InputError
             If the mesh has other regions or another size than the block of the case.
         """
-        from tactsim.mesh.curving import assembled
-        from tactsim.mesh.labelling import Surfaces
+        from tactsim.mesh.fitting.curving import assembled
+        from tactsim.mesh.fitting.labelling import Surfaces
         from tactsim.mesh.mesh_store import content_hash
         from tactsim.mesh.reading import read_mesh
         from tactsim.mesh.wholeness import check_whole

@@ -21,7 +21,7 @@ from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.curving import fitted
+from tactsim.mesh.fitting.curving import fitted
 from tactsim.mesh.graded.bricks import brick_cells, bricks_of, check_apart
 from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
 from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line

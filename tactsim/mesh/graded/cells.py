@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.layers import Layers
+from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.structured_block import blown, directions, grid, product, skin, stacked
 
 LEAST_LAYERS = 3

@@ -21,9 +21,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.graded.cells import CORE_PLACE, WALL_PLACE, Cells, Layering, from_box, from_boxes, with_lump
 from tactsim.mesh.graded.side_by_side import Bundle
-from tactsim.mesh.layers import Layers
 from tactsim.mesh.structured_block import blown, directions, product
 
 PLAIN, BOX, BALL = -1, -2, -3

@@ -12,7 +12,7 @@ from tactsim.fem.assembly.space import TaylorHood
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh import tetrahedra
 from tactsim.mesh.block import FLATNESS, BlockMeshSettings
-from tactsim.mesh.curving import check
+from tactsim.mesh.fitting.curving import check
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
 from tactsim.mesh.inclusions.tube import Tube

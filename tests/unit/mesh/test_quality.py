@@ -9,10 +9,10 @@ from solids import assert_close, box
 
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.constrained import Constraints, block_patches
+from tactsim.mesh.fitting.constrained import Constraints, block_patches
+from tactsim.mesh.fitting.smoothing import _energy, smoothed
 from tactsim.mesh.quality import determinants, jacobian_ratio, mean_ratio, region_volumes
 from tactsim.mesh.sizing import edge_lengths, jaw_edge_distance
-from tactsim.mesh.smoothing import _energy, smoothed
 
 REGULAR = np.array([[0.0, 0, 0], [1, 0, 0], [0.5, np.sqrt(3) / 2, 0], [0.5, np.sqrt(3) / 6, np.sqrt(2 / 3)]])
 BLOCK = np.array(SIZE)

@@ -10,13 +10,13 @@ from scipy.spatial import KDTree
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
+from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.graded import bricks
 from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, layer_ends
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
-from tactsim.mesh.layers import Layers
 from tactsim.mesh.mesh_store import content_hash
 
 SIZE = (40e-3, 40e-3, 20e-3)

@@ -8,13 +8,13 @@ from lumps import CURVED, SIZE, same_mirrored
 
 from tactsim.errors import InputError
 from tactsim.mechanics.models.block_source import AutomaticSource, GradedSource
+from tactsim.mesh.fitting.labelling import Surfaces, interfaces
+from tactsim.mesh.fitting.wedges import side_patches
 from tactsim.mesh.graded import block as graded_module
 from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
-from tactsim.mesh.labelling import Surfaces, interfaces
 from tactsim.mesh.mesh_store import content_hash
-from tactsim.mesh.wedges import side_patches
 
 VOLUMES = 1.2e-3
 """Largest error of a volume: 5e-5 for tubes, whose sections are sixteen quadratic arcs, 1e-3 for a small ball of four cells."""

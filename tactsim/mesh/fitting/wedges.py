@@ -10,7 +10,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces.solid import FACES
-from tactsim.mesh.labelling import Interfaces
+from tactsim.mesh.fitting.labelling import Interfaces
 
 _UNDER, _BESIDE = ([number for number, (_, axis, _) in enumerate(FACES) if (axis == 2) == flat] for flat in (True, False))
 """Patches under the jaws, and those of the free faces."""

@@ -14,13 +14,13 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import FLATNESS, VOLUME_TOLERANCE, BlockMesh, Quality
-from tactsim.mesh.constrained import Constraints
-from tactsim.mesh.labelling import Interfaces, Surfaces, interfaces
-from tactsim.mesh.layers import Layers
+from tactsim.mesh.fitting.constrained import Constraints
+from tactsim.mesh.fitting.labelling import Interfaces, Surfaces, interfaces
+from tactsim.mesh.fitting.layers import Layers
+from tactsim.mesh.fitting.smoothing import smoothed
+from tactsim.mesh.fitting.wedges import side_patches, without_wedges
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
-from tactsim.mesh.smoothing import smoothed
-from tactsim.mesh.wedges import side_patches, without_wedges
 
 LEAST_CURVATURE = 0.2
 """Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""

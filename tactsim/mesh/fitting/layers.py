@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces.solid import FACES
-from tactsim.mesh.constrained import Constraints
+from tactsim.mesh.fitting.constrained import Constraints
 from tactsim.mesh.quadratic import QuadraticMesh
 
 

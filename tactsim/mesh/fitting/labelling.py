@@ -9,7 +9,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces.solid import FACES, Patch, Solid
-from tactsim.mesh.constrained import Constraints, block_patches
+from tactsim.mesh.fitting.constrained import Constraints, block_patches
 
 OUTSIDE = -1
 """Label outside the block; the tissue is 0, inclusion k is k, and the space in a hollow inclusion k is -1 - k."""

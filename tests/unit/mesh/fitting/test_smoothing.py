@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactsim.mesh import smoothing
+from tactsim.mesh.fitting import smoothing
+from tactsim.mesh.fitting.smoothing import smoothed
 from tactsim.mesh.quality import mean_ratio
-from tactsim.mesh.smoothing import smoothed
 from tactsim.mesh.structured_block import grid, product, twelfths
 
 CELLS = grid((1, 1, 1))

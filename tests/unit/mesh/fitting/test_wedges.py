@@ -7,10 +7,10 @@ import pytest
 
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.labelling import Surfaces, interfaces
+from tactsim.mesh.fitting.labelling import Surfaces, interfaces
+from tactsim.mesh.fitting.wedges import side_patches, without_wedges
 from tactsim.mesh.structured_block import structured_block
 from tactsim.mesh.tetrahedra import block_mesh
-from tactsim.mesh.wedges import side_patches, without_wedges
 
 SIZE = np.array([3.0, 2.0, 1.0])
 SIDES = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
