@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hard_balls import pressed_balls
 
-from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.mesh.graded import bricks
 
 SHARE, LEANING = 1e-4, 5e-4
@@ -17,21 +17,8 @@ SHARE, LEANING = 1e-4, 5e-4
 
 def difference():
     """Of taxels from their images in the diagonal plane, and of upper ones from lower ones turned about the middle."""
-    material = {"kind": "neo_hookean", "c10": 500e3}
-    centers = (10e-3, 10e-3, 10e-3), (30e-3, 30e-3, 10e-3)
-    result = Grasp.model_validate(
-        {
-            "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
-            "inclusions": [{"shape": {"kind": "sphere", "center": at, "radius": 4e-3}, "material": material} for at in centers],
-            "matrix": {"rows": 3, "columns": 3, "pitch": 10e-3, "size": 9e-3},
-            "contact": {"kind": "coulomb", "friction": 0.0},
-            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-4, "duration": 1.0}]},
-            "mesh": {"kind": "graded", "size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 3.6e-3, "growth": 1.0},
-            "time": {"steps": 1},
-        }
-    ).run()
-    assert result.status == "converged"
-    upper, lower = (np.array(result.quantities[f"taxel_force_{side}"].value) for side in ("upper", "lower"))
+    cells = {"size": 4e-3, "inclusion_size": 1.6e-3, "edge_size": 3.6e-3, "growth": 1.0}
+    upper, lower = pressed_balls([(10e-3, 10e-3, 10e-3), (30e-3, 30e-3, 10e-3)], 4e-3, "icf_stable", cells)
     differences = np.stack([upper - lower[::-1, ::-1], upper - upper.T])
     return float(np.abs(differences).max() / upper.max())
 

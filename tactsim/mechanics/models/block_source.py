@@ -83,10 +83,10 @@ class LayersSource(BlockMeshSettings):
         InputError
             If there is not exactly one inclusion.
         """
-        if len(inclusions) != 1:
-            raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
         from tactsim.mesh.structured_block import morphed_block
 
+        if len(inclusions) != 1:
+            raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
         return SourcedBlock.of(morphed_block(size, inclusions[0], _sizes(self)), "built in layers")
 
 
@@ -114,13 +114,10 @@ class GradedSource(BlockMeshSettings):
         from tactsim.mesh.graded.block import graded_block
 
         block = graded_block(size, inclusions, _sizes(self))
-        fewer = block.fewer_layers
-        few = (
-            f", {fewer} layer{'s' * (fewer > 1)} fewer than usual around inclusions close to each other or to a face"
-            if fewer
-            else ""
-        )
-        return SourcedBlock.of(block, f"graded cells{few}")
+        origin = "graded cells"
+        if block.fewer_layers:
+            origin += f", layers fewer than usual around inclusions close to each other or to a face: {block.fewer_layers}"
+        return SourcedBlock.of(block, origin)
 
 
 class StructuredSource(FrozenModel):

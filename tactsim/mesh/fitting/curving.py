@@ -151,19 +151,21 @@ def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints, lay
 
     In layers around an interface the mid-nodes of edges move with it, the less the farther they are from it.
     """
-    edges = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
+    edges, middles = mesh.edges()
+    sides = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
     patch = np.tile(walls.patch, 3)
-    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    unique, number = np.unique(sides, axis=0, return_inverse=True)
     on = np.zeros((len(unique), constraints.on.shape[1]), bool)
     on[number.reshape(-1), patch] = True
     bent = on[:, len(FACES) :].any(axis=1)
-    middles = _middle_nodes(mesh, unique[bent])
-    fitting = Constraints(constraints.patches, on[bent], constraints.size).restored(mesh.nodes[middles])
-    beside, pairs, moves = layers.bulges(mesh, constraints)
+    keys = edges @ [mesh.corner_count, 1]
+    fitted_middles = middles[np.searchsorted(keys, unique[bent] @ [mesh.corner_count, 1])]
+    fitting = Constraints(constraints.patches, on[bent], constraints.size).restored(mesh.nodes[fitted_middles])
+    beside, pairs, moves = layers.bulges(mesh.nodes, edges, constraints)
     wall, owner = np.unique(np.vstack([unique[bent], pairs]), axis=0, return_inverse=True)
     owner = owner.reshape(-1)
-    nodes, moved = mesh.nodes.copy(), np.concatenate([middles, beside])
-    ends = np.vstack([fitting, mesh.nodes[beside] + moves])
+    nodes, moved = mesh.nodes.copy(), np.concatenate([fitted_middles, middles[beside]])
+    ends = np.vstack([fitting, mesh.nodes[middles[beside]] + moves])
     starts, nodes[moved] = mesh.nodes[moved], ends
     share = np.ones(len(wall))
     while True:
@@ -226,10 +228,3 @@ def _split_between(corners: Array, simplices: Array, labels: Array, walls: Inter
         np.vstack([simplices[~between], *children]),
         np.concatenate([labels[~between], np.tile(labels[between], 4)]),
     )
-
-
-def _middle_nodes(mesh: QuadraticMesh, pairs: Array) -> Array:
-    """Numbers (m,) of the nodes between corners (m, 2), ascending."""
-    edges, middles = mesh.edges()
-    count = mesh.corner_count
-    return middles[np.searchsorted(edges[:, 0] * count + edges[:, 1], pairs[:, 0] * count + pairs[:, 1])]

@@ -12,7 +12,6 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.interfaces.solid import FACES
 from tactsim.mesh.fitting.constrained import Constraints
-from tactsim.mesh.quadratic import QuadraticMesh
 
 
 @dataclass(frozen=True)
@@ -61,14 +60,13 @@ class Layers:
         beneath = self.beneath[used]
         return Layers(np.where(beneath < 0, -1, np.searchsorted(used, beneath)), self.share[used])
 
-    def bulges(self, mesh: QuadraticMesh, constraints: Constraints) -> tuple[Array, Array, Array]:
-        """Mid-nodes (m,) of edges in layers, the corners (m, 2) of the surface beneath each, and its way (m, 3) in m with it."""
-        edges, middles = mesh.edges()
+    def bulges(self, nodes: Array, edges: Array, constraints: Constraints) -> tuple[Array, Array, Array]:
+        """Numbers (m,) of edges (e, 2) in layers, the corners (m, 2) of the surface beneath, and the ways (m, 3) in m with it."""
         beneath, share = self.beneath[edges], self.share[edges].mean(axis=1)
         on = constraints.on[beneath].all(axis=1)
         within = (beneath >= 0).all(axis=1) & (beneath[:, 0] != beneath[:, 1]) & (share > 0) & (share < 1)
         chosen = within & on[:, len(FACES) :].any(axis=1)
         beneath, on = np.sort(beneath[chosen], axis=1), on[chosen]
-        straight = mesh.nodes[beneath].mean(axis=1)
+        straight = nodes[beneath].mean(axis=1)
         bulge = Constraints(constraints.patches, on, constraints.size).restored(straight) - straight
-        return middles[chosen], beneath, (1 - share[chosen])[:, None] * bulge
+        return np.flatnonzero(chosen), beneath, (1 - share[chosen])[:, None] * bulge

@@ -23,7 +23,6 @@ LAYER_GROWTH = 1.25
 CORE_PLACE, WALL_PLACE = 0.4, 0.8
 """Distances from the middle of the box, of which the sides are one away, at which core and wall count when cells are split."""
 
-
 Layering = Callable[[Array, Array], Array]
 """`layer_ends` of given settings: from corners of a body and of its box to the parts of the way at which layers end."""
 
@@ -68,6 +67,11 @@ def from_boxes(lines: int, first: ArrayLike, across: int) -> Array:
 def from_box(steps: Array, half: float) -> Array:
     """Places of lines so many steps from the middle of a box, whose sides are ``half`` steps, and one, away."""
     return np.where(steps > half, 1 + steps - half, steps / half)
+
+
+def layer_places(unit: Array, ends: Array) -> list[Array]:
+    """Places (n, ...) of corners in directions ``unit`` on a wall and at each end (k,) of a layer, within those of the box."""
+    return [(WALL_PLACE + (1 - WALL_PLACE) * end) * np.abs(unit) for end in (0.0, *ends)]
 
 
 def layer_ends(wall: Array, box: Array, settings: BlockMeshSettings, fewer: int = 0) -> Array:
@@ -117,8 +121,7 @@ def with_lump(
     between = [wall + share * (box - wall) for share in ends]
     added, rounded, depth = stacked(ball.center + turned(inside) @ ball.stretch, shell, quads, core, [wall, *between, box])
     count, fresh = len(cells.corners), len(added) - len(shell)
-    rings = WALL_PLACE + (1 - WALL_PLACE) * np.array([0.0, *ends])
-    places = np.abs(np.vstack([CORE_PLACE * inside, *(ring * unit for ring in rings)]))
+    places = np.vstack([CORE_PLACE * np.abs(inside), *layer_places(unit, ends)])
     return Cells(
         np.vstack([cells.corners, added[:fresh]]),
         np.vstack([cells.cells, np.concatenate([count + np.arange(fresh), sides])[rounded]]),

@@ -22,7 +22,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.mesh.fitting.layers import Layers
-from tactsim.mesh.graded.cells import CORE_PLACE, WALL_PLACE, Cells, Layering, from_box, from_boxes, with_lump
+from tactsim.mesh.graded.cells import CORE_PLACE, WALL_PLACE, Cells, Layering, from_box, from_boxes, layer_places, with_lump
 from tactsim.mesh.graded.side_by_side import Bundle
 from tactsim.mesh.structured_block import blown, directions, product
 
@@ -83,8 +83,7 @@ def _plane_of(bundle: Bundle, layering: Layering) -> Plane:
         cells.append(quads)
         owner.append(np.where(depth <= bundle.wall[k], k, PLAIN))
         core.append(depth < 1)
-        unit = np.abs(disc[-len(loop) :, :2])
-        logical += [_disc_places(disc, bundle.wall[k]), *((WALL_PLACE + (1 - WALL_PLACE) * end) * unit for end in ends)]
+        logical += [_disc_places(disc, bundle.wall[k]), *layer_places(disc[-len(loop) :, :2], ends)[1:]]
     return Plane(
         np.concatenate(points, axis=1),
         np.vstack(cells),
@@ -170,8 +169,7 @@ def swept_cells(bundle: Bundle, layering: Layering) -> Cells:
         within = (index >= begin) & (index < end) & (plane.owner == k)
         regions = np.where(within, np.where(plane.core, -2 - k, k + 1), regions)
     places = np.column_stack([_along(bundle, count).ravel(), np.tile(plane.logical, (planes, 1))])
-    of_ball = (index >= bundle.planes[0]) & (index < bundle.planes[1]) & (plane.owner == BALL)
-    kept = ~of_ball.ravel()
+    kept = ~((index >= bundle.planes[0]) & (index < bundle.planes[1]) & (plane.owner == BALL)).ravel()
     swept = Cells(corners, cells[kept], regions.ravel()[kept], places, plane.layers.repeated(planes))
     return (_with_ball(swept, bundle, count, layering) if bundle.ball is not None else swept).used()
 

@@ -92,7 +92,7 @@ def test_layers_around_a_lump_bulge_with_it_so_that_none_of_its_edges_stays_stra
     close = Sphere(center=(20e-3, 20e-3, 13.5e-3), radius=5e-3)
     bulging = graded_block(SIZE, [close], COARSE)
     assert bulging.quality.straightened == 0
-    monkeypatch.setattr(Layers, "bulges", lambda self, mesh, constraints: NO_BULGES)
+    monkeypatch.setattr(Layers, "bulges", lambda self, nodes, edges, constraints: NO_BULGES)
     flat = graded_block(SIZE, [close], COARSE)
     assert flat.quality.straightened > 0
     assert flat.quality.curvature < bulging.quality.curvature
