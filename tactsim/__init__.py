@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tactsim.presenter import presented_by
 from tactsim.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -142,6 +143,8 @@ _PLACES = {
     "uniform": "tactsim.interfaces.variation:uniform",
 }
 """Name -> module and name there."""
+
+presented_by("tactsim.presentation")
 
 
 def __getattr__(name: str) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import StrEnum
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 import numpy as np
 
 from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, UnknownName, shown
+from tactsim.presenter import presenter
 from tactsim.results.axes import coordinates, dimensions
 from tactsim.results.quantity import Quantity
 from tactsim.results.scene import Scene, UnreadableScene
@@ -155,7 +155,7 @@ class Result:
         InputError
             If the run kept no fields.
         """
-        mesh: pyvista.UnstructuredGrid = _presentation().field_mesh(self)
+        mesh: pyvista.UnstructuredGrid = presenter().field_mesh(self)
         return mesh
 
     @overload
@@ -172,7 +172,7 @@ class Result:
         UnknownName
             If there is no such figure, with the names of those there are.
         """
-        figures: dict[str, Figure] | Figure = _presentation().figures(self, name)
+        figures: dict[str, Figure] | Figure = presenter().figures(self, name)
         return figures
 
     def save(self, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
@@ -187,11 +187,11 @@ class Result:
         InputError
             If the result was not run from a case or an experiment.
         """
-        place: Path = _presentation().save(self, directory, force=force, fields=fields)
+        place: Path = presenter().save(self, directory, force=force, fields=fields)
         return place
 
     def _repr_html_(self) -> str:
-        text: str = _presentation().html(self)
+        text: str = presenter().html(self)
         return text
 
     def __repr__(self) -> str:
@@ -227,8 +227,3 @@ def identical(one: Any, other: Any) -> bool:
     if isinstance(one, float | np.floating) and isinstance(other, float | np.floating):
         return bool(one == other or (one != one and other != other))
     return bool(one == other)
-
-
-def _presentation() -> Any:
-    """What a result shows of itself is built of upper rooms, which are loaded when they are asked."""
-    return importlib.import_module("tactsim.presentation")
