@@ -14,13 +14,9 @@ import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
+from tactsim.analytic.small_ratio import SERIES, SERIES_END
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-
-SERIES_END = 0.5
-"""Ratio h of step to time below which h - 1 + exp(-h) is summed as a series."""
-SERIES = tuple((-1.0) ** k / math.factorial(k) for k in range(15, 1, -1))
-"""Coefficients of h^k, k = 15 .. 2, in h - 1 + exp(-h); the next one is below 1e-17 of the sum at ``SERIES_END``."""
 
 
 def step_constants(model: GeneralizedKelvin | GeneralizedMaxwell) -> Array:

@@ -93,6 +93,19 @@ def test_the_stress_of_a_strain_gives_the_strain_back(seed):
     np.testing.assert_allclose(back, stress.value(t), atol=2e-4)  # interpolation: h^2 / (8 tau^2) with tau from 0.03 s
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_compiled_loop_carries_as_numpy_does(seed, monkeypatch):
+    """Sampled histories of 300 pieces, their steps from a thousandth to 30 times the times of the units."""
+    generator = np.random.default_rng(seed)
+    times = np.cumsum(10 ** generator.uniform(-3, 1.5, 300))
+    history, model = sampled(times, generator.normal(size=300)), random_kelvin(seed)
+    models = (model, maxwell_of(model))
+    by_numpy = [response(one, history, times) for one in models]
+    monkeypatch.setattr("tactsim.analytic.response.INTERPRETED", 0)
+    for one, expected in zip(models, by_numpy, strict=True):
+        np.testing.assert_allclose(response(one, history, times), expected, rtol=1e-13, atol=1e-14 * np.abs(expected).max())
+
+
 def test_steps_give_creep_and_relaxation():
     kelvin = random_kelvin(1)
     t = np.concatenate([[-1.0, 0.0], np.logspace(-12, 3, 40)])
