@@ -255,6 +255,7 @@ DESCRIPTIONS: dict[str, tuple[str, Callable[[dict[str, Any]], object]]] = {
     "codec": ("force", lambda metadata: metadata["codecs"].append({"name": "nonsense"})),
     "order": ("force", lambda metadata: metadata["codecs"][0]["configuration"].update(endian="big")),
     "status": ("status", lambda metadata: metadata.update(shape=[10**12])),
+    "status flags": ("status", lambda metadata: metadata["attributes"].update(flag_meanings=None)),
     "status type": ("status", lambda metadata: metadata.update(data_type="float64", fill_value="NaN")),
 }
 

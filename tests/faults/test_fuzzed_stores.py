@@ -24,7 +24,7 @@ from tactsim.dataset.running import computing
 from tactsim.errors import TactsimError
 
 QUICK = settings(derandomize=True, deadline=None, max_examples=25, suppress_health_check=list(HealthCheck))
-LONG = settings(QUICK, max_examples=int(__import__("os").environ.get("FUZZ_N", "3000")))
+LONG = settings(QUICK, max_examples=int(os.environ.get("FUZZ_N", "3000")))
 CODES = {0, 2, 3, 4, 5}
 MEMORY = 6 * 2**30
 """Bytes of address space beyond which a reader has believed a number in a file; libraries and threads reserve three of them."""

@@ -259,9 +259,10 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
             readable[name] = described(folder, name)
         except StorageError as error:
             faults[name] = str(error)
-    if "status" in readable:
+    status = readable.get("status")  # which may be found to be at fault itself
+    if status is not None:
         for name in sorted(readable):
-            fault = index_fault(readable[name], readable["status"].shape[0], readable["status"].chunks[0])
+            fault = index_fault(readable[name], status.shape[0], status.chunks[0])
             if fault:
                 faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"
                 del readable[name]
