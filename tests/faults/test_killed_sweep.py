@@ -166,6 +166,13 @@ def test_a_death_while_it_mends_loses_nothing(tmp_path: Path, whole: dict[int, P
         assert_completed(place, whole[SAMPLES], SAMPLES)
 
 
+def test_a_description_that_was_half_written_is_cleared_away(tmp_path: Path, whole: dict[int, Path]) -> None:
+    """The death came while a description that was gone was made anew, so that its array is none of those described."""
+    place = place_of(tmp_path, 1, SAMPLES)
+    (place / "displacement/zarr.json").rename(place / f"displacement/zarr.{'0' * 32}.partial")
+    assert_completed(place, whole[SAMPLES], SAMPLES)
+
+
 def creations(folder: Path) -> Callable[[], None]:
     """A creation alone, without any sample."""
     sweep = load_sweep(sweep_file(folder, PLAIN), samples=SAMPLES)

@@ -107,7 +107,7 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
     if present is not None and sweep.samples < present.shape[0]:
         fewer = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
         raise StorageError(f"the data set {one_line(store.path)} {fewer}")
-    remove_torn(store.path, store.described)
+    remove_torn(store.path, {*store.described, *(variable.name for variable in layout.variables)})
     restored = restore(store, layout.variables, sweep.samples)
     lengths = {array.shape[0] for array in store.described.values()}
     if restored or lengths != {sweep.samples}:
