@@ -24,6 +24,9 @@ AXES = {
     "contrast": "shear modulus over the tissue's, at rest",
     "closing": "closing of each jaw in mm",
 }
+BIN_SHARE, NOISE_APART = 0.5, 0.16
+"""Part of a bin, and of a multiple of the noise, over which estimators stand beside each other, so that their intervals do not
+cover one another."""
 NOMINAL = (0.85, 0.95)
 """Band in which the coverage of 90 % regions should lie: the plan of the display."""
 
@@ -49,11 +52,12 @@ class Measure:
 
 @dataclass(frozen=True)
 class Style:
-    """How an estimator is drawn and what it is called."""
+    """How an estimator is drawn and what it is called; ``share`` is its place among the others beside it, from 0 to 1."""
 
     name: str
     colour: str
     marker: str
+    share: float
 
 
 ROWS = (
@@ -99,7 +103,10 @@ def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
         for axis, measure in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
             for style, estimator in zip(_styles(estimators), estimators, strict=True):
                 multiples = np.array([measures["multiple"] for measures in estimator["noise"]])
-                _draw_line(axis, multiples, [measure.of(measures) for measures in estimator["noise"]], style, measure)
+                at = multiples * (1 + NOISE_APART * (style.share - 0.5))
+                _draw_line(axis, at, [measure.of(measures) for measures in estimator["noise"]], style, measure)
+            axis.set_xscale("log", base=2)
+            axis.xaxis.set_major_formatter("{x:g}")
             axis.set_xlabel("noise over the stated noise")
             axis.set_title(measure.heading, loc="left")
             _finish(axis, measure)
@@ -137,7 +144,12 @@ def _shown(name: str) -> str:
 
 def _styles(estimators: Sequence[Mapping[str, Any]]) -> list[Style]:
     return [
-        Style(_shown(estimator["name"]), COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)])
+        Style(
+            _shown(estimator["name"]),
+            COLOURS[number % len(COLOURS)],
+            MARKERS[number % len(MARKERS)],
+            (number + 0.5) / len(estimators),
+        )
         for number, estimator in enumerate(estimators)
     ]
 
@@ -150,8 +162,9 @@ def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, 
         axis.set_xlim(min(ends, default=1.0) / 1.2, max(ends, default=10.0) * 1.2)
     for style, estimator in zip(_styles(estimators), estimators, strict=True):
         bins = estimator["bins"][label]
-        middles = np.array([(part["low"] * part["high"]) ** 0.5 for part in bins])
-        _draw_line(axis, factor * middles, [measure.of(part) for part in bins], style, measure)
+        within = 0.5 + BIN_SHARE * (style.share - 0.5)
+        places = np.array([part["low"] ** (1 - within) * part["high"] ** within for part in bins])
+        _draw_line(axis, factor * places, [measure.of(part) for part in bins], style, measure)
     if measure is ROWS[0] and estimators:
         for part in estimators[0]["bins"][label]:
             middle = factor * (part["low"] * part["high"]) ** 0.5
