@@ -72,7 +72,8 @@ VALUES_IN_A_LINE = 4
 
 
 def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, float] | None = None, elapsed: float = 0.0) -> str:
-    """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``.
+    """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``, and what
+    Newton's method took, if the step is one of its solutions.
 
     Parameters
     ----------
@@ -84,9 +85,10 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, f
     values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
     share = record.values.get(extent[0], 0.0) / extent[1] if extent else 0.0
     reached = f" {share:4.0%}" if extent else ""
-    effort = f"{record.newton_iterations} iterations, residual {record.residual:.1e}"
+    solved = record.newton_iterations > 0 or record.residual > 0
+    effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []
     left = [f"about {_rough(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
-    return "  ".join([f"step {record.step:4d}{reached}", *values, effort, *left])
+    return "  ".join([f"step {record.step:4d}{reached}", *values, *effort, *left])
 
 
 def _rough(seconds: float) -> str:

@@ -20,6 +20,7 @@ from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.units import Force, Length, format_quantity
@@ -96,19 +97,24 @@ class Detectability(Experiment):
 
     def _matrices(self, outcome: _Outcome) -> Iterator[StepRecord]:
         for number, count in enumerate(self.matrices, 1):
-            response = self._response(count)
-            templates = unit_templates(response, every=2)
-            threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
-            contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
-            deviations = {name: np.sqrt(2) * self._noise(name, count) for name in NOISES}
-            outcome.radii.append(
-                {
-                    name: [self._over_depth(response, contrast, sigma, threshold) for contrast in contrasts]
-                    for name, sigma in deviations.items()
-                }
-            )
-            outcome.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
+            with elapsed_time(f"{count} x {count} taxels"):
+                outcome.steps.append(self._matrix(number, count, outcome))
             yield outcome.steps[-1]
+
+    def _matrix(self, number: int, count: int, outcome: _Outcome) -> StepRecord:
+        """Find the smallest radii of one matrix, with ``count`` taxels along each side."""
+        response = self._response(count)
+        templates = unit_templates(response, every=2)
+        threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
+        contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
+        deviations = {name: np.sqrt(2) * self._noise(name, count) for name in NOISES}
+        outcome.radii.append(
+            {
+                name: [self._over_depth(response, contrast, sigma, threshold) for contrast in contrasts]
+                for name, sigma in deviations.items()
+            }
+        )
+        return StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold})
 
     def _findings(self, outcome: _Outcome) -> Findings:
         return Findings(

@@ -33,6 +33,7 @@ from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.lump_response import stiffness_ratio_of, stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
+from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, rows
 from tactsim.units import Force, format_quantity
@@ -82,7 +83,8 @@ class Localization(Experiment):
         stored = stored_grasp(self.grasp)
         plain = None if self.reference is None else stored_grasp(self.reference)
         readings = self._readings(stored, plain)
-        estimate = self.estimator.estimate(readings)
+        with elapsed_time(f"estimating: {self.estimator.kind.replace('_', ' ')}"):
+            estimate = self.estimator.estimate(readings)
         scene = stored.scene_as(GraspScene)
         true = [shape.places(readings.block_size) for shape in scene.true_inclusions]
         return Course.computed(

@@ -53,6 +53,8 @@ def test_a_step_is_one_line() -> None:
     line = step_line(record, {"displacement": "m", "share": "1"})
     assert line == "step   12  displacement 620 µm  share 0.5  4 iterations, residual 2.1e-10"
     assert "share 0.5" in step_line(record, {}), "without units every value is printed, in SI"
+    unsolved = StepRecord(1, 0, 0.0, {"taxels": 3})
+    assert step_line(unsolved, {"taxels": "1"}) == "step    1  taxels 3", "a step that Newton had no part in"
 
 
 def test_a_step_says_how_far_the_run_is() -> None:
