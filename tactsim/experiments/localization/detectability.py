@@ -97,13 +97,13 @@ class Detectability(Experiment):
 
     def _matrices(self, outcome: _Outcome) -> Iterator[StepRecord]:
         for number, count in enumerate(self.matrices, 1):
+            response = self._response(count)
             with elapsed_time(f"{count} x {count} taxels"):
-                outcome.steps.append(self._matrix(number, count, outcome))
+                outcome.steps.append(self._matrix(number, count, response, outcome))
             yield outcome.steps[-1]
 
-    def _matrix(self, number: int, count: int, outcome: _Outcome) -> StepRecord:
+    def _matrix(self, number: int, count: int, response: LumpResponse, outcome: _Outcome) -> StepRecord:
         """Find the smallest radii of one matrix, with ``count`` taxels along each side."""
-        response = self._response(count)
         templates = unit_templates(response, every=2)
         threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
         contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]

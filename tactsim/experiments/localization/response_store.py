@@ -19,6 +19,7 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
+from tactsim.progress import elapsed_time
 from tactsim.results.reading import read_result
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
@@ -55,7 +56,8 @@ def kept_response(
     place = (cache or user_cache("responses")) / f"{hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]}.npz"
     stored = _read(place)
     if stored is None:
-        stored = compute()
+        with elapsed_time("response of the tissue to lumps"):
+            stored = compute()
         _keep(stored, place)
     return stored
 
