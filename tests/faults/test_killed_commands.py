@@ -48,12 +48,13 @@ def run(case_file: Path) -> Callable[[Path, str], int]:
     return lambda out, title: main(["run", str(case_file), "--out", str(out), "--force", "--set", f"title={title}"])
 
 
-def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run: Callable[[Path, str], int]) -> None:
+@pytest.mark.parametrize("stride", [3, pytest.param(1, marks=pytest.mark.slow)])
+def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run: Callable[[Path, str], int], stride: int) -> None:
     run(tmp_path / "count" / "out", "old")
     total = steps_of(lambda: run(tmp_path / "count" / "out", "x"))
     assert 15 < total < MOST_STEPS
     seen = set()
-    for number in range(1, total + 1):
+    for number in range(1, total + 1, stride):
         out = tmp_path / str(number) / "out"
         run(out, "old")
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
@@ -65,7 +66,8 @@ def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run:
         assert run(out, "next") == 0
         assert mark_of(out) is True
         assert os.listdir(out.parent) == ["out"]
-    assert seen == {None, False, True}
+    assert seen >= {False, True}
+    assert None in seen or stride > 1, "between the two, for one step"
 
 
 STRIDES = [(errno.ENOSPC, 1), (errno.EIO, 5), pytest.param(errno.EIO, 1, marks=pytest.mark.slow)]

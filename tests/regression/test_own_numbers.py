@@ -78,6 +78,7 @@ FAR = {
 """A hard lump near a jaw, closed in one step."""
 
 
+@pytest.mark.slow
 def test_a_far_closing_on_a_hard_lump_ends_in_one_step():
     """One step: version 0.1.0, the mesh above. Again by this test."""
     result = Grasp.model_validate(FAR).run()

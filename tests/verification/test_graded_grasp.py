@@ -52,6 +52,7 @@ def difference(least: int) -> float:
     return float(np.abs(taxels(COARSE, least) - fine).max() / fine.max())
 
 
+@pytest.mark.slow
 def test_a_hard_ball_near_a_jaw_is_felt_right(verification_record):
     found = difference(graded_lines.LEAST_ALONG)
     assert found < SHARE
@@ -59,6 +60,7 @@ def test_a_hard_ball_near_a_jaw_is_felt_right(verification_record):
     verification_record("taxels over a hard ball near a jaw", found, 0.0, scale=1.0, **known)
 
 
+@pytest.mark.slow
 def test_one_cell_across_would_miss_the_peak():
     assert difference(1) > SHARE
 

@@ -30,7 +30,15 @@ def test_the_figures_of_section_6_have_their_cases():
     }
 
 
-@by_name
+ALIKE = ("artery_b1a", "artery_pulse", "artery_pressure", "artery_partial", "two_arteries")
+"""Cases whose cells are made as those of grasp_artery_icf."""
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.slow if path.stem.removeprefix("grasp_") in ALIKE else ()) for path in CASES],
+    ids=lambda path: path.stem,
+)
 def test_the_mesh_is_shipped_or_repeats(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)  # from any folder
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))

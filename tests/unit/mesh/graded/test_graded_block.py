@@ -32,8 +32,12 @@ def random_lumps(count):
         yield Sphere(center=tuple(radius + 0.6e-3 + generator.random(3) * room), radius=radius)
 
 
-def test_lumps_anywhere_are_meshed_soundly():
-    for lump in random_lumps(12):
+SOME = pytest.mark.parametrize("count", [4, pytest.param(40, marks=pytest.mark.slow)])
+
+
+@SOME
+def test_lumps_anywhere_are_meshed_soundly(count):
+    for lump in random_lumps(count):
         block = graded_block(SIZE, [lump], COARSE)
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02
@@ -146,8 +150,9 @@ def random_pairs(count):
 SWEPT = BlockMeshSettings(size=8e-3, inclusion_size=4e-3, edge_size=2.2e-3, growth=1.0)
 
 
-def test_two_lumps_as_sweeps_draw_them_are_meshed_soundly():
-    for pair in random_pairs(12):
+@SOME
+def test_two_lumps_as_sweeps_draw_them_are_meshed_soundly(count):
+    for pair in random_pairs(count):
         block = graded_block(SIZE, pair, SWEPT)
         assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
         assert block.quality.minimum > 0.02

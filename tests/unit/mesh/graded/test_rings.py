@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 import pytest
 from lumps import CURVED, SIZE, same_mirrored
@@ -58,9 +60,19 @@ def wedges(mesh, inclusions):
     return int((np.isin(patches, [4, 5]).any(axis=1) & np.isin(patches, [0, 1, 2, 3]).any(axis=1)).sum())
 
 
-@pytest.mark.parametrize("name", FORMS)
+QUICK = ("centred", "leaning", "bent", "both ends inside", "lump between two")
+"""Forms that between them have all that the others have."""
+
+
+@functools.cache
+def meshed(name):
+    """The block around a form, shared by the tests that look at it."""
+    return GradedSource().sourced(SIZE, FORMS[name]).block
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in FORMS])
 def test_each_form_is_meshed_soundly(name):
-    block = GradedSource().sourced(SIZE, FORMS[name]).block
+    block = meshed(name)
     assert np.abs(block.volume_errors).max() < VOLUMES
     assert block.quality.minimum > 0.05
     assert block.quality.curvature > 0.2
@@ -81,15 +93,15 @@ def test_cells_split_in_any_order_would_make_wedges(monkeypatch):
 
 
 def test_a_centred_tube_has_a_mirrored_mesh_and_another_has_none():
-    mesh = graded_block(SIZE, [CENTRED]).mesh
+    mesh = meshed("centred").mesh
     assert all(same_mirrored(mesh, axis) for axis in range(3))
     aside = graded_block(SIZE, [tube((0, 20, 10.5), (40, 20, 10.5))]).mesh
     assert [same_mirrored(aside, axis) for axis in range(3)] == [True, True, False]
 
 
 def test_the_same_tube_has_the_same_mesh():
-    first, again = (content_hash(graded_block(SIZE, FORMS["leaning"]).mesh) for _ in range(2))
-    assert first == again
+    first, again = meshed("leaning"), GradedSource().sourced(SIZE, FORMS["leaning"]).block
+    assert content_hash(first.mesh) == content_hash(again.mesh)
 
 
 def test_the_bore_is_as_exact_as_its_arcs_are():
