@@ -120,6 +120,7 @@ def test_headers_that_promise_too_much(tmp_path: Path, refused: Callable[..., st
     assert refused("show", folder, "--web", "--no-browser", "--learned", str(path), codes=(5,))
 
 
+@pytest.mark.slow
 def test_weights_that_unpack_to_gigabytes(tmp_path: Path) -> None:
     path = tmp_path / "w.npz"
     path.write_bytes(bomb("{'descr': '|u1', 'fortran_order': False, 'shape': (1600000000,), }", 1_600_000_000))

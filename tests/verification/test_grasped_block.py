@@ -169,8 +169,7 @@ def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
     assert beyond_the_jaw(("upper", "lower", "left", "right", "front", "back")) <= PASSING
 
 
-@pytest.mark.parametrize(
-    "closing", [0.8e-3, pytest.param(0.85e-3, marks=pytest.mark.slow)]
-)  # the last bit takes four times as long
+@pytest.mark.slow
+@pytest.mark.parametrize("closing", [0.8e-3, 0.85e-3])
 def test_without_contact_on_the_free_faces_they_would_pass_the_jaw(closing):
     assert beyond_the_jaw(("upper", "lower"), closing=closing) > 3 * PASSING

@@ -312,7 +312,7 @@ def test_an_export_goes_on_after_one_that_was_broken_off(kept: Path, tmp_path: P
     assert sorted(path.name for path in tmp_path.iterdir()) == ["flat", "whole.h5"]
 
 
-@pytest.mark.parametrize("name", ["flat", "whole.h5"])
+@pytest.mark.parametrize("name", [pytest.param("flat", marks=pytest.mark.slow), "whole.h5"])
 def test_an_export_to_a_full_disk_is_an_error_and_leaves_nothing(kept: Path, tmp_path: Path, name: str) -> None:
     def small() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))

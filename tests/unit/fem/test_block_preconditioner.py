@@ -92,7 +92,7 @@ def test_iterations_hardly_grow_with_refinement(contact):
     assert counts[1] < 60
 
 
-@pytest.mark.parametrize("giving_way", [0.003, 0.1])
+@pytest.mark.parametrize("giving_way", [0.003, pytest.param(0.1, marks=pytest.mark.slow)])
 def test_a_round_edge_of_contact_costs_few_iterations_unless_it_is_relaxed(giving_way, monkeypatch):
     body, matrix, right = system((8, 8, 4), giving_way=giving_way)
     solver, direct = BlockPreconditioned(body), direct_solver()
