@@ -20,7 +20,8 @@ from tactsim.fem.equilibrium.diagnosis import inside_out_in_words, not_finite_in
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.fem.solvers.linear import IterativeSolver, LinearSolver, resolved, section_solver, solved
+from tactsim.fem.solvers.linear import LinearSolver, is_exact, resolved, solved
+from tactsim.fem.solvers.solver_choice import section_solver
 
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
@@ -182,9 +183,8 @@ class _Solution:
 
     def _polished(self, state: NewtonState) -> NewtonState:
         """The state after steps with the last factor, as long as they pay."""
-        if self.factored is None or isinstance(self._solver, IterativeSolver):
-            return state
-        if self._forces.load_control is not None and self.factored.along is None:
+        controlled = self._forces.load_control is not None
+        if self.factored is None or (controlled and self.factored.along is None) or not is_exact(self._solver):
             return state
         while self._goal <= state.residual < self._options.polished:
             now = self._linearised(state)

@@ -15,7 +15,6 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
-from tactsim.fem.solvers.symmetric_factor import SymmetricWhereItIs
 
 LARGEST_RESIDUAL = 1e-3
 """Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
@@ -55,6 +54,8 @@ class IterativeSolver(ABC):
     """Solves systems of one sparse pattern to a requested accuracy."""
 
     name: str
+    exact: bool = False
+    """Whether it solves exactly whatever the accuracy asked for, by a factor of the last system."""
 
     @abstractmethod
     def factor(self, system: LinearSystem) -> None:
@@ -70,6 +71,11 @@ class IterativeSolver(ABC):
 
 
 LinearSolver = DirectSolver | IterativeSolver
+
+
+def is_exact(solver: LinearSolver) -> bool:
+    """Whether its solutions are exact ones of the last system, by a factor that it keeps."""
+    return not isinstance(solver, IterativeSolver) or solver.exact
 
 
 class SuperLU:
@@ -181,8 +187,3 @@ def direct_solver(name: str | None = None) -> DirectSolver:
 def guiding_solver() -> DirectSolver:
     """The solver of systems whose solutions guide an iteration: in single precision where that is there."""
     return Pardiso(single=True) if has_pardiso() else SuperLU()
-
-
-def section_solver() -> DirectSolver:
-    """The solver of systems of some ten thousand unknowns, which each get a factor: symmetric as long as they are."""
-    return SymmetricWhereItIs() if has_pardiso() else SuperLU()

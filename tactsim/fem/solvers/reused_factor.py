@@ -26,6 +26,8 @@ MOST_OF_ONE = 24
 """Most solutions with an old factor for one system before the system itself is factored."""
 MOST_CYCLES = 6
 """Restarts with a new factor; it lacks only the skew part that friction makes."""
+FAILED = 1e-6
+"""Residual over the right-hand side above which a guide has failed; round-off ends other iterations near 1e-12."""
 FINEST = 1e-12
 """Smallest error over its size that is asked of an iteration."""
 
@@ -38,14 +40,19 @@ class ReusedFactor(IterativeSolver):
     direct : makes the factors
     largest_left : residual over the right-hand side above which the iteration with a new factor is an error, beside twice the
         accuracy; otherwise the user of the solution has to look at it
+    worth : solutions that count as much as a new factor
+    most : most solutions with an old factor for one system before the system itself is factored
     """
 
-    def __init__(self, direct: DirectSolver, *, largest_left: float = math.inf):
+    def __init__(
+        self, direct: DirectSolver, *, largest_left: float = math.inf, worth: int = WORTH_A_FACTOR, most: int = MOST_OF_ONE
+    ):
         self.factorisations = self.solutions = 0
         self.name = f"{direct.name}, reused"
         self._direct, self._largest_left = direct, largest_left
         self._system: LinearSystem | None = None
-        self._current, self._spent = False, WORTH_A_FACTOR
+        self._worth, self._most = worth, most
+        self._current, self._spent = False, worth
 
     def factor(self, system: LinearSystem) -> None:
         """Keep the system; its nearby matrix is factored only once the last factor no longer pays."""
@@ -68,7 +75,7 @@ class ReusedFactor(IterativeSolver):
         matrix, begin = self._system.matrix, None
         if not right.any():
             return np.zeros_like(right)
-        if not self._current and self._spent < WORTH_A_FACTOR:
+        if not self._current and self._spent < self._worth:
             begin, left = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=1)
             if left <= 2 * max(accuracy, FINEST):
                 return begin
@@ -89,14 +96,14 @@ class ReusedFactor(IterativeSolver):
     def close(self) -> None:
         """Release the factor's memory."""
         self._direct.close()
-        self._system, self._current, self._spent = None, False, WORTH_A_FACTOR
+        self._system, self._current, self._spent = None, False, self._worth
 
     def _iterated(
         self, matrix: csr_matrix, right: Array, begin: Array | None, accuracy: float, *, cycles: int
     ) -> tuple[Array, float]:
         """Solution by flexible GMRES, which measures the true residual even with a rounded factor; that over the right side."""
         guide = LinearOperator(matrix.shape, matvec=self._counted, dtype=float)
-        restart = MOST_OF_ONE - 1  # and one more direction instead of those of the cycle before
+        restart = self._most - 1  # and one more direction instead of those of the cycle before
         solution, _ = gcrotmk(matrix, right, begin, rtol=accuracy, M=guide, m=restart, k=1, maxiter=cycles)
         return solution, float(np.linalg.norm(matrix @ solution - right) / np.linalg.norm(right))
 

@@ -11,7 +11,8 @@ from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressu
 from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
 from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
-from tactsim.fem.solvers.reused_factor import ReusedFactor
+from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
+from tactsim.fem.solvers.section_solver import SectionSolver
 
 OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 4.2e10, 1e9
 """Speeds of a factor in single precision and of solutions with it. Grasps of 28 506 and 82 832 unknowns
@@ -32,8 +33,6 @@ LARGEST_FACTOR = 400_000
 """Unknowns from which a factor would not fit: by the growth from the grasps above it would have 6e8 entries there."""
 LARGEST_SUPERLU = 5_000
 """Unknowns up to which SuperLU serves where Pardiso is not installed: 10 023 take 7.5 s by factor, 1.5 s by iteration to 1e-8."""
-FAILED = 1e-6
-"""Residual over the right-hand side above which a guide has failed; round-off ends other iterations near 1e-12."""
 GIVING_WAY = 1e-4
 """Compliance that the factor adds to that of the tissue, times the shear modulus. With 1e-3 solutions to 1e-8 take six steps
 more, and the rounding of single precision, 6e-8, is 6e-4 of what 1e-4 leaves as a pivot at worst."""
@@ -61,6 +60,11 @@ def solver_for(body: Body) -> LinearSolver:
         return factored(guide)
     guide.close()
     return iterated(body)
+
+
+def section_solver() -> LinearSolver:
+    """The solver of sections of some ten thousand unknowns."""
+    return SectionSolver() if has_pardiso() else SuperLU()
 
 
 def factored(guide: QuasiDefinitePardiso) -> Relay:

@@ -12,12 +12,12 @@ from solids import assert_close, body_of, box, held, on_plane
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.solvers import pardiso
-from tactsim.fem.solvers.linear import direct_solver, section_solver, solved
+from tactsim.fem.solvers.linear import LinearSystem, direct_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import MOST_OF_ONE, ReusedFactor
-from tactsim.fem.solvers.solver_choice import giving_way
-from tactsim.fem.solvers.symmetric_factor import EXACT
+from tactsim.fem.solvers.section_solver import EXACT
+from tactsim.fem.solvers.solver_choice import giving_way, section_solver
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -288,39 +288,49 @@ def test_a_symmetric_matrix_gets_the_symmetric_factor_and_as_exact_a_solution(bu
     matrix, right = tangent_of(2, axes=2, bulk_modulus=bulk_modulus)
     solver = section_solver()
     for scale in (1.0, 2.0):
-        solver.factor(scale * matrix)
+        solver.factor(LinearSystem(scale * matrix))
         assert left_over(scale * matrix, solver.solve(right), right) < 1e-12  # round-off times the growth of pivots
         assert solver.name == "pardiso_symmetric"
+        assert solver.exact
 
 
 @pytest.mark.parametrize("first", ["symmetric", "not symmetric"])
-def test_a_matrix_that_is_not_symmetric_gets_the_general_factor_from_then_on(first):
+def test_a_matrix_that_is_not_symmetric_is_iterated_from_then_on(first):
     matrix, right = tangent_of(2, axes=2)
     skew = matrix.copy()
     rows = np.repeat(np.arange(skew.shape[0]), np.diff(skew.indptr))
     skew.data[np.argmax(np.where(rows != skew.indices, np.abs(skew.data), 0.0))] *= 1 + 1e-6
     solver = section_solver()
     if first == "symmetric":
-        solver.factor(matrix)
+        solver.factor(LinearSystem(matrix))
         solver.solve(right)
     for each in (skew, matrix):
-        solver.factor(each)
-        solution = solver.solve(right)
-        assert solver.name == "pardiso"
-        assert left_over(each, solution, right) < 1e-12
+        solver.factor(LinearSystem(each))
+        assert left_over(each, solver.solve(right), right) < 1e-11
+        assert solver.name == "pardiso_single, reused"
+        assert not solver.exact
     symmetric = direct_solver(SymmetricPardiso.name)
     symmetric.factor(skew)  # the mutant: it halves the difference
     assert left_over(skew, symmetric.solve(right), right) > 1e-11
 
 
-def test_a_symmetric_factor_that_is_not_exact_gives_way_to_the_general_one(monkeypatch):
+def test_a_symmetric_factor_that_is_not_exact_gives_way_to_the_iteration(monkeypatch):
     matrix, right = tangent_of(2, axes=2)
     exact = SymmetricPardiso.solve
     monkeypatch.setattr(SymmetricPardiso, "solve", lambda self, right: exact(self, right) * (1 + 10 * EXACT))
     solver = section_solver()
-    solver.factor(matrix)
-    assert left_over(matrix, solver.solve(right), right) < 1e-12
-    assert solver.name == "pardiso"
+    solver.factor(LinearSystem(matrix))
+    assert left_over(matrix, solver.solve(right), right) < 1e-11
+    assert solver.name == "pardiso_single, reused"
+
+
+def test_a_section_whose_guide_fails_gets_general_factors(monkeypatch):
+    matrix, right = tangent_of(2, axes=2)
+    monkeypatch.setattr(SinglePardiso, "solve", lambda self, right: np.zeros_like(right))
+    solver = section_solver()
+    solver.factor(LinearSystem(changed(matrix, 0.0, skew=0.05)))
+    assert left_over(changed(matrix, 0.0, skew=0.05), solver.solve(right), right) < 1e-11
+    assert solver.name == "pardiso, reused"
 
 
 def test_it_is_closed_and_takes_another_pattern_and_refuses_to_solve_before():
@@ -329,6 +339,6 @@ def test_it_is_closed_and_takes_another_pattern_and_refuses_to_solve_before():
         with pytest.raises(InputError, match="factor a matrix"):
             solver.solve(np.ones(3))
         matrix, right = tangent_of(dim, axes=dim)
-        solver.factor(matrix)
+        solver.factor(LinearSystem(matrix))
         assert left_over(matrix, solver.solve(right), right) < 1e-12
         solver.close()
