@@ -1,4 +1,4 @@
-"""Linear systems of sections: a symmetric factor of each as long as no friction acts, after that one that is reused."""
+"""Linear systems under stiff contact, of sections above all: symmetric factors without friction, with it one that is reused."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ class SectionSolver(IterativeSolver):
     Pivots are single numbers, chosen by the matching; a section of 32 000 unknowns then takes 52 ms for a factor and 8.7 ms for a
     solution, with blocks as pivots 63 and 13 ms, by the general factor 90 and 11 ms. Where they do not suffice, the residual of
     the first solution says so, which is looked at for every factor. With friction a reused factor takes a fifth (`annulus_icf`)
-    to a third (`switch_tissues_fem`) less time than general factors of all systems.
+    to a third (`switch_tissues_fem`) less time than general factors of all systems, in space under as stiff a contact half
+    (`annulus_tilted_3d`).
     """
 
     def __init__(self) -> None:
