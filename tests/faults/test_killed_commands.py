@@ -48,13 +48,13 @@ def run(case_file: Path) -> Callable[[Path, str], int]:
     return lambda out, title: main(["run", str(case_file), "--out", str(out), "--force", "--set", f"title={title}"])
 
 
-@pytest.mark.parametrize("stride", [3, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("stride", [2, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run: Callable[[Path, str], int], stride: int) -> None:
     run(tmp_path / "count" / "out", "old")
     total = steps_of(lambda: run(tmp_path / "count" / "out", "x"))
     assert 15 < total < MOST_STEPS
     seen = set()
-    for number in range(1, total + 1, stride):
+    for number in range(stride, total + 1, stride):
         out = tmp_path / str(number) / "out"
         run(out, "old")
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
@@ -66,8 +66,7 @@ def test_a_run_killed_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, run:
         assert run(out, "next") == 0
         assert mark_of(out) is True
         assert os.listdir(out.parent) == ["out"]
-    assert seen >= {False, True}
-    assert None in seen or stride > 1, "between the two, for one step"
+    assert seen == {None, False, True}
 
 
 STRIDES = [(errno.ENOSPC, 1), (errno.EIO, 5), pytest.param(errno.EIO, 1, marks=pytest.mark.slow)]
@@ -81,7 +80,7 @@ def test_a_run_refused_at_any_step_says_so_and_loses_nothing(
     out = tmp_path / "out"
     run(out, "old")
     total = steps_of(lambda: run(out, "x"))
-    for number in range(1, total + 1, stride):
+    for number in range(stride, total + 1, stride):
         run(out, "old")
         capsys.readouterr()
         with disk(At(number, lambda: OSError(code, os.strerror(code)), for_good=False)):

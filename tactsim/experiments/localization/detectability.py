@@ -99,11 +99,11 @@ class Detectability(Experiment):
         for number, count in enumerate(self.matrices, 1):
             response = self._response(count)
             with elapsed_time(f"{count} x {count} taxels"):
-                outcome.steps.append(self._matrix(number, count, response, outcome))
+                self._judge(number, count, response, outcome)
             yield outcome.steps[-1]
 
-    def _matrix(self, number: int, count: int, response: LumpResponse, outcome: _Outcome) -> StepRecord:
-        """Find the smallest radii of one matrix, with ``count`` taxels along each side."""
+    def _judge(self, number: int, count: int, response: LumpResponse, outcome: _Outcome) -> None:
+        """Add the smallest radii that a matrix with ``count`` taxels along each side finds."""
         templates = unit_templates(response, every=2)
         threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
         contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
@@ -114,7 +114,7 @@ class Detectability(Experiment):
                 for name, sigma in deviations.items()
             }
         )
-        return StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold})
+        outcome.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
 
     def _findings(self, outcome: _Outcome) -> Findings:
         return Findings(

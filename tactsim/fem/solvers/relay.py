@@ -28,6 +28,11 @@ class Relay(IterativeSolver):
         """Of the solver that solves now."""
         return self.current.name
 
+    @property
+    def exact(self) -> bool:  # type: ignore[override]  # of the class elsewhere
+        """Whether that one is."""
+        return self.current.exact
+
     def factor(self, system: LinearSystem) -> None:
         """Take a system and make its preconditioner."""
         self._system = system

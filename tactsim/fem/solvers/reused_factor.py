@@ -40,18 +40,25 @@ class ReusedFactor(IterativeSolver):
     direct : makes the factors
     largest_left : residual over the right-hand side above which the iteration with a new factor is an error, beside twice the
         accuracy; otherwise the user of the solution has to look at it
+    largest_error : error of a solution over its size at most, also where more is asked for
     worth : solutions that count as much as a new factor
     most : most solutions with an old factor for one system before the system itself is factored
     """
 
     def __init__(
-        self, direct: DirectSolver, *, largest_left: float = math.inf, worth: int = WORTH_A_FACTOR, most: int = MOST_OF_ONE
+        self,
+        direct: DirectSolver,
+        *,
+        largest_left: float = math.inf,
+        largest_error: float = math.inf,
+        worth: int = WORTH_A_FACTOR,
+        most: int = MOST_OF_ONE,
     ):
         self.factorisations = self.solutions = 0
         self.name = f"{direct.name}, reused"
         self._direct, self._largest_left = direct, largest_left
         self._system: LinearSystem | None = None
-        self._worth, self._most = worth, most
+        self._largest_error, self._worth, self._most = largest_error, worth, most
         self._current, self._spent = False, worth
 
     def factor(self, system: LinearSystem) -> None:
@@ -72,7 +79,7 @@ class ReusedFactor(IterativeSolver):
             raise InputError("factor a matrix before solving")
         if not np.isfinite(right).all():
             raise ConvergenceError("the right-hand side holds numbers that are not finite")
-        matrix, begin = self._system.matrix, None
+        matrix, begin, accuracy = self._system.matrix, None, min(accuracy, self._largest_error)
         if not right.any():
             return np.zeros_like(right)
         if not self._current and self._spent < self._worth:

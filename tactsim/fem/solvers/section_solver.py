@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
-from tactsim.errors import InputError
+from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
 from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
@@ -25,78 +25,49 @@ LARGEST_ERROR = 1e-4
 takes 165 systems instead of 141, no time less and other steps, and Newton does not find into a block that sticks to a plate."""
 
 
-class SectionSolver(IterativeSolver):
-    """MKL Pardiso: a symmetric factor of each system until one is not symmetric or that factor not exact; from then on one in
-    single precision, of the part that friction does not couple, guides the iteration for as long as it pays.
+class SymmetricFactors(IterativeSolver):
+    """MKL Pardiso: a symmetric factor of each system; a solution fails where a system is not symmetric or its factor not exact.
 
     Pivots are single numbers, chosen by the matching; a section of 32 000 unknowns then takes 52 ms for a factor and 8.7 ms for a
     solution, with blocks as pivots 63 and 13 ms, by the general factor 90 and 11 ms. Where they do not suffice, the residual of
-    the first solution says so, which is looked at for every factor. With friction a reused factor takes a fifth (`annulus_icf`)
-    to a third (`switch_tissues_fem`) less time than general factors of all systems, in space under as stiff a contact half
-    (`annulus_tilted_3d`).
+    the first solution says so, which is looked at for every factor.
     """
 
+    name = SymmetricPardiso.name
+    exact = True
+
     def __init__(self) -> None:
-        self._symmetric = SymmetricPardiso(blocks=False)
-        self._guided: IterativeSolver | None = None
+        self._direct = SymmetricPardiso(blocks=False)
         self._probes: tuple[Array, Array] | None = None
-        self._system: LinearSystem | None = None
-        self._checked = False
-
-    @property
-    def name(self) -> str:  # type: ignore[override]  # of the class elsewhere
-        """Of the solver that solves now."""
-        return self._symmetric.name if self._guided is None else self._guided.name
-
-    @property
-    def exact(self) -> bool:  # type: ignore[override]  # of the class elsewhere
-        """As long as every system is symmetric."""
-        return self._guided is None
+        self._unchecked: csr_matrix | None = None
+        self._symmetric = False
 
     def factor(self, system: LinearSystem) -> None:
-        """Factor a system, or keep it for the iteration; its pattern must be that of the first one."""
-        self._system, self._checked = system, False
-        if self._guided is None and self._is_symmetric(system.matrix):
-            self._symmetric.factor(system.matrix)
-        else:
-            self._guide().factor(system)
+        """Factor a system if it is symmetric; its pattern must be that of the first one."""
+        self._unchecked, self._symmetric = system.matrix, self._is_symmetric(system.matrix)
+        if self._symmetric:
+            self._direct.factor(system.matrix)
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``.
+        """Exact solution for one right-hand side (n,) of the last system.
 
         Raises
         ------
-        InputError
-            If there is no system yet.
         ConvergenceError
-            If no factor solves it.
+            If the system is not symmetric, or its factor not exact.
         """
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
-        if self._guided is not None:
-            return self._guided.solve(right, min(accuracy, LARGEST_ERROR))
-        solution = self._symmetric.solve(right)
-        if self._checked or np.abs(self._system.matrix @ solution - right).max() <= EXACT * np.abs(right).max():
-            self._checked = True
-            return solution
-        guided = self._guide()
-        guided.factor(self._system)
-        return guided.solve(right, min(accuracy, LARGEST_ERROR))
+        if not self._symmetric:
+            raise ConvergenceError("the matrix is not symmetric")
+        solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
+        if matrix is not None and not np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max():
+            raise ConvergenceError("the pivots of the symmetric factor do not suffice")
+        return solution
 
     def close(self) -> None:
-        """Release the memory of the factors; the next matrix may have another pattern."""
-        self._symmetric.close()
-        if self._guided is not None:
-            self._guided.close()
-        self._probes = self._system = None
-
-    def _guide(self) -> IterativeSolver:
-        """The iteration; general factors take over where it fails."""
-        if self._guided is None:
-            self._symmetric.close()
-            first = ReusedFactor(SinglePardiso(minimum_degree=True), largest_left=FAILED, worth=WORTH, most=MOST)
-            self._guided = Relay(first, lambda: ReusedFactor(Pardiso()))
-        return self._guided
+        """Release the factor's memory; the next matrix may have another pattern."""
+        self._direct.close()
+        self._probes = self._unchecked = None
+        self._symmetric = False
 
     def _is_symmetric(self, matrix: csr_matrix) -> bool:
         """Whether two vectors find it so: a tenth of the time that every entry and its mirror image take."""
@@ -106,3 +77,18 @@ class SectionSolver(IterativeSolver):
         x, y = self._probes
         first, second = x * (matrix @ y), y * (matrix @ x)
         return bool(abs(first.sum() - second.sum()) <= ASYMMETRY * (np.abs(first).sum() + np.abs(second).sum()))
+
+
+def section_factors() -> Relay:
+    """Symmetric factors until one will not do; from then on one in single precision, of the part that friction does not couple,
+    guides the iteration for as long as it pays; general factors where that fails.
+
+    With friction a reused factor takes a fifth (`annulus_icf`) to a third (`switch_tissues_fem`) less time than general factors
+    of all systems, in space under as stiff a contact half (`annulus_tilted_3d`).
+    """
+
+    def guided() -> ReusedFactor:
+        single = SinglePardiso(minimum_degree=True)
+        return ReusedFactor(single, largest_left=FAILED, largest_error=LARGEST_ERROR, worth=WORTH, most=MOST)
+
+    return Relay(SymmetricFactors(), guided, lambda: ReusedFactor(Pardiso(), largest_error=LARGEST_ERROR))

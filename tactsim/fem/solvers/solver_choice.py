@@ -12,7 +12,7 @@ from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
 from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
-from tactsim.fem.solvers.section_solver import SectionSolver
+from tactsim.fem.solvers.section_solver import section_factors
 
 OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 4.2e10, 1e9
 """Speeds of a factor in single precision and of solutions with it. Grasps of 28 506 and 82 832 unknowns
@@ -64,7 +64,7 @@ def solver_for(body: Body) -> LinearSolver:
 
 def section_solver() -> LinearSolver:
     """The solver of sections of some ten thousand unknowns."""
-    return SectionSolver() if has_pardiso() else SuperLU()
+    return section_factors() if has_pardiso() else SuperLU()
 
 
 def factored(guide: QuasiDefinitePardiso) -> Relay:
