@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Self, final
 
 from tactsim.deadline import check_time, time_limit
-from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, Unfinished
+from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, OutOfTime, Unfinished
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation
 from tactsim.kind import CaseKind
@@ -210,22 +210,23 @@ def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] 
 
 
 def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Result]:
-    """Yields the steps of an experiment that is part of another and returns its result; what ends it early ends the other.
+    """Yields the steps of an experiment that is part of another and returns its result, converged or failed.
+
+    An interruption, and the end of the time allowed or of the memory, are no failures of the part: they end the other one too.
 
     Raises
     ------
-    Unfinished
-        If it does not come to its end, or fails at what it is for.
+    OutOfTime, OutOfMemory
+        If the time allowed has passed, or the memory does not suffice.
     """
-    name, course = experiment.kind.replace("_", " "), experiment.begin()
+    course, early = experiment.begin(), None
     try:
         yield from course.steps
+    except (OutOfTime, OutOfMemory):
+        raise
     except Unfinished as error:
-        raise Unfinished(f"the {name} {failure(error)}") from error
-    findings = course.findings()
-    if findings.status is not Status.CONVERGED:
-        raise Unfinished(f"the {name} {findings.reason}")
-    return _result(experiment, findings, None, {})
+        early = Status.FAILED, failure(error)
+    return _result(experiment, course.findings(), early, {})
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -20,11 +20,11 @@ from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, run_within_another
 from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.model import FrozenModel
-from tactsim.results.result import Result, Status, StepRecord
+from tactsim.results.result import Status, StepRecord
 from tactsim.units import Length, Time, format_quantity
 
 PositiveLength = Annotated[Length, Field(gt=0)]
@@ -131,7 +131,7 @@ class ElastomerRanking(Experiment):
     atrium: AtriumTest = AtriumTest()
     """Porcine atrium."""
 
-    history_units: ClassVar[dict[str, str]] = RankingReport.UNITS
+    history_units: ClassVar[dict[str, str]] = Indentation.history_units | Durometer.history_units | RankingReport.UNITS
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -164,20 +164,20 @@ class ElastomerRanking(Experiment):
 
     def _ranked(self, report: RankingReport) -> Iterator[StepRecord]:
         for shape in self.shapes:
-            yield from report.add(self._finding(shape))
+            yield from report.add((yield from self._finding(shape)))
         shapes = [shape.name for shape in self.shapes]
         report.add_atrium(self.atrium.reading, self.atrium.times, shapes.index(self.atrium.shape or shapes[-1]))
 
-    def _finding(self, shape: Shape) -> ShapeFinding:
-        """Threshold and force-depth curve of a shape.
+    def _finding(self, shape: Shape) -> Generator[StepRecord, None, ShapeFinding]:
+        """Yields the steps of both simulations of a shape, and returns its threshold and its force-depth curve.
 
         Raises
         ------
         Unfinished
             If the threshold was not reached, or the durometer made no curve.
         """
-        sensor, durometer = self.sensor.of(shape), self.durometer.of(shape)
-        pressed, indented = (_finished(experiment) for experiment in (sensor, durometer))
+        pressed = yield from run_within_another(self.sensor.of(shape))
+        indented = yield from run_within_another(self.durometer.of(shape))
         if pressed.status is not Status.CONVERGED or len(indented.steps) < 2:
             raise Unfinished(f"{shape.name}: sensor {pressed.reason}; durometer {indented.reason}")
         modulus = youngs_modulus(shape.material.shear_modulus, None)
@@ -210,11 +210,3 @@ class ElastomerRanking(Experiment):
             "Table 4.1 as creep compliance 1/E with retardation times in s, the modulus at a time taken as its reciprocal"
         )
         return assumptions
-
-
-def _finished(experiment: Experiment) -> Result:
-    """The result of a simulation that the user did not interrupt."""
-    result = experiment.run(None)
-    if result.status is Status.INTERRUPTED:
-        raise KeyboardInterrupt
-    return result

@@ -216,6 +216,7 @@ class RankingReport:
             quantities=self._quantities() if self._finished else {},
             assumptions=assumptions,
             warnings=self._warnings(),
+            units=self.UNITS,
             scene=self._scene(),
         )
 

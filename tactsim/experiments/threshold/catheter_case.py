@@ -7,6 +7,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.experiments.threshold.sampling import check_length
 from tactsim.experiments.threshold.tip_model import ClosedFormTip, TipModel
 from tactsim.experiments.threshold.valve_tissue import ValveSurface
 from tactsim.model import FrozenModel
@@ -16,8 +17,6 @@ from tactsim.units import Angle, Length, Speed, Time
 
 STEEPEST = np.pi / 6 * (1 + 1e-12)
 """Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
-MOST_SAMPLES = 500_000
-"""Longest recording of one touch, in samples."""
 
 
 class CatheterCase(FrozenModel):
@@ -64,10 +63,5 @@ class CatheterCase(FrozenModel):
                     f"the {tissue.name} has a threshold_pressure, which needs model: {{kind: closed_form}} and elastic tissues; "
                     "leave it out"
                 )
-        needed = (self.lead + self.press / self.speed) * self.sensor.chain.sampling_rate
-        if needed > MOST_SAMPLES:
-            raise ValueError(
-                f"lead and press / speed take {needed:.3g} samples; allowed: up to {MOST_SAMPLES}; "
-                "press faster, shorten the lead or sample more slowly"
-            )
+        check_length("lead and press / speed take", self.lead + self.press / self.speed, self.sensor.chain.sampling_rate)
         return self

@@ -126,6 +126,7 @@ class CatheterReport:
             quantities={**self._sensors(), **(self._hardest() if complete else {})},
             assumptions=self._assumptions(),
             warnings=(*self._warnings(), *(self._undecided() if complete else ())),
+            units=SENSOR_UNITS,
             scene=self._scene(),
         )
 

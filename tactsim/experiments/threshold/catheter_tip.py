@@ -7,6 +7,7 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.catheter_report import SENSOR_UNITS, CatheterReport, Reading
 from tactsim.experiments.threshold.sampling import ApproachSampling
@@ -29,7 +30,7 @@ class CatheterTip(CatheterCase, Experiment):
     """
 
     kind: Literal["catheter_tip"] = "catheter_tip"
-    history_units: ClassVar[dict[str, str]] = SENSOR_UNITS
+    history_units: ClassVar[dict[str, str]] = TimedIndentation.history_units | SENSOR_UNITS
 
     @classmethod
     def example(cls) -> Self:
@@ -52,7 +53,7 @@ class CatheterTip(CatheterCase, Experiment):
         low_pass, noise = self.sensor.chain.low_pass, self.sensor.chain.noise
         trigger = self.sensor.armed(low_pass, noise=noise, seed=[self.seed, 0])
         lags = self.ring.lag(self.tilt, self.tilt_direction)
-        contacts = self.model.contacts(self.surface, self.ring, self.place, self.speed)
+        contacts = yield from self.model.contacts(self.surface, self.ring, self.place, self.speed)
         for index, (met, lag) in enumerate(zip(contacts, lags, strict=True)):
             yield report.add(self._reading(index, met.contact, float(lag), trigger), met)
 

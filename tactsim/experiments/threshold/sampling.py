@@ -10,6 +10,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
+from tactsim.errors import InvalidQuantity
 from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.sensors.electronics.converter import Converter
 from tactsim.sensors.electronics.low_pass import LowPass
@@ -23,8 +24,26 @@ BLOCK = 10
 FINER = 16
 """Sampling of the ideal chain, which stands for continuous time, over that of the real one."""
 SILENT = Noise()
+MOST_SAMPLES = 500_000
+"""Longest recording of one approach, in samples."""
 SETTLING = 2.0
 """Time in periods of the cut-off after which a low pass has forgotten its start: 12.6 time constants of the first order."""
+
+
+def check_length(recording: str, duration: float, rate: float) -> None:
+    """Refuse a recording of too many samples; its words stand before their number, its duration is in s, the rate in Hz.
+
+    Raises
+    ------
+    InvalidQuantity
+        With the number of samples.
+    """
+    samples = duration * rate
+    if samples > MOST_SAMPLES:
+        raise InvalidQuantity(
+            f"{recording} {samples:.3g} samples; allowed: up to {MOST_SAMPLES}; "
+            "press faster, shorten the lead or sample more slowly"
+        )
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Generator
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -9,21 +11,20 @@ from pydantic import Field, model_validator
 from tactsim.analytic.histories import History, Segment
 from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
 from tactsim.array import Array
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import InvalidQuantity, Unfinished
 from tactsim.experiments.annulus.closed_form import check_closed_form
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach, ContactCurve, SensorShape
 from tactsim.identification.columns import read_columns
-from tactsim.interfaces import Experiment
+from tactsim.interfaces.run import run_within_another
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_result
-from tactsim.results.result import Result
-from tactsim.units import Length, format_quantity
+from tactsim.results.result import Status, StepRecord
+from tactsim.units import Length, Positive, format_quantity
 
-PositiveLength = Annotated[Length, Field(gt=0)]
 COLUMNS = {"displacement": "m", "plate force": "N", "tissue rise": "m", "small sensor force": "N"}
 
 
@@ -50,13 +51,24 @@ class ClosedFormTissue:
         return Approach(speed, duration, touch, threshold, forces)
 
 
-class Source(FrozenModel):
-    """A base of the sources."""
+Tissue = Generator[StepRecord, None, ClosedFormTissue | ContactCurve]
+"""Yields the steps of what is simulated first, if anything, and returns the forces on the sensor."""
 
-    @property
-    def simulation(self) -> Experiment | None:
-        """What has to be run first; None if nothing."""
-        return None
+
+class Source(FrozenModel):
+    """What gives the forces on a sensor."""
+
+    @abstractmethod
+    def tissue(self) -> Tissue:
+        """The tissue that the sensor meets."""
+
+    def assumptions(self) -> list[str]:
+        """Assumptions of the contact that the result lists: those of a curve."""
+        return [
+            "the tissue's force depends on the displacement alone, not on the speed: elastic tissue",
+            "past the touch the small sensor bears what the simulation computed; where it ended at the touch, a solid punch of "
+            "the hole's radius on tissue of the plate's last tangent stiffness",
+        ]
 
 
 class ClosedFormSource(Source):
@@ -65,17 +77,17 @@ class ClosedFormSource(Source):
     kind: Literal["closed_form"] = "closed_form"
     material: AnyMaterial
     """Tissue; its small-strain shear relaxation counts; incompressible."""
-    inner_radius: PositiveLength = 1.5e-3
+    inner_radius: Positive[Length] = 1.5e-3
     """Radius of the hole, that of the small sensor."""
-    outer_radius: PositiveLength = 3e-3
+    outer_radius: Positive[Length] = 3e-3
     """Radius of the face."""
-    recess: PositiveLength = 0.8e-3
+    recess: Positive[Length] = 0.8e-3
     """Depth L of the small sensor."""
-    thickness: PositiveLength | None = None
+    thickness: Positive[Length] | None = None
     """Thickness of the tissue on a rigid base; null is a half-space."""
     base: Literal["bonded", "slipping"] = "bonded"
     """How the tissue rests on its base."""
-    beyond: PositiveLength = 0.5e-3
+    beyond: Positive[Length] = 0.5e-3
     """Displacement past the touch that is followed; without a trigger up to there a touch counts as missed."""
 
     @model_validator(mode="after")
@@ -85,7 +97,7 @@ class ClosedFormSource(Source):
             raise ValueError("the recess must be smaller than the thickness of the tissue (thesis, end of 3.1.1)")
         return self
 
-    def tissue(self, simulated: Result | None = None) -> ClosedFormTissue:
+    def contact(self) -> ClosedFormTissue:
         """The contact in closed form."""
         compliance = shear_compliance(self.material)
 
@@ -96,6 +108,11 @@ class ClosedFormSource(Source):
         shape = SensorShape(self.inner_radius, self.outer_radius, self.recess)
         annulus = punch(self.outer_radius, self.inner_radius / self.outer_radius)
         return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
+
+    def tissue(self) -> Tissue:
+        """The contact in closed form."""
+        yield from ()
+        return self.contact()
 
     def assumptions(self) -> list[str]:
         """Assumptions of the contact that the result lists."""
@@ -111,16 +128,13 @@ class RunSource(Source):
     kind: Literal["run"] = "run"
     path: InputPath
     """Folder of the result, beside the case or in the working folder."""
-    beyond: PositiveLength = 0.2e-3
+    beyond: Positive[Length] = 0.2e-3
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
-    def tissue(self, simulated: Result | None = None) -> ContactCurve:
+    def tissue(self) -> Tissue:
         """The curve in the folder."""
+        yield from ()
         return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
-
-    def assumptions(self) -> list[str]:
-        """Assumptions of the contact that the result lists."""
-        return _curve_assumptions()
 
 
 class IndentationSource(Source):
@@ -129,22 +143,21 @@ class IndentationSource(Source):
     kind: Literal["indentation"] = "indentation"
     experiment: Indentation
     """The indentation, by an annulus with a recess."""
-    beyond: PositiveLength = 0.2e-3
+    beyond: Positive[Length] = 0.2e-3
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
-    @property
-    def simulation(self) -> Indentation:
-        """The indentation."""
-        return self.experiment
+    def tissue(self) -> Tissue:
+        """The curve of the simulation.
 
-    def tissue(self, simulated: Result | None = None) -> ContactCurve:
-        """The curve of the simulation; it is run if its result is not given."""
-        result = self.experiment.run(None) if simulated is None else simulated
+        Raises
+        ------
+        Unfinished
+            If it does not come to its end.
+        """
+        result = yield from run_within_another(self.experiment)
+        if result.status is not Status.CONVERGED:
+            raise Unfinished(f"the indentation {result.reason}")
         return ContactCurve.of_result(result, beyond=self.beyond)
-
-    def assumptions(self) -> list[str]:
-        """Assumptions of the contact that the result lists."""
-        return _curve_assumptions()
 
 
 class CurveSource(Source):
@@ -154,11 +167,11 @@ class CurveSource(Source):
     path: InputPath
     """CSV file, beside the case or in the working folder; header such as
     ``displacement [mm], plate force [N], tissue rise [mm], small sensor force [N]``; one row stands at the touch."""
-    inner_radius: PositiveLength = 1.5e-3
+    inner_radius: Positive[Length] = 1.5e-3
     """Radius of the hole."""
-    outer_radius: PositiveLength = 3e-3
+    outer_radius: Positive[Length] = 3e-3
     """Radius of the face."""
-    recess: PositiveLength = 0.8e-3
+    recess: Positive[Length] = 0.8e-3
     """Depth L of the small sensor."""
 
     @model_validator(mode="after")
@@ -168,7 +181,7 @@ class CurveSource(Source):
             raise ValueError(f"inner_radius {inner} must be below the outer_radius {outer}")
         return self
 
-    def tissue(self, simulated: Result | None = None) -> ContactCurve:
+    def tissue(self) -> Tissue:
         """The curve in the file.
 
         Raises
@@ -176,23 +189,12 @@ class CurveSource(Source):
         InvalidQuantity
             If a column is missing.
         """
+        yield from ()
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]
         if missing:
             raise InvalidQuantity(f"{self.path}: no column {missing[0]!r}; needed: {', '.join(COLUMNS)}")
         return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
 
-    def assumptions(self) -> list[str]:
-        """Assumptions of the contact that the result lists."""
-        return _curve_assumptions()
-
 
 AnySource = Annotated[ClosedFormSource | RunSource | IndentationSource | CurveSource, Field(discriminator="kind")]
-
-
-def _curve_assumptions() -> list[str]:
-    return [
-        "the tissue's force depends on the displacement alone, not on the speed: elastic tissue",
-        "past the touch the small sensor bears what the simulation computed; where it ended at the touch, a solid punch of the "
-        "hole's radius on tissue of the plate's last tangent stiffness",
-    ]

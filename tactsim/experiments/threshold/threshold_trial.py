@@ -5,23 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal, Self
 
-from tactsim.errors import InvalidQuantity
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.experiments.threshold.report import SIGNAL_UNITS, TrialReport
-from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling
+from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling, check_length
 from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course, run_within_another
+from tactsim.interfaces.run import Course
 from tactsim.materials.library import named_material
 from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
-
-MOST_SAMPLES = 500_000
-"""Longest recording of one approach, in samples."""
 
 
 class ThresholdTrial(TrialCase, Experiment):
@@ -51,14 +46,15 @@ class ThresholdTrial(TrialCase, Experiment):
 
     def _sampled(self, report: TrialReport) -> Iterator[StepRecord]:
         """The steps of the simulation that is run first, if any, then those of the history."""
-        first = self.source.simulation
-        simulated = None if first is None else (yield from run_within_another(first))
-        tissue = self.source.tissue(simulated)
+        tissue = yield from self.source.tissue()
         report.shape = tissue.shape
         triggers = [self._triggers(index, noise) for index, noise in enumerate(self.noise_levels)]
         for index, speed in enumerate(self.speeds):
             approach = tissue.approach(speed)
-            self._check_length(approach)
+            words = (
+                f"speeds: {format_quantity(speed, 'm/s')} takes {approach.duration:.3g} s after a lead of {self.lead:.3g} s and"
+            )
+            check_length(words, self.lead + approach.duration, self.sensor.chain.sampling_rate)
             sampling = ApproachSampling.settled(self.sensor, approach, tissue.shape.area, self.lead, self.low_passes)
             self._sample(report, index, sampling, triggers)
         report.complete = True
@@ -85,12 +81,3 @@ class ThresholdTrial(TrialCase, Experiment):
                 report.add(noisy[k], silent[k], [line, *ideals], level)
                 if (speed, index, k) == report.shown:
                     report.show(sampling, noise, low_pass, triggers[index][k])
-
-    def _check_length(self, approach: Approach) -> None:
-        needed = (self.lead + approach.duration) * self.sensor.chain.sampling_rate
-        if needed > MOST_SAMPLES:
-            speed = format_quantity(approach.speed, "m/s")
-            raise InvalidQuantity(
-                f"speeds: {speed} takes {approach.duration:.3g} s after a lead of {self.lead:.3g} s and {needed:.3g} samples; "
-                f"allowed: up to {MOST_SAMPLES}; press faster, shorten the lead or sample more slowly"
-            )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -12,18 +12,19 @@ from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Unfinished
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape, continued
 from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact, mixed_contacts
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
+from tactsim.interfaces.run import run_within_another
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.model import FrozenModel
-from tactsim.results.result import Result, Status
+from tactsim.results.result import Result, Status, StepRecord
 from tactsim.sensors.threshold.sensor_ring import SensorRing
 from tactsim.units import Length
 
@@ -60,8 +61,11 @@ class ClosedFormTip(FrozenModel):
 
     kind: Literal["closed_form"] = "closed_form"
 
-    def contacts(self, surface: ValveSurface, ring: SensorRing, place: tuple[float, float], speed: float) -> list[TipContact]:
-        """What each sensor of a tip at a place in m meets at a speed in m/s, with the errors of the closed form."""
+    def contacts(
+        self, surface: ValveSurface, ring: SensorRing, place: tuple[float, float], speed: float
+    ) -> Generator[StepRecord, None, list[TipContact]]:
+        """Returns what each sensor of a tip at a place in m meets at a speed in m/s, with the errors of the closed form."""
+        yield from ()  # no simulation
         shares = surface.shares(ring, place)
         if any(tissue.relaxation is not None for tissue in surface.tissues):
             curves = [relaxing_curve(tissue, ring, speed) for tissue in surface.tissues]
@@ -101,33 +105,37 @@ class FiniteElementTip(FrozenModel):
     surface_radius: Annotated[Length, Field(gt=0)] | None = None
     """Radius of a convex surface under each sensor; null is flat. Near a border the correction is that of a flat surface."""
 
-    def contacts(self, surface: ValveSurface, ring: SensorRing, place: tuple[float, float], speed: float) -> list[TipContact]:
-        """What each sensor of a tip at a place in m meets at a speed in m/s.
+    def contacts(
+        self, surface: ValveSurface, ring: SensorRing, place: tuple[float, float], speed: float
+    ) -> Generator[StepRecord, None, list[TipContact]]:
+        """Yields the steps of all tissues, and returns what each sensor of a tip at a place in m meets at a speed in m/s.
 
         Raises
         ------
-        ConvergenceError
+        Unfinished
             If a tissue does not reach the recess.
         """
         shares, factors = surface.shares(ring, place), border_factors(surface, ring, place)
-        curves = [self.curve(tissue, ring, speed) for tissue in surface.tissues]
+        curves = []
+        for tissue in surface.tissues:
+            curves.append((yield from self.curve(tissue, ring, speed)))
         contacts = mixed_contacts(curves, shares, factors)
         near = (factors != 1.0).any(axis=1)
         errors = FEM_ERROR + np.where(near, FEM_BORDER_ERROR, 0.0)
         return [TipContact(c, -e, e, e) for c, e in zip(contacts, errors.tolist(), strict=True)]
 
-    def curve(self, tissue: BandTissue, ring: SensorRing, speed: float) -> ContactCurve:
-        """Forces on a sensor that is pressed into one tissue, flat or convex, at a speed in m/s.
+    def curve(self, tissue: BandTissue, ring: SensorRing, speed: float) -> Generator[StepRecord, None, ContactCurve]:
+        """Yields the steps of a sensor that is pressed into one tissue, flat or convex, at a speed in m/s; returns its forces.
 
         Raises
         ------
-        ConvergenceError
+        Unfinished
             If the tissue does not reach the recess.
         """
-        result = self._pressed(tissue, ring, speed).run()
+        result = yield from run_within_another(self._pressed(tissue, ring, speed))
         shape = _shape(ring)
         if result.status is not Status.CONVERGED:
-            raise ConvergenceError(f"the {tissue.name} under a sensor: {result.reason}")
+            raise Unfinished(f"the {tissue.name} under a sensor: {result.reason}")
         names = ("displacement", "reaction_force", "tissue_rise")
         rows = np.array([[0.0] * 4] + [[*(step.values[name] for name in names), 0.0] for step in result.steps])
         rows[0, 2] = self._rise_at_touch(ring)
@@ -202,7 +210,7 @@ def relaxing_curve(tissue: BandTissue, ring: SensorRing, speed: float) -> Contac
         base=tissue.base,
         beyond=tissue.thickness,
     )
-    approach = source.tissue().approach(speed)
+    approach = source.contact().approach(speed)
     times = np.concatenate([np.linspace(0, approach.touch, SAMPLES), np.linspace(approach.touch, approach.duration, SAMPLES)[1:]])
     plate, small = approach.at(times)
     rise = ring.recess * times / approach.touch

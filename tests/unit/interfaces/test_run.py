@@ -7,12 +7,12 @@ from typing import ClassVar, Literal
 
 import pytest
 
-from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
+from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import NO_MEMORY, Course, Findings, run_within_another, timed
 from tactsim.registry import forget
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import Status, StepRecord, rows
+from tactsim.results.result import Result, Status, StepRecord, rows
 
 
 def raised(error: BaseException | None) -> None:
@@ -121,28 +121,31 @@ def test_other_errors_of_a_step_are_not_hidden(made: Callable[..., Experiment]) 
         made(after=InputError("a wrong number")).run()
 
 
-def drained(experiment: Experiment) -> tuple[list[StepRecord], object]:
+def drained(experiment: Experiment) -> tuple[list[StepRecord], Result]:
     """Steps and result of an experiment within another."""
-    steps: list[StepRecord] = []
+    results: list[Result] = []
 
     def outer() -> Iterator[StepRecord]:
-        findings.append((yield from run_within_another(experiment)))
+        results.append((yield from run_within_another(experiment)))
 
-    findings: list[object] = []
-    steps.extend(outer())
-    return steps, findings[0]
+    return list(outer()), results[0]
 
 
 def test_an_experiment_within_another(made: Callable[..., Experiment]) -> None:
     steps, result = drained(made())
     assert len(steps) == 2
-    assert result.quantities["count"].value == 2  # type: ignore[attr-defined]
-    with pytest.raises(Unfinished, match="the scripted stopped converging: no luck"):
-        drained(made(after=ConvergenceError("no luck")))
-    with pytest.raises(Unfinished, match="the scripted counted"):
-        drained(made(status=Status.FAILED))
-    with pytest.raises(KeyboardInterrupt):
-        drained(made(after=KeyboardInterrupt()))
+    assert result.quantities["count"].value == 2
+    failed = drained(made(after=ConvergenceError("no luck")))[1]
+    assert (failed.status, failed.reason, len(failed.steps)) == (Status.FAILED, "stopped converging: no luck", 2)
+    assert drained(made(status=Status.FAILED))[1].status is Status.FAILED
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), OutOfTime("too late"), OutOfMemory("too large"), MemoryError()])
+def test_what_ends_an_experiment_within_another_from_outside_ends_both(
+    made: Callable[..., Experiment], error: BaseException
+) -> None:
+    with pytest.raises(type(error)):
+        drained(made(after=error))
 
 
 def test_times_of_parts() -> None:

@@ -6,14 +6,17 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
+from nested_runs import every_end, pretend_to_end
 
 from tactsim.analytic.durometer import DurometerScale, hertz_force
 from tactsim.case import load_case
-from tactsim.errors import CaseError, Unfinished
+from tactsim.errors import CaseError, ConvergenceError
+from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.elastomer_ranking import AtriumTest, ElastomerRanking, SensorTest
 from tactsim.experiments.durometer.elastomer_report import RankingReport, ShapeFinding
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3, Elastomer, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.interfaces.run import Course
 from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.neo_hookean import NeoHookean
@@ -113,9 +116,10 @@ def ranked():
 def test_the_whole_run(ranked):
     result, steps = ranked
     assert result.status == "converged"
-    assert list(result.steps) == steps
-    assert len(steps) == 7
-    assert {name for step in steps for name in step.values} == set(ElastomerRanking.history_units)
+    assert list(result.steps) == steps[-7:]
+    assert len(result.steps) == 7 < len(steps), "those of the simulations come before"
+    assert {name for step in result.steps for name in step.values} == set(result.units)
+    assert {name for step in steps for name in step.values} <= set(ElastomerRanking.history_units)
     moduli = result.quantities["modulus_of_threshold"].value[0]
     pressure = result.quantities["own_threshold_pressure"].value[0]
     assert moduli[0] / 10e3 == pytest.approx(89.8e3 / pressure, rel=1e-12)
@@ -153,21 +157,14 @@ def test_a_threshold_that_is_not_reached_is_a_failure():
     assert result.steps == ()
 
 
-def test_an_interruption_is_reported(monkeypatch):
-    def stop(self, shape):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(ElastomerRanking, "_finding", stop)
+@every_end
+def test_what_ends_a_simulation_ends_the_ranking(monkeypatch, error, status, reason):
+    for kind in (Indentation, Durometer):
+        pretend_to_end(monkeypatch, kind, error)
     result = ElastomerRanking.example().run()
-    assert (result.status, result.steps, result.quantities) == ("interrupted", (), {})
-
-
-def test_a_solver_that_gives_up_is_reported(monkeypatch):
-    def give_up(self, shape):
-        raise Unfinished("no")
-
-    monkeypatch.setattr(ElastomerRanking, "_finding", give_up)
-    assert ElastomerRanking.example().run().reason == "no"
+    own = "neo-Hookean: sensor " if isinstance(error, ConvergenceError) else ""
+    assert (result.status, result.steps, result.quantities) == (status, (), {})
+    assert result.reason.startswith(own + reason)
 
 
 @pytest.mark.parametrize(

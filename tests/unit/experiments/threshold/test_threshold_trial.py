@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from nested_runs import every_end, pretend_to_end, returned
 from scenes import SOLVER
 
 from tactsim.case import load_case
@@ -167,8 +168,7 @@ def stored(path, *, past, status=Status.CONVERGED, kind="indentation"):
 
 
 def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
-    past = RunSource(path=str(stored(tmp_path / "past", past=True))).tissue()
-    ended = RunSource(path=str(stored(tmp_path / "ended", past=False))).tissue()
+    past, ended = (returned(RunSource(path=str(stored(tmp_path / str(past), past=past))).tissue()) for past in (True, False))
     assert past.threshold_displacement == ended.threshold_displacement == 1e-3
     at = np.array([0.5, 1.0, 1.1])
     plate, small = past.approach(1e-3).at(at)
@@ -181,29 +181,27 @@ def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
     assert ended.shape.area == pytest.approx(np.pi * (9 - 2.25) * 1e-6)
     for name, changes in (("failed", {"status": Status.FAILED}), ("kind", {"kind": "grasp"})):
         with pytest.raises(InputError, match="not usable"):
-            RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue()
+            returned(RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue())
 
 
-def test_an_indentation_is_run_first(monkeypatch, tmp_path):
-    def ending(error):
-        def steps():
-            yield StepRecord(1, 3, 0.0, {"displacement": 1e-4})
-            if error is not None:
-                raise error
-
-        findings = Findings("too short", status=Status.FAILED)
-        monkeypatch.setattr(Indentation, "begin", lambda self: Course(steps(), lambda: findings))
-        seen = []
-        return trial(source=IndentationSource(experiment=Indentation.example())).run(seen.append), seen
-
-    failed, seen = ending(ConvergenceError("no luck"))
-    assert (failed.status, failed.reason) == (Status.FAILED, "the indentation stopped converging: no luck")
+@every_end
+def test_what_ends_the_indentation_that_is_run_first_ends_the_trial(monkeypatch, error, status, reason):
+    pretend_to_end(monkeypatch, Indentation, error)
+    seen = []
+    ended = trial(source=IndentationSource(experiment=Indentation.example())).run(seen.append)
+    own = "the indentation " if isinstance(error, ConvergenceError) else ""
+    assert ended.status is status
+    assert ended.reason.startswith(own + reason)
     assert [step.step for step in seen] == [1]
-    assert failed.steps == ()
-    assert figures_for(failed) == {}
-    assert ending(None)[0].reason == "the indentation too short"
-    stopped, _ = ending(KeyboardInterrupt())
-    assert (stopped.status, stopped.reason) == (Status.INTERRUPTED, "interrupted; the combinations sampled before are kept")
+    assert ended.steps == ()
+    assert figures_for(ended) == {}
+
+
+def test_an_indentation_that_ends_before_its_threshold_ends_the_trial(monkeypatch):
+    findings = Findings("too short", status=Status.FAILED)
+    monkeypatch.setattr(Indentation, "begin", lambda self: Course.computed(findings))
+    failed = run(source=IndentationSource(experiment=Indentation.example()))
+    assert (failed.status, failed.reason) == (Status.FAILED, "the indentation too short")
 
 
 def test_an_interrupted_run_keeps_the_combinations_before(monkeypatch):
@@ -249,7 +247,7 @@ def test_bad_curves_are_refused(tmp_path, text, words):
 def test_a_curve_is_read_with_its_units(tmp_path):
     path = tmp_path / "curve.csv"
     path.write_text(HEADER + "1, 1, 0.4, 0\n1.5, 1.5, 0.6, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 10\n")
-    curve = CurveSource(path=str(path)).tissue()
+    curve = returned(CurveSource(path=str(path)).tissue())
     assert isinstance(curve, ContactCurve)
     assert curve.shape == SensorShape(1.5e-3, 3e-3, 0.8e-3)
     assert (curve.threshold_displacement, curve.displacement[0], curve.small[-1]) == (2e-3, 0.0, 0.01)
