@@ -37,17 +37,22 @@ class DmaMachine:
     cycles: float = 20.0
     """Recorded at each frequency; any number of at least one, whole or not."""
     samples_per_cycle: int = 50
-    settling: tuple[float, float] | None = None
-    """Time in s for which the mean load is held from rest, and cycles that are not recorded; None records the steady state."""
-    noise: tuple[float, float] = (0.0, 0.0)
-    """Standard deviations of the noise of load and displacement over the amplitudes of their own oscillations."""
+    hold: float | None = None
+    """Time in s for which the mean load is held from rest; None records the steady state."""
+    precycles: float = 0.0
+    """Cycles behind the hold that are not recorded."""
+    load_noise: float = 0.0
+    """Standard deviation of the noise of the load over the amplitude of its oscillation."""
+    displacement_noise: float = 0.0
+    """The same of the displacement."""
 
     def __post_init__(self) -> None:
         for name in ("area", "height", "amplitude", "cycles", "samples_per_cycle"):
             checked_number(name, getattr(self, name))
-        for name, values in (("settling", self.settling or ()), ("noise", self.noise)):
-            for value in values:
-                checked_number(name, value, zero=True)
+        for name in ("precycles", "load_noise", "displacement_noise"):
+            checked_number(name, getattr(self, name), zero=True)
+        if self.hold is not None:
+            checked_number("hold", self.hold, zero=True)
         if self.mean_load < self.amplitude:
             raise InvalidQuantity(
                 f"mean_load is {self.mean_load:g} N and amplitude {self.amplitude:g} N; allowed: a mean of at least the "
@@ -68,23 +73,22 @@ class DmaMachine:
         """
         times, angular = self.times(frequency), 2 * np.pi * frequency
         swing = model.complex_compliance(np.array([angular]))[0] * self.amplitude / self.area
-        if self.settling is None:
+        if self.hold is None:
             load = self.mean_load + self.amplitude * np.sin(angular * times)
             rest = (model.glassy_compliance + model.compliances.sum()) * self.mean_load / self.area
             strain = rest + (swing * np.exp(1j * angular * times)).imag
         else:
-            history = self._history(angular)
-            instants = self.settling[0] + self.settling[1] / frequency + times
+            history = self._history(angular, self.hold)
+            instants = self.hold + self.precycles / frequency + times
             load, strain = history.value(instants) * self.area, response(model, history, instants)
-        deviations = (self.noise[0] * self.amplitude, self.noise[1] * abs(swing) * self.height)
+        deviations = (self.load_noise * self.amplitude, self.displacement_noise * abs(swing) * self.height)
         noises = [deviation * generator.standard_normal(times.size) for deviation in deviations]
         columns = {"time": times, "load": load + noises[0], "displacement": strain * self.height + noises[1]}
         return DmaSignals(**columns, frequency=frequency, area=self.area, height=self.height)
 
-    def _history(self, angular: float) -> History:
+    def _history(self, angular: float, held: float) -> History:
         """Stress in Pa over time in s: the mean held, then the oscillation about it."""
-        assert self.settling is not None
-        mean, held = self.mean_load / self.area, self.settling[0]
+        mean = self.mean_load / self.area
         swing = Segment(held, np.inf, mean, harmonics=(Harmonic(self.amplitude / self.area, angular),))
         return History((Segment(0.0, held, mean), swing) if held > 0 else (swing,))
 

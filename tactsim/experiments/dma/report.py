@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
-from tactsim.experiments.dma.scene import DmaScene, KelvinFit
-from tactsim.experiments.dma.shown_signals import shown_signals
+from tactsim.experiments.dma.scene import DmaScene, KelvinFit, ShownSignals
 from tactsim.experiments.dma.source import SignalsAnalysis
 from tactsim.identification.dma_bands import ComplianceBand
 from tactsim.identification.dma_data import PARTS, DmaData, parts_of
@@ -179,7 +178,8 @@ class DmaReport:
 
     def _scene(self) -> DmaScene:
         fits = {method: self._fit(finding) for method, finding in self.fits.items()}
-        signals = () if self.analysis is None else shown_signals(self.analysis)
+        tests = [] if self.analysis is None else list(zip(self.analysis.signals, self.analysis.estimates, strict=True))
+        signals = tuple(ShownSignals.of(*tests[end]) for end in (0, -1)) if tests else ()
         return DmaScene(data_frequencies=self.data.frequencies.tolist(), fits=fits, signals=signals)
 
     def _fit(self, finding: DmaFinding) -> KelvinFit:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
+import numpy as np
+
+from tactsim.identification.dma_signals import DmaSignals, ModulusEstimate, fitted_signals
 from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
+
+SHOWN_CYCLES = 3.0
+"""Cycles of signals that are shown."""
 
 
 class KelvinFit(FrozenModel):
@@ -52,6 +58,17 @@ class ShownSignals(FrozenModel):
     """Sine, offset and drift, in m."""
     lag: float
     """Of the displacement behind the load, in rad."""
+
+    @classmethod
+    def of(cls, signals: DmaSignals, estimate: ModulusEstimate) -> Self:
+        """The first cycles of a test, and what was fitted to it."""
+        time = signals.time - signals.time[0]
+        shown = time <= SHOWN_CYCLES / estimate.frequency * (1 + 1e-9)
+        load, displacement = fitted_signals(signals, estimate.frequency)
+        columns = (time, signals.load, signals.displacement, load, displacement)
+        names = ("time", "load", "displacement", "fitted_load", "fitted_displacement")
+        listed = {name: tuple(values[shown].tolist()) for name, values in zip(names, columns, strict=True)}
+        return cls(frequency=estimate.frequency, **listed, lag=float(np.angle(estimate.modulus)))
 
 
 class DmaScene(Scene):

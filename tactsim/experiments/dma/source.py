@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, Self
@@ -22,7 +23,7 @@ from tactsim.identification.dma_signals import (
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.units import Area, Force, Frequency, Length, Time, check_increasing, format_quantity
+from tactsim.units import Area, Force, Frequency, Length, Positive, Time, check_increasing, format_quantity
 
 Seed = Annotated[int, Field(ge=0)]
 
@@ -52,20 +53,30 @@ class SignalsAnalysis:
         return dma_from_estimates(self.estimates)
 
 
-class SyntheticDma(FrozenModel):
-    """Data made from the model of Table 4.1, as the data of Fig. 4.10 are not printed."""
+class DmaSource(FrozenModel):
+    """Where data come from."""
 
-    kind: Literal["synthetic"] = "synthetic"
+    @property
+    def model(self) -> GeneralizedKelvin | None:
+        """The true model; None if none is known."""
+        return None
+
+    def analysis(self) -> SignalsAnalysis | None:
+        """The signals and what they give; None if there are none."""
+        return None
+
+    @abstractmethod
+    def measured(self) -> DmaData:
+        """The data."""
+
+
+class ModelledDma(DmaSource):
+    """Data of the model of Table 4.1."""
+
     times: Literal["retardation_times", "viscosities"] = "retardation_times"
     """The column of times of Table 4.1: in s, as eq. 4.3.8 uses it, or viscosities, as eq. 4.6.4 uses it."""
-    frequencies: Annotated[tuple[Annotated[Frequency, Field(gt=0)], ...], Field(min_length=FEWEST_FREQUENCIES)] = (
-        THESIS_FREQUENCIES
-    )
+    frequencies: Annotated[tuple[Positive[Frequency], ...], Field(min_length=FEWEST_FREQUENCIES)] = THESIS_FREQUENCIES
     """Test frequencies, increasing; by default the eight of thesis section 4.4."""
-    noise: Annotated[float, Field(ge=0, le=0.2)] = 0.02
-    """Relative standard deviation of the independent Gaussian noise of each elastic and viscous compliance."""
-    seed: Seed = 1
-    """Seed of the noise."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -77,16 +88,22 @@ class SyntheticDma(FrozenModel):
         """The true model."""
         return table_4_1(self.times)
 
+
+class SyntheticDma(ModelledDma):
+    """Data made from the model of Table 4.1, as the data of Fig. 4.10 are not printed."""
+
+    kind: Literal["synthetic"] = "synthetic"
+    noise: Annotated[float, Field(ge=0, le=0.2)] = 0.02
+    """Relative standard deviation of the independent Gaussian noise of each elastic and viscous compliance."""
+    seed: Seed = 1
+    """Seed of the noise."""
+
     def measured(self) -> DmaData:
         """The data."""
         return synthetic_dma(self.model, self.frequencies, self.noise, self.seed)
 
-    def analysis(self) -> None:
-        """There are no signals."""
-        return None
 
-
-class MeasuredDma(FrozenModel):
+class MeasuredDma(DmaSource):
     """Data read from a file."""
 
     kind: Literal["file"] = "file"
@@ -96,33 +113,18 @@ class MeasuredDma(FrozenModel):
     noise: Annotated[float, Field(gt=0, le=0.2)] | None = None
     """Relative standard deviation of each number; null estimates it from the residuals of the fit."""
 
-    @property
-    def model(self) -> None:
-        """No true model is known."""
-        return None
-
     def measured(self) -> DmaData:
         """The data."""
         return read_dma(self.path, self.noise)
 
-    def analysis(self) -> None:
-        """There are no signals."""
-        return None
 
-
-class SyntheticSignals(FrozenModel):
+class SyntheticSignals(ModelledDma):
     """Load and displacement signals of the model of Table 4.1 under an oscillating load, with noise of the recording.
 
     The compliances come from the signals, as those of a measurement do; the thesis prints neither specimen nor loads.
     """
 
     kind: Literal["synthetic_signals"] = "synthetic_signals"
-    times: Literal["retardation_times", "viscosities"] = "retardation_times"
-    """The column of times of Table 4.1: in s, as eq. 4.3.8 uses it, or viscosities, as eq. 4.6.4 uses it."""
-    frequencies: Annotated[tuple[Annotated[Frequency, Field(gt=0)], ...], Field(min_length=FEWEST_FREQUENCIES)] = (
-        THESIS_FREQUENCIES
-    )
-    """Test frequencies, increasing; by default the eight of thesis section 4.4."""
     area: Annotated[Area, Field(gt=0)] = 100e-6
     """Rest area of the specimen's cross-section."""
     height: Annotated[Length, Field(gt=0)] = 5e-3
@@ -146,16 +148,10 @@ class SyntheticSignals(FrozenModel):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        check_increasing(frequencies=self.frequencies)
         if self.mean_load < self.amplitude:
             mean, swing = format_quantity(self.mean_load, "N"), format_quantity(self.amplitude, "N")
             raise ValueError(f"mean_load {mean} must be at least the amplitude {swing}, or the specimen is let go")
         return self
-
-    @property
-    def model(self) -> GeneralizedKelvin:
-        """The true model."""
-        return table_4_1(self.times)
 
     def analysis(self) -> SignalsAnalysis:
         """The signals and what they give."""
@@ -166,8 +162,10 @@ class SyntheticSignals(FrozenModel):
             amplitude=self.amplitude,
             cycles=self.cycles,
             samples_per_cycle=self.samples_per_cycle,
-            settling=None if self.hold is None else (self.hold, self.precycles),
-            noise=(self.noise, self.noise),
+            hold=self.hold,
+            precycles=self.precycles,
+            load_noise=self.noise,
+            displacement_noise=self.noise,
         )
         return SignalsAnalysis.of(synthetic_signals(self.model, self.frequencies, machine, seed=self.seed))
 
@@ -185,7 +183,7 @@ class SignalsTest(FrozenModel):
     """Test frequency."""
 
 
-class SignalsDma(FrozenModel):
+class SignalsDma(DmaSource):
     """Load and displacement signals; amplitude and phase by least squares, the noise from what the sines leave."""
 
     kind: Literal["signals"] = "signals"
@@ -206,11 +204,6 @@ class SignalsDma(FrozenModel):
         if (self.tests is None) == (self.path is None):
             raise ValueError("give either tests, one file for each frequency, or path, one file of all of them")
         return self
-
-    @property
-    def model(self) -> None:
-        """No true model is known."""
-        return None
 
     def analysis(self) -> SignalsAnalysis:
         """The signals and what they give."""

@@ -69,7 +69,12 @@ class Thermogravimetry(FrozenModel):
     @property
     def volume_fraction(self) -> float:
         """Filler over sample by volume."""
-        return volume_fraction((self.filler_mass, self.filler_density), (self.matrix_mass, self.matrix_density))
+        return volume_fraction(
+            filler_mass=self.filler_mass,
+            filler_density=self.filler_density,
+            matrix_mass=self.matrix_mass,
+            matrix_density=self.matrix_density,
+        )
 
     @property
     def volume_fraction_deviation(self) -> float:

@@ -61,13 +61,15 @@ def particle_separation(diameter: float, volume_fraction: float) -> float:
     return float(diameter * ((LOOSEST_PACKING / volume_fraction) ** (1 / 3) - 1))
 
 
-def volume_fraction(filler: tuple[float, float], matrix: tuple[float, float]) -> float:
+def volume_fraction(*, filler_mass: float, filler_density: float, matrix_mass: float, matrix_density: float) -> float:
     """Volume fraction of the filler from thermogravimetric analysis.
 
     Parameters
     ----------
-    filler, matrix : (float, float)
-        Mass in kg and density in kg/m^3 of the residue and of what burnt off, > 0.
+    filler_mass, matrix_mass : float
+        Mass in kg of the residue and of what burnt off, > 0.
+    filler_density, matrix_density : float
+        In kg/m^3, > 0.
 
     Raises
     ------
@@ -76,9 +78,10 @@ def volume_fraction(filler: tuple[float, float], matrix: tuple[float, float]) ->
 
     Source: thesis, section 2.3.
     """
-    if min(*filler, *matrix) <= 0:
-        raise InvalidQuantity(f"masses and densities are {(*filler, *matrix)} kg, kg/m^3; allowed: > 0")
-    filled, empty = filler[0] / filler[1], matrix[0] / matrix[1]
+    given = (filler_mass, filler_density, matrix_mass, matrix_density)
+    if min(given) <= 0:
+        raise InvalidQuantity(f"masses and densities are {given} kg, kg/m^3; allowed: > 0")
+    filled, empty = filler_mass / filler_density, matrix_mass / matrix_density
     return filled / (filled + empty)
 
 

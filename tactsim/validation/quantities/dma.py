@@ -27,8 +27,7 @@ Hold = Annotated[
 
 
 def _signals(frequency: float, cycles: float, noise: float, hold: float | None, seed: int) -> DmaSignals:
-    settling = None if hold is None else (hold, 0.0)
-    machine = DmaMachine(AREA, HEIGHT, MEAN_LOAD, AMPLITUDE, cycles=cycles, settling=settling, noise=(noise, noise))
+    machine = DmaMachine(AREA, HEIGHT, MEAN_LOAD, AMPLITUDE, cycles=cycles, hold=hold, load_noise=noise, displacement_noise=noise)
     (signals,) = synthetic_signals(table_4_1(), [frequency], machine, seed=seed)
     return signals
 

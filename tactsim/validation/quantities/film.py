@@ -55,9 +55,9 @@ def filler_fraction(
     matrix_density : of polyethylene
     by : fraction of the volume or of the mass; mass of the whole sample; volume of one part
     """
-    whole = filler_mass + matrix_mass
+    whole, densities = filler_mass + matrix_mass, {"filler_density": filler_density, "matrix_density": matrix_density}
     return {
-        "volume": volume_fraction((filler_mass, filler_density), (matrix_mass, matrix_density)),
+        "volume": volume_fraction(filler_mass=filler_mass, matrix_mass=matrix_mass, **densities),
         "mass": filler_mass / whole,
         "sample_mass": whole,
         "filler_volume": filler_mass / filler_density,

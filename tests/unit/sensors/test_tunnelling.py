@@ -15,14 +15,19 @@ from tactsim.sensors.films.tunnelling import (
 
 ELECTRON_VOLT = 1.602176634e-19
 MILLIGRAM = 1e-6
+PARTS = {
+    "filler_mass": 4.2083 * MILLIGRAM,
+    "filler_density": 560.0,
+    "matrix_mass": 16.9496 * MILLIGRAM,
+    "matrix_density": 910.0,
+}
 
 
 def test_volume_fraction_from_the_residue():
-    filler, matrix = (4.2083 * MILLIGRAM, 560.0), (16.9496 * MILLIGRAM, 910.0)
-    assert volume_fraction(filler, matrix) == pytest.approx(0.28747, abs=1e-5)  # five digits are given
-    assert volume_fraction((4.2083 * MILLIGRAM, 1800.0), matrix) == pytest.approx(0.112, abs=5e-4)
-    rounded = (4.2 * MILLIGRAM, 560.0), (16.926 * MILLIGRAM, 910.0)  # volumes of 0.0075 and 0.0186 cm^3, as the thesis has them
-    assert volume_fraction(*rounded) == pytest.approx(0.2873, abs=6e-5)
+    assert volume_fraction(**PARTS) == pytest.approx(0.28747, abs=1e-5)  # five digits are given
+    assert volume_fraction(**PARTS | {"filler_density": 1800.0}) == pytest.approx(0.112, abs=5e-4)
+    rounded = {"filler_mass": 4.2 * MILLIGRAM, "matrix_mass": 16.926 * MILLIGRAM}  # 0.0075 and 0.0186 cm^3, as in the thesis
+    assert volume_fraction(**PARTS | rounded) == pytest.approx(0.2873, abs=6e-5)
 
 
 def test_separation_decay_and_their_product():
@@ -61,7 +66,7 @@ def test_contact_of_table_2_1():
         lambda: tunnelling_decay(0.0),
         lambda: particle_separation(1e-9, 0.6),
         lambda: particle_separation(0.0, 0.3),
-        lambda: volume_fraction((0.0, 1.0), (1.0, 1.0)),
+        lambda: volume_fraction(**PARTS | {"filler_mass": 0.0}),
         lambda: contact_coefficient((0.0, 0.0), 1.0),
     ],
 )
