@@ -13,7 +13,6 @@ from time import monotonic
 
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
-from tactsim.contact.annulus import Annulus
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.outside.files import opened
@@ -170,9 +169,11 @@ def simulated(task: Task) -> RunOutcome:
 
 
 def _disc_share(result: Result) -> float:
-    """Part of the disc that an annulus covers, 1 for any other body."""
-    body = result.scene.body if isinstance(result.scene, PressedBodyScene) else None
-    return 1 - (body.inner_radius / body.outer_radius) ** 2 if isinstance(body, Annulus) else 1.0
+    """Part of the disc that an annulus covers, 1 for a body without a hole."""
+    if not isinstance(result.scene, PressedBodyScene):
+        return 1.0
+    shape = result.scene.body.contact_shape
+    return 1 - (shape.hole / shape.reach) ** 2
 
 
 def _recorded(steps: Sequence, key: str) -> bool:

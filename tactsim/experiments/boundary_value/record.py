@@ -15,7 +15,8 @@ from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces.run import Course
 from tactsim.mechanics.models.loaded_body import LoadedBody
-from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.contact_history import LAST
+from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord, FollowedPath
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
 from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
 from tactsim.results.quantity import Quantity
@@ -119,7 +120,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         one = self.problem.asked[name]
         words = one.words if one.factor == 1 else f"{one.words}, times {one.factor:g}"
         if one.time is None:
-            return Quantity(self.steps[-1].values[name], one.unit, f"{words}, at the last accepted step")
+            return Quantity(self.steps[-1].values[name], one.unit, words + LAST)
         step = self._step_at(one.time)
         when = format_quantity(one.time, "s")
         return None if step is None else Quantity(step.values[name], one.unit, f"{words}, at {when}")
@@ -134,26 +135,18 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         if mirrors := tuple(self._mirrors):
             assumptions.append(f"symmetry about {', '.join(mirrors)}: forces, energy and volume are those of the part computed")
         if self.problem.contacts:
-            assumptions.append(f"penetration below {format_quantity(self.tolerance, 'm')}, elastic slip below ten times that")
+            assumptions.append(self.penetration_allowed())
         if self.problem.material.relaxation is not None:
-            assumptions.append(f"estimated error of the stress in time below {self.problem.time.tolerance:g} of its size")
+            assumptions.append(ERROR_IN_TIME.format(self.problem.time.tolerance))
         return assumptions
 
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity."""
-        return [*self.quality.warnings(), *self.unstable(), *interpreted_warnings({"material": self.problem.material})]
+        return [*super().warnings(), *interpreted_warnings({"material": self.problem.material})]
 
-    def unstable(self, where: str = "time") -> list[str]:
-        """That material left strong ellipticity, if it did."""
-        share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
-        if share == 0:
-            return []
-        first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
-        at = format_quantity(first.values["time"], "s")
-        return [
-            f"{share:.1%} of the volume left strong ellipticity, first at {at}: there the answer depends on the mesh; "
-            "take a stable material set"
-        ]
+    def reached(self, step: StepRecord) -> str:
+        """The time of a step."""
+        return format_quantity(step.values["time"], "s")
 
     def scene(self) -> BoundaryValueScene:
         """What the figure reads."""

@@ -8,11 +8,11 @@ import numpy as np
 
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.mechanics.outcome.contact_history import LAST
 from tactsim.results.quantity import Quantity
 
 Values = Sequence[dict[str, float]]
 
-LAST = ", at the last accepted step"
 BY_TAXEL = "[row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
 
 

@@ -11,7 +11,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.path import stiffest_block
-from tactsim.experiments.grasp.quantities import LAST, final_quantities, history_quantities
+from tactsim.experiments.grasp.quantities import final_quantities, history_quantities
 from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.experiments.grasp.setup import GraspSetup
@@ -22,10 +22,11 @@ from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.block_source import SourcedBlock
-from tactsim.mechanics.outcome.contact_record import ContactRecord
+from tactsim.mechanics.outcome.contact_history import LAST
+from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import Status
+from tactsim.results.result import Status, StepRecord
 from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
@@ -89,19 +90,23 @@ class GraspRecord(ContactRecord[GraspModel]):
                 self._read = readout.read(times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
-        unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
         findings = super().findings()
-        return replace(findings, quantities=findings.quantities or unknowns, timing={"meshing": self._sourced.block.seconds})
+        return replace(
+            findings, quantities=findings.quantities or self._unknowns, timing={"meshing": self._sourced.block.seconds}
+        )
+
+    @property
+    def _unknowns(self) -> dict[str, Quantity]:
+        return {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
 
     def quantities(self) -> dict[str, Quantity]:
         """Quantities at the last step, of all steps, and of the readout."""
-        unknowns = {"unknowns": Quantity(self.model.space.size, "1", "unknowns of the finite element model")}
         values = [step.values for step in self.steps]
         quantities = final_quantities(values, self.readings[-1], self.experiment) | super().quantities()
         if (asymmetry := self._asymmetry()) is not None:
             text = "largest difference of a taxel's force from that on its mirror image, over the largest force" + LAST
             quantities["mirror_asymmetry"] = Quantity(asymmetry, "1", text)
-        quantities |= history_quantities(values, self.readings, self.experiment) | unknowns
+        quantities |= history_quantities(values, self.readings, self.experiment) | self._unknowns
         return quantities if self._read is None else quantities | readout_quantities(self._read)
 
     def assumptions(self) -> list[str]:
@@ -128,11 +133,11 @@ class GraspRecord(ContactRecord[GraspModel]):
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
         assumptions += smaller_elements(block)
-        assumptions.append(f"penetration below {format_quantity(experiment.tolerance, 'm')}, elastic slip below ten times that")
+        assumptions.append(self.penetration_allowed())
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
         if experiment.relaxes:
-            assumptions.append(f"estimated error of the stress in time below {experiment.time.tolerance:g} of its size")
+            assumptions.append(ERROR_IN_TIME.format(experiment.time.tolerance))
         if experiment.readout is not None:
             assumptions += readout_assumptions(experiment.readout, experiment.matrix.area)
         return assumptions
@@ -145,8 +150,11 @@ class GraspRecord(ContactRecord[GraspModel]):
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
-        warnings += [*doubts(self.experiment), *self.quality.warnings()]
-        return [*warnings, *self.unstable("a closing of {} per jaw")]
+        return [*warnings, *doubts(self.experiment), *super().warnings()]
+
+    def reached(self, step: StepRecord) -> str:
+        """How far the jaws have closed in a step."""
+        return f"a closing of {format_quantity(step.values['displacement'], 'm')} per jaw"
 
     def _asymmetry(self) -> float | None:
         """How far the last forces are from their mirror images, None if the grasp is not its own."""

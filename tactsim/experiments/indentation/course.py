@@ -87,7 +87,7 @@ class DisplacementPath:
         if recess is None:
             yield from self.follow(self.start, None, adapted)
             return
-        radius = setup.body.inner_radius
+        radius = setup.hole
         event = Event[ContactEquilibrium](lambda s: self.model.rise(s, radius)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
         peak, peak_load = 0.0, 0.0
         for state, touched in self.follow(self.start, event, adapted):
@@ -175,6 +175,6 @@ class HistoryPath:
         """
         event = None
         if self._drive.stops_at_touch and self._setup.recess is not None:
-            recess, radius = self._setup.recess, self._setup.body.inner_radius
+            recess, radius = self._setup.recess, self._setup.hole
             event = TimeEvent[TimedState](lambda state: self._model.rise(state.contact, radius)[0] - recess)
         yield from self._path.states(event)

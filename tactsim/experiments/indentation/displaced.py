@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
 from tactsim.fem.paths.loading import StepControl
 from tactsim.fem.paths.progress import check_steps
+from tactsim.interfaces.run import Course
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 
@@ -62,10 +63,12 @@ class DisplacedSetup(IndentationSetup):
         if self.displacement >= self.specimen.thickness:
             given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
             raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
-        if self.body.kind == "annulus" and self.recess is None:
-            raise ValueError("an annulus needs the recess of its inner sensor, like recess: 0.8 mm")
-        if self.body.kind != "annulus" and self.stop == "threshold":
-            raise ValueError(f"only an annulus has a recess and a threshold; for a {self.body.kind} set stop: displacement")
+        if self.hole and self.recess is None:
+            raise ValueError("a body with a hole needs the recess of its inner sensor, like recess: 0.8 mm")
+        if not self.hole and self.stop == "threshold":
+            raise ValueError(
+                f"only a body with a hole has a recess and a threshold; for a {self.body.kind} set stop: displacement"
+            )
         if any(material.relaxation is not None for material in self.specimen.materials):
             raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
         self._check_steps()
@@ -78,6 +81,12 @@ class DisplacedSetup(IndentationSetup):
             given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * displacement, "m")
             raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
         check_steps(displacement / largest, f"steps.largest {format_quantity(largest, 'm')}")
+
+    def begin(self) -> Course:
+        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
+        from tactsim.experiments.indentation.course import indentation_course
+
+        return indentation_course(self)
 
     def drive(self) -> Displaced:
         """Load steps to the displacement."""

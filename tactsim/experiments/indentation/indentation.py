@@ -7,7 +7,6 @@ from typing import ClassVar, Literal, Self
 from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.history import history_units
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
 from tactsim.mechanics.models.specimen import Specimen
 
 
@@ -22,9 +21,3 @@ class Indentation(DisplacedSetup, Experiment):
     def example(cls) -> Self:
         """A thin specimen under the sensor of chapter 3."""
         return cls(specimen=Specimen(material="icf_stable", thickness=4e-3, radius=8e-3), recess=0.8e-3, displacement=2e-3)
-
-    def begin(self) -> Course:
-        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
-        from tactsim.experiments.indentation.course import indentation_course
-
-        return indentation_course(self)

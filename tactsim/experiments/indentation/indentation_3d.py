@@ -14,7 +14,6 @@ from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import MeshSettings, Posed
 from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
@@ -69,12 +68,6 @@ class SpaceIndentation(DisplacedSetup, Experiment):
         specimen = Specimen(material="icf_stable", thickness=4e-3, radius=8e-3)
         mesh = SpaceMeshSettings(finest=0.25e-3, growth=1.0, sectors=2)
         return cls(specimen=specimen, recess=0.8e-3, displacement=0.5e-3, stop="displacement", mesh=mesh)
-
-    def begin(self) -> Course:
-        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
-        from tactsim.experiments.indentation.course import indentation_course
-
-        return indentation_course(self)
 
     @model_validator(mode="after")
     def _placed(self) -> Self:

@@ -16,7 +16,8 @@ from tactsim.materials.library import set_with_constants_of
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.solid_model import SolidModel
-from tactsim.mechanics.outcome.contact_record import ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.contact_history import LAST
+from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord, FollowedPath
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
@@ -25,7 +26,6 @@ from tactsim.units import format_quantity
 
 SMALL = 0.01
 """Displacement over the body's radius up to which a linear closed form is meant."""
-LAST = ", at the last accepted step"
 AT_LAST = {
     "time": "time",
     "displacement": "displacement of the body from first touch",
@@ -83,8 +83,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         if isinstance(model, SolidModel):
             moment = model.moment(contact.contacts[0], contact.unknowns)
             values |= dict(zip(SPACE, map(float, (*forces[0][:2], *moment)), strict=True))
-        if self.setup.body.kind == "annulus":
-            values["tissue_rise"], values["tissue_rise_axis"] = model.rise(contact, self.setup.body.inner_radius)
+        if hole := self.setup.hole:
+            values["tissue_rise"], values["tissue_rise_axis"] = model.rise(contact, hole)
             if self._clock is None:
                 values["sensor_force"] = float(sum(force[-1] for force in forces[1:]))
         if self._comparison is not None:
@@ -117,7 +117,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         force, displacement = (self.event.values[name] for name in ("reaction_force", "displacement"))
         return {
             "threshold_force": Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor"),
-            "threshold_pressure": Quantity(force / self.setup.body.area, "Pa", "threshold force over the annular area"),
+            "threshold_pressure": Quantity(force / self.setup.face_area, "Pa", "threshold force over the annular area"),
             "threshold_displacement": Quantity(displacement, "m", "displacement at the threshold"),
         }
 
@@ -133,9 +133,9 @@ class IndentationRecord(ContactRecord[PressedModel]):
                 moment.tolist(), "N m", "moment (x, y, z) of this force about the middle of the body's face"
             ),
         }
-        if self.setup.body.kind == "annulus":
+        if self.setup.hole:
             sectors = self._posed.sectors
-            around = model.surroundings(contact, unknowns, sectors) / (self.setup.body.area / sectors)
+            around = model.surroundings(contact, unknowns, sectors) / (self.setup.face_area / sectors)
             text = "axial force over area, by equal sectors of the angle about the annulus's axis, from its x axis on [sector]"
             quantities["pressure_around"] = Quantity(around.tolist(), "Pa", text)
         return quantities
@@ -159,19 +159,18 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def assumptions(self) -> list[str]:
         """What the thesis does not print and the case chose."""
-        assumptions = contact_assumptions(self.setup)
+        assumptions = [*specimen_assumptions(self.setup), self.penetration_allowed()]
         if self._drive.stops_at_touch:
             assumptions += energy_assumptions(self.setup)
         if self._clock is not None:
-            tolerance = self._clock.policy.settings.tolerance
-            assumptions.append(f"estimated error of the stress in time below {tolerance:g} of its size")
+            assumptions.append(ERROR_IN_TIME.format(self._clock.policy.settings.tolerance))
             if self._clock.compare is not None:
                 assumptions.append(f"closed form: linear, frictionless annulus on a {self._clock.compare.replace('_', '-')}")
         return assumptions
 
     def warnings(self) -> list[str]:
         """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
-        warnings = [*self.quality.warnings(), *self.setup.doubts(), *self.unstable("a displacement of {}")]
+        warnings = [*self.quality.warnings(), *self.setup.doubts(), *self.unstable()]
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])
         return warnings
@@ -207,8 +206,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         }
 
 
-def contact_assumptions(setup: IndentationSetup) -> list[str]:
-    """What the thesis does not print and every case with contact chose."""
+def specimen_assumptions(setup: IndentationSetup) -> list[str]:
+    """What the thesis does not print of specimen and body, and every case chose."""
     specimen, fillet = setup.specimen, setup.body.contact_shape.fillet
     radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
     assumptions = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
@@ -216,7 +215,6 @@ def contact_assumptions(setup: IndentationSetup) -> list[str]:
         assumptions.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} (not printed)")
     if any(material.bulk_modulus is None for material in specimen.materials):
         assumptions.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
-    assumptions.append(f"penetration below {format_quantity(setup.tolerance, 'm')}, elastic slip below ten times that")
     return assumptions
 
 

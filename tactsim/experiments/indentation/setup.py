@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.annular_area import annular_area
 from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.any_law import AnyLaw
@@ -162,10 +163,8 @@ class IndentationSetup(FrozenModel):
 
     @property
     def inner_punch(self) -> Punch | None:
-        """The sensor that fills the hole of an annulus; None for another body."""
-        if self.body.kind != "annulus":
-            return None
-        return Punch(radius=self.body.inner_radius, height=self.body.height)
+        """The sensor that fills the hole of an annulus, as high as any tissue in it; None for a body without a hole."""
+        return Punch(radius=self.hole, height=self.specimen.thickness) if self.hole else None
 
     @property
     def prescribed(self) -> float | None:
@@ -196,8 +195,8 @@ class IndentationSetup(FrozenModel):
         check_penetration(self.penetration_tolerance, lengths | {"thickness of the thinnest layer": float(layers.min())})
 
     def _check_recess(self, recess: float) -> None:
-        if self.body.kind != "annulus":
-            raise ValueError(f"only an annulus has a recess; a {self.body.kind} has none")
+        if not self.hole:
+            raise ValueError(f"only a body with a hole, such as an annulus, has a recess; a {self.body.kind} has none")
         if recess >= self.specimen.thickness:
             raise ValueError("the recess must be smaller than the specimen's thickness (thesis, end of 3.1.1)")
         if self.rise_at_touch >= recess:
@@ -210,14 +209,24 @@ class IndentationSetup(FrozenModel):
         return self.specimen.radius if radius is None else radius
 
     @property
+    def hole(self) -> float:
+        """Radius in m of the hole in the middle of the body; 0 if it has none."""
+        return float(self.body.contact_shape.hole)
+
+    @property
+    def face_area(self) -> float:
+        """Area in m^2 of the face around the hole, which the thesis divides the threshold force by."""
+        return annular_area(self.hole, self.contact_radius)
+
+    @property
     def _narrowest(self) -> float:
         """Width in m of the contact that the mesh must resolve."""
-        return self.contact_radius - float(self.body.contact_shape.hole)
+        return self.contact_radius - self.hole
 
     @property
     def rise_at_touch(self) -> float:
         """Rise in m of a convex surface into the hole when the annulus touches it, where the fillet meets the face."""
-        inner = self.body.inner_radius + self.body.fillet if self.specimen.surface == "convex" else 0.0
+        inner = self.hole + (self.body.contact_shape.fillet or 0.0) if self.specimen.surface == "convex" else 0.0
         return float(self.specimen.depth_of_cap(inner))
 
     @property
@@ -243,9 +252,9 @@ class IndentationSetup(FrozenModel):
     def section(self) -> QuadraticMesh:
         """The mesh of the specimen's section; in an annulus's hole, finer at the peak of the rise too."""
         size, settings = self.size(), self.mesh
-        if hole := float(self.body.contact_shape.hole):
+        if self.hole:
             n = settings.refinement
-            size = graded_to_peak(size, finest=hole / PEAK_ELEMENTS / n, growth=settings.growth / n)
+            size = graded_to_peak(size, finest=self.hole / PEAK_ELEMENTS / n, growth=settings.growth / n)
         return self.specimen.mesh(size, self._focus()[0])
 
     def top_edges(self, section: QuadraticMesh) -> Array:

@@ -39,7 +39,7 @@ def stored_grasp(folder: str) -> Result:
         If it is not that of a grasp with taxels.
     """
     result = read_result(folder, fields=False).result
-    if result.kind not in ("grasp", "matrix_readout") or "taxel_force_upper" not in result.quantities:
+    if not isinstance(result.scene, GraspScene) or "taxel_force_upper" not in result.quantities:
         raise InputError(
             f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
         )
@@ -117,7 +117,13 @@ def stiffness_ratios(folder: str, closing: float | None) -> tuple[tuple[float, f
 
 
 def saturated_taxels(result: Result) -> Array:
-    """Which readings (time or 1, jaw, row, column) of a result are saturated; one without known times is so all the time."""
+    """Which readings (time or 1, jaw, row, column) of a result are saturated; one without known times is so all the time.
+
+    Raises
+    ------
+    InputError
+        If what the result says of saturation are no matrices of one shape.
+    """
     over_time = [f"saturated_{side}_history" for side in JAWS]
     if all(name in result.quantities for name in over_time):
         return np.stack([result.quantities[name].numbers for name in over_time], axis=1) > 0

@@ -12,7 +12,6 @@ import scipy
 from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
 from tactsim.array import Array
-from tactsim.contact.annulus import Annulus
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.results.result import Result, Status
@@ -126,9 +125,10 @@ class ContactCurve:
                 f"the result is not usable ({description}); needed: a converged indentation by an annulus to its threshold"
             )
         scene = result.scene_as(IndentationScene)
-        if not isinstance(scene.body, Annulus) or scene.recess is None:
+        touching = scene.body.contact_shape
+        if not touching.hole or touching.radius is None or scene.recess is None:
             raise InputError(f"the body of the result is a {scene.body.kind}; needed: an annulus with an inner sensor")
-        shape = SensorShape(scene.body.inner_radius, scene.body.outer_radius, scene.recess)
+        shape = SensorShape(touching.hole, touching.radius, scene.recess)
         names = ("displacement", "reaction_force", "tissue_rise", "sensor_force")
         rows = np.array([[0.0] * 4] + [[step.values[name] for name in names] for step in result.steps])
         touch = int(np.argmin(np.abs(rows[:, 0] - reached.value)))

@@ -182,6 +182,11 @@ class CurveSource(Source):
         return self
 
     def tissue(self) -> Tissue:
+        """The curve in the file."""
+        yield from ()
+        return self.curve()
+
+    def curve(self) -> ContactCurve:
         """The curve in the file.
 
         Raises
@@ -189,7 +194,6 @@ class CurveSource(Source):
         InvalidQuantity
             If a column is missing.
         """
-        yield from ()
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]
         if missing:

@@ -10,3 +10,5 @@ CONTACT_UNITS = {
     **QUALITY_UNITS,
 }
 """A run need not record all."""
+LAST = ", at the last accepted step"
+"""Behind the words of a quantity that is a value of that step."""

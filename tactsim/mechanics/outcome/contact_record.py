@@ -25,6 +25,8 @@ from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import format_quantity
 
 UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
+ERROR_IN_TIME = "estimated error of the stress in time below {:g} of its size"
+"""Assumption of a path in time, by its tolerance."""
 
 
 class ContactModel(Protocol):
@@ -136,6 +138,10 @@ class ContactRecord(ABC, Generic[Model]):
     def assumptions(self) -> list[str]:
         """What was chosen."""
 
+    def penetration_allowed(self) -> str:
+        """How closely contact is kept."""
+        return f"penetration below {format_quantity(self.tolerance, 'm')}, elastic slip below ten times that"
+
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step: those of every run with contact."""
         deepest = max(step.values["max_penetration"] for step in self.steps)
@@ -150,17 +156,20 @@ class ContactRecord(ABC, Generic[Model]):
 
     def warnings(self) -> list[str]:
         """Warnings about at least one step."""
-        return [*self.quality.warnings(), *self.unstable("a displacement of {}")]
+        return [*self.quality.warnings(), *self.unstable()]
 
-    def unstable(self, where: str) -> list[str]:
-        """That material left strong ellipticity, if it did; ``where`` names the displacement at which it did first."""
+    def reached(self, step: StepRecord) -> str:
+        """How far a step has come, in words."""
+        return f"a displacement of {format_quantity(step.values['displacement'], 'm')}"
+
+    def unstable(self) -> list[str]:
+        """That material left strong ellipticity, if it did."""
         share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
         if share == 0:
             return []
         first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
-        at = where.format(format_quantity(first.values["displacement"], "m"))
         return [
-            f"{share:.1%} of the volume left strong ellipticity, first at {at}: "
+            f"{share:.1%} of the volume left strong ellipticity, first at {self.reached(first)}: "
             "there the answer depends on the mesh; take a stable material set"
         ]
 

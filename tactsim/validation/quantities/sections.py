@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.case import load_case
-from tactsim.contact.annulus import Annulus
 from tactsim.errors import InputError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import drawing
@@ -65,16 +64,16 @@ def section_panel(result: Result, title: str) -> Data:
     scene = result.scene
     if result.status is not Status.CONVERGED:
         raise InputError(f"{title} did not converge: {result.reason}")
-    if not (isinstance(scene, PressedBodyScene) and isinstance(scene.body, Annulus) and result.frames):
+    if not (isinstance(scene, PressedBodyScene) and scene.body.contact_shape.hole and result.frames):
         raise InputError(f"{title} is no indentation by an annulus")
     frame = result.frames[-1]
     if AXIAL_STRESS not in frame.cell_data:
         raise InputError(f"{title} is no indentation of a section")
     moved = float(result.quantities["displacement"].value)
-    face, body = scene.starting_height - moved, scene.body
-    lines = [[[body.inner_radius, face], [body.outer_radius, face]]]
+    face, shape = scene.starting_height - moved, scene.body.contact_shape
+    lines = [[[shape.hole, face], [shape.reach, face]]]
     if scene.recess is not None:
-        lines.append([[0.0, face + scene.recess], [body.inner_radius, face + scene.recess]])
+        lines.append([[0.0, face + scene.recess], [shape.hole, face + scene.recess]])
     places = (frame.points + frame.point_data["displacement [m]"])[:, :2]
     return {
         "title": f"{title}: {format_quantity(moved, 'm')}",

@@ -63,7 +63,7 @@ def threshold_at_level(
     """
     path = str(inputs.folder / curve)
     source = CurveSource(path=path, inner_radius=inner_radius, outer_radius=outer_radius, recess=recess)
-    approach = source.tissue().approach(1e-3)
+    approach = source.curve().approach(1e-3)
 
     def beyond(time: float) -> float:
         return float(approach.at(np.array(time))[1]) - level

@@ -138,7 +138,7 @@ def test_interruption_keeps_what_was_accepted():
         ({"displacement": 3e-3}, "smaller than the specimen's thickness"),
         ({"recess": None}, "needs the recess"),
         ({"recess": 3.1e-3, "displacement": 1e-3}, "recess must be smaller"),
-        ({"body": Sphere(radius=2e-3)}, "only an annulus has a recess"),
+        ({"body": Sphere(radius=2e-3)}, "only a body with a hole, such as an annulus, has a recess"),
         ({"mesh": MeshSettings(finest=1e-3)}, "too coarse"),
         ({"specimen": {"thickness": 1e4}}, "units wrong"),
         ({"specimen": {"surface": "convex", "surface_radius": 12e-3}, "recess": 0.05e-3}, "before it touches the annulus"),
