@@ -25,7 +25,7 @@ from tactsim.fem.solvers.pardiso import SinglePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.models.block_model import GraspModel
-from tactsim.mesh.quadratic import QuadraticMesh, from_skfem
+from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 
 SIZE = np.array([0.04, 0.04, 0.02])
 CENTRE, RADIUS = np.array([0.02, 0.02, 0.012]), 5e-3
@@ -67,7 +67,8 @@ class Recorder(IterativeSolver):
 def first_system(cells: int):  # type: ignore[no-untyped-def]
     """Body, first system and right-hand side: a hard ball in a block, friction, closed by 0.25 mm."""
     lines = [np.linspace(0, length, count + 1) for length, count in zip(SIZE, (cells, cells, cells // 2), strict=True)]
-    mesh = from_skfem(MeshTet.init_tensor(*lines))
+    tetrahedra = MeshTet.init_tensor(*lines)
+    mesh = quadratic_mesh(tetrahedra.p.T, tetrahedra.t.T)
     middles = mesh.nodes[mesh.elements[:, :4]].mean(axis=1)
     mesh = QuadraticMesh(mesh.nodes, mesh.elements, (np.linalg.norm(middles - CENTRE, axis=1) < RADIUS).astype(int))
     facets, _ = mesh.boundary_facets()

@@ -10,7 +10,7 @@ import numba
 import numpy as np
 
 from tactsim.analytic.atrial import atrial_shear_compliance
-from tactsim.analytic.force_factor import annulus_force
+from tactsim.analytic.force_factor import force_factor
 from tactsim.analytic.histories import sampled
 from tactsim.analytic.response import response
 from tactsim.analytic.stepping import kelvin_step, rest_state, step_constants
@@ -26,8 +26,8 @@ def measure() -> dict[str, float]:
     """Force-displacement pairs per second, samples of a response, and the time of one step from Python and compiled."""
     generator = np.random.default_rng(1)
     depth, ratio = generator.uniform(0, 1e-3, PAIRS), generator.uniform(0, 0.99, PAIRS)
-    annulus_force(depth[:10], 3e-3, ratio[:10], 1e3)
-    pairs = min(_seconds(lambda: annulus_force(depth, 3e-3, ratio, 1e3)) for _ in range(REPEATS))
+    force_factor(ratio[:10])
+    pairs = min(_seconds(lambda: 8 * 1e3 * 3e-3 * force_factor(ratio) * depth) for _ in range(REPEATS))
     model = atrial_shear_compliance()
     constants, state = step_constants(model), rest_state(model)
     kelvin_step(constants, state, 1e-3, 1.0)

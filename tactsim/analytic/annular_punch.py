@@ -73,16 +73,6 @@ class AnnularPunch:
             pressure[centre] = first + (second - first) * (r[centre] ** 2 - low**2) / (high**2 - low**2)
         return pressure
 
-    def pressure_over_mean(self, r: ArrayLike) -> np.ndarray:
-        """Contact pressure at ``r`` over a, divided by the mean P / (pi (a^2 - b^2)); dimensionless, of the shape of ``r``.
-
-        Raises
-        ------
-        InvalidQuantity
-            If a radius is negative or not finite.
-        """
-        return self.pressure(r) * np.pi * (1 - self.radius_ratio**2) / (4 * self.force_factor)
-
     def surface_displacement(self, r: ArrayLike) -> np.ndarray:
         """Displacement of the surface u / eps at ``r`` over a, positive into the body, of the shape of ``r``.
 

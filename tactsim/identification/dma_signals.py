@@ -194,17 +194,6 @@ def complex_modulus(signals: DmaSignals, *, refine: bool = False) -> ModulusEsti
     return ModulusEstimate(frequency, complex(modulus), modulus_errors, relative, correlation, limit)
 
 
-def dma_from_signals(signals: Sequence[DmaSignals], *, refine: bool = False) -> DmaData:
-    """Complex compliance at the frequencies of several tests, in increasing order, with its noise from the signals.
-
-    Raises
-    ------
-    InvalidQuantity
-        If a test gives no modulus, or a frequency is repeated.
-    """
-    return dma_from_estimates([complex_modulus(one, refine=refine) for one in signals])
-
-
 def dma_from_estimates(estimates: Sequence[ModulusEstimate]) -> DmaData:
     """Complex compliance at the frequencies of several estimates, in increasing order, with its noise.
 

@@ -75,11 +75,23 @@ class LeastSquares:
         return nearest
 
     def projected(self, data: Array) -> Array:
-        """The same (m,), nearly zero where the conditions leave nothing."""
+        """The same (m,), nearly zero where the conditions leave nothing.
+
+        Raises
+        ------
+        ConvergenceError
+            If the search for the nearest does not end.
+        """
         return data if self.normals is None else _projected(data, self.normals, [])
 
     def projections(self, data: Array) -> Array:
-        """The same of many y (draws, m)."""
+        """The same of many y (draws, m).
+
+        Raises
+        ------
+        ConvergenceError
+            If the search for the nearest of one does not end.
+        """
         held: list[int] = []
         return data if self.normals is None else np.stack([_projected(one, self.normals, held) for one in data])
 

@@ -44,9 +44,9 @@ def views(readings: Array, shape: tuple[int, int] = SHAPE, *, form: Form = "corr
     """All three views of readings (jaw, row, column), the upper jaw first, each of ``shape`` (M, N).
 
     Front: the sums over the rows of each column as two arrays (Fig. 6.3b); left: the sums over the columns of each row
-    (Fig. 6.3c); top: the sums of both jaws (Fig. 6.3d), see :func:`top_view`. Negative readings count as no signal, as a
-    sensor reads a pull. ``valid`` is False for a dead or saturated taxel: it is interpolated from its neighbours. ``as_printed``
-    stacks the top view, so that it has (rows - 1) M rows.
+    (Fig. 6.3c); top: the sums of both jaws (Fig. 6.3d), neighbouring rows as in `pair_images`. Negative readings count as no
+    signal, as a sensor reads a pull. ``valid`` is False for a dead or saturated taxel: it is interpolated from its neighbours.
+    ``as_printed`` stacks the top view, so that it has (rows - 1) M rows.
 
     Raises
     ------
@@ -70,25 +70,14 @@ def _section(upper: Array, lower: Array, shape: tuple[int, int], form: Form) -> 
     return image_between(weights @ upper, weights @ lower, shape[0], form)
 
 
-def top_view(total: Array, shape: tuple[int, int] = SHAPE, form: Form = "corrected") -> Array:
+def _top(total: Array, shape: tuple[int, int], form: Form) -> Array:
     """Top view of sums (row, column) of both jaws; row 0 of the picture is the back (the last row of the matrix).
 
     Every two neighbouring rows are drawn as a section between two arrays, the one further back as the upper array (eq. 6.3.2,
     6.3.3). ``corrected`` joins these pictures with their common rows once (errata E24) and has ``shape`` (M, N), sampled at real
     positions; where M - 1 is a multiple of the number of pairs it is :func:`joined` of :func:`pair_images`. ``as_printed``
     stacks pictures of ``shape`` (eq. 6.3.4). A single row is the same at every height.
-
-    Raises
-    ------
-    InvalidQuantity
-        If there is no taxel, a sum is not finite, or the picture has no pixels.
     """
-    sums = _checked_total(total)
-    check_count("rows of the picture", shape[0])
-    return _top(sums, shape, form)
-
-
-def _top(total: Array, shape: tuple[int, int], form: Form) -> Array:
     if form == "as_printed" or len(total) == 1:
         return joined(_pairs(total, shape, form), "stacked")
     weights = band_weights(total.shape[1], shape[1], form)
@@ -103,6 +92,11 @@ def pair_images(total: Array, shape: tuple[int, int] = SHAPE, form: Form = "corr
     """Pictures H1, H2, ... (pair, M, N) between neighbouring rows of sums (row, column), from the back to the front.
 
     A matrix of R rows has R - 1 pairs; one row alone is paired with itself as a picture that is the same at every height.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there is no taxel, a sum is not finite, or the picture has no pixels.
 
     Source: thesis, eq. 6.3.1 to 6.3.3.
     """

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-
-if TYPE_CHECKING:
-    from skfem import Mesh
 
 FLAT = 1e-12
 """Determinant of an element's sides over a power of the longest below which it is flat: round-off of its coordinates."""
@@ -106,8 +102,3 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
     elements[mirrored] = elements[mirrored][:, _MIRROR[dim]]
     nodes = np.vstack([corners, corners[unique].mean(axis=1)])
     return QuadraticMesh(nodes, elements, np.zeros(len(elements), np.int64) if regions is None else np.asarray(regions))
-
-
-def from_skfem(mesh: Mesh) -> QuadraticMesh:
-    """Quadratic mesh on a scikit-fem mesh of linear simplices."""
-    return quadratic_mesh(mesh.p.T.copy(), mesh.t.T.astype(np.int64))

@@ -21,7 +21,7 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.contact.posed_contact import PosedContact
-from tactsim.mesh.quadratic import from_skfem
+from tactsim.mesh.quadratic import quadratic_mesh
 
 MATERIAL = MooneyRivlin2(c10=1.0, c01=0.25)
 MEASURES = ("axisymmetric", "solid")
@@ -32,7 +32,8 @@ class Press:
 
     def __init__(self, measure, law, *, glued=False, cells=3, tolerance=1e-7):
         lines = np.linspace(0, 1, cells + 1)
-        mesh = from_skfem(MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines))
+        cells = MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines)
+        mesh = quadratic_mesh(cells.p.T, cells.t.T)
         dim = mesh.dim
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, [MATERIAL], mesh.regions)

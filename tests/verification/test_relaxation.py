@@ -34,7 +34,7 @@ from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact.posed_contact import PosedContact
-from tactsim.mesh.quadratic import from_skfem
+from tactsim.mesh.quadratic import quadratic_mesh
 from tactsim.relaxation import Relaxation
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -57,7 +57,8 @@ class Block:
 
     def __init__(self, measure, material, *, law=None, cells=1, glued=False, tolerance=1e-7):
         lines = np.linspace(0, 1, cells + 1)
-        mesh = from_skfem(MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines))
+        cells = MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines)
+        mesh = quadratic_mesh(cells.p.T, cells.t.T)
         self.dim = dim = mesh.dim
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, [material], mesh.regions)

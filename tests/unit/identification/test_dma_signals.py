@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.dma_signals import DmaSignals, complex_modulus, dma_from_signals, read_dma_signals
+from tactsim.identification.dma_signals import DmaSignals, complex_modulus, dma_from_estimates, read_dma_signals
 
 MODULUS, AREA, HEIGHT = 30e3 + 12e3j, 1e-4, 5e-3
 
@@ -68,11 +68,11 @@ def test_noise_stays_within_its_standard_errors(of):
 
 
 def test_signals_become_data_in_order_of_frequency():
-    data = dma_from_signals([DmaSignals(**oscillation(f, noise=0.01)) for f in (6.0, 1.0, 11.0)])
+    data = dma_from_estimates([complex_modulus(DmaSignals(**oscillation(f, noise=0.01))) for f in (6.0, 1.0, 11.0)])
     np.testing.assert_array_equal(data.frequencies, [1, 6, 11])
     np.testing.assert_allclose(data.modulus, MODULUS, rtol=0.01)  # noise of 1 %, averaged over 400 samples
     assert (data.relative_noise < 0.01).all()
-    exact = dma_from_signals([DmaSignals(**oscillation(f)) for f in (6.0, 1.0, 11.0)])
+    exact = dma_from_estimates([complex_modulus(DmaSignals(**oscillation(f))) for f in (6.0, 1.0, 11.0)])
     assert (exact.relative_noise > 0).all()
 
 

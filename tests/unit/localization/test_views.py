@@ -8,7 +8,7 @@ import pytest
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.readings import checked_readings
 from tactsim.localization.section_image import section_image
-from tactsim.localization.views import joined, pair_images, top_view, views, volume
+from tactsim.localization.views import joined, pair_images, views, volume
 
 # Coarse finite elements: ICF block of 40 x 40 x 20 mm, hard ball of radius 5 mm at (28, 14, 12) mm, both jaws closed by 1 mm;
 # forces in N above those of plain tissue on the same mesh.
@@ -43,13 +43,13 @@ def test_front_view_is_the_section_between_the_sums_of_the_columns():
 @pytest.mark.parametrize("rows", [2, 3, 8])
 def test_the_top_view_is_the_joined_pictures_of_the_pairs(rows):
     total = np.random.default_rng(rows).uniform(0, 1, (rows, 3))
-    images = pair_images(total, (11, 20))
-    np.testing.assert_allclose(top_view(total, (10 * (rows - 1) + 1, 20)), joined(images), atol=1e-12)
+    images, forces = pair_images(total, (11, 20)), np.stack([total, 0 * total])
+    np.testing.assert_allclose(views(forces, (10 * (rows - 1) + 1, 20)).top, joined(images), atol=1e-12)
     np.testing.assert_allclose(images[0], section_image(total[-1], total[-2], (11, 20)), atol=1e-12)
     assert joined(images, "stacked").shape == (11 * (rows - 1), 20)
     np.testing.assert_allclose(joined(images, "added"), images.sum(axis=0))
     np.testing.assert_array_equal(joined(images, "stacked"), np.concatenate(images))
-    assert top_view(total, (11, 20), "as_printed").shape == (11 * (rows - 1), 20)
+    assert views(forces, (11, 20), form="as_printed").top.shape == (11 * (rows - 1), 20)
 
 
 @pytest.mark.parametrize("matrix", [(1, 1), (1, 5), (4, 1), (3, 3), (5, 8)])
@@ -135,7 +135,7 @@ def test_bad_masks_and_pictures_are_refused():
     with pytest.raises(InvalidQuantity, match="number of pixels is -3"):
         views(forces, (5, -3))
     with pytest.raises(InvalidQuantity, match="row 2, column 1"):
-        top_view(np.array([[1.0], [np.nan]]))
+        pair_images(np.array([[1.0], [np.nan]]))
     with pytest.raises(InvalidQuantity, match=r"sums of shape \(0, 3\)"):
         pair_images(np.ones((0, 3)))
     with pytest.raises(InvalidQuantity, match="pictures of shape"):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from skfem import MeshTet, MeshTri
 from solids import assert_close, box
 
 from tactsim.errors import InputError
 from tactsim.fem.assembly.space import TaylorHood
-from tactsim.mesh.quadratic import QuadraticMesh, from_skfem, quadratic_mesh
+from tactsim.mesh.quadratic import quadratic_mesh
 
 MEASURE = {2: "plane_strain", 3: "solid"}
 UNIT = {2: np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), 3: np.vstack([np.zeros(3), np.eye(3)])}
@@ -146,10 +145,3 @@ def test_regions_are_kept_and_moving_changes_the_nodes_only(dim):
     assert moved.regions.tolist() == [3]
     assert (moved.elements == mesh.elements).all()
     assert_close(moved.nodes, mesh.nodes + 1, 0.0)
-
-
-def test_scikit_fem_meshes_are_taken_over():
-    for mesh, dim, elements in ((MeshTri().refined(1), 2, 8), (MeshTet(), 3, 5)):
-        taken = from_skfem(mesh)
-        assert isinstance(taken, QuadraticMesh)
-        assert (taken.dim, len(taken.elements)) == (dim, elements)
