@@ -14,6 +14,7 @@ from tactsim.errors import Refused, shown, suggestion
 from tactsim.units import DECIMAL_POINT, format_quantity
 
 Path = tuple[str | int, ...]
+"""Keys and numbers that lead to a value of a case."""
 
 _TYPES = {
     "string": "a text",

@@ -18,6 +18,8 @@ from tactsim.errors import InvalidQuantity
 
 HALVINGS = 60
 """Halvings of the logarithm of a time, after which its interval is round-off."""
+SMALL_DISPLACEMENT = 0.1
+"""Displacement over the outer radius up to which linear theory is meant: a convention; what stiffens leaves it before."""
 
 
 @dataclass(frozen=True, eq=False)

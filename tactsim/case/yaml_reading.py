@@ -22,8 +22,8 @@ from ruamel.yaml.events import (
 )
 
 from tactsim.errors import CaseError, shown
+from tactsim.refusals import Path
 
-Path = tuple[str | int, ...]
 _STANDARD_TAG = "tag:yaml.org,2002:"
 LARGEST_DEPTH = 40
 LARGEST_COUNT = 100_000

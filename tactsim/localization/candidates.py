@@ -20,6 +20,13 @@ CUTS = (0.25, 0.5, 0.75)
 """Fractions of a line's length in the block at which a tube may end."""
 SAME_SPREAD = float(np.sqrt(5 / 4))
 """Radius of the ball over that of the circle with the same second moment along a diameter: r^2 / 5 and r^2 / 4."""
+RADIUS_STEP = 1e-3
+"""Of balls and tubes that are tried, in m."""
+
+
+def radius_steps(limits: tuple[float, float]) -> list[float]:
+    """Radii in m from the least to the largest, two at least, in steps of about a millimetre."""
+    return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
 
 
 @dataclass(frozen=True, eq=False)

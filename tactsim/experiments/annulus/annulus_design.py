@@ -10,17 +10,14 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
-from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
-from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, PositiveForce, PositiveLength, Ratio
+from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
+from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
-from tactsim.units import Time, check_increasing, format_quantity
-
-SMALL_DISPLACEMENT = 0.1
-"""Displacement over the outer radius beyond which small-displacement theory is not to be trusted; a convention."""
+from tactsim.units import Force, Length, Positive, Time, check_increasing, format_quantity
 
 Formula = Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"]
 
@@ -48,25 +45,25 @@ class AnnulusDesign(Experiment):
     """
 
     kind: Literal["annulus_design"] = "annulus_design"
-    outer_radius: PositiveLength = 3e-3
+    outer_radius: Positive[Length] = 3e-3
     """Radius of the face."""
     ratios: Annotated[tuple[Ratio, ...], Field(min_length=2)]
     """Inner over outer radius, increasing."""
-    recesses: Annotated[tuple[PositiveLength, ...], Field(min_length=2)]
+    recesses: Annotated[tuple[Positive[Length], ...], Field(min_length=2)]
     """Depths L of the small sensor below the face, increasing."""
-    forces: Annotated[tuple[PositiveForce, ...], Field(min_length=1)]
+    forces: Annotated[tuple[Positive[Force], ...], Field(min_length=1)]
     """Constant forces, increasing, up to the largest one."""
     times: Annotated[tuple[Annotated[Time, Field(gt=0)], ...], Field(min_length=1)]
     """Times since the force began, increasing."""
-    recommended_force: PositiveForce = 2.0
+    recommended_force: Positive[Force] = 2.0
     """Force on heart tissue that should not be exceeded, thesis section 4.7."""
-    largest_force: PositiveForce = 3.0
+    largest_force: Positive[Force] = 3.0
     """Force on heart tissue that must not be exceeded, thesis section 4.7."""
     tissue: AtrialTissue = AtrialTissue()
     """What is pressed."""
     formula: Formula = "exact"
     """Formula of the force factor; on a layer only the exact one."""
-    thickness: PositiveLength | None = None
+    thickness: Positive[Length] | None = None
     """Thickness of the tissue; null for a half-space."""
     base: Literal["bonded", "slipping"] = "bonded"
     """How a layer rests on its base."""

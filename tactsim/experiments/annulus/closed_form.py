@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.analytic.viscoelastic_annulus import ViscoelasticAnnulus
+from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
 from tactsim.array import Array
 from tactsim.interfaces import Experiment, Material
 from tactsim.interfaces.run import Course, Findings
@@ -21,8 +21,6 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import rows
 from tactsim.units import Length, format_quantity
 
-SMALL = 0.1
-"""Displacement over the outer radius beyond which the result warns; materials that stiffen leave linear theory before."""
 DECADES, PER_DECADE = 6, 10
 """Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
 MOST_TIMES = 1_000_000
@@ -163,10 +161,9 @@ class ClosedForm(Experiment):
             first = format_quantity(float(times[pulled][0]), "s")
             warnings.append(f"the force is negative, first at {first}: a real contact opens there, and the closed form ends")
         deepest = float(np.abs(displacement).max()) / self.outer_radius
-        if deepest > SMALL:
-            warnings.append(
-                f"the displacement reaches {deepest:.3g} of the outer radius; linear theory is meant for up to {SMALL:g}"
-            )
+        if deepest > SMALL_DISPLACEMENT:
+            limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"
+            warnings.append(f"the displacement reaches {deepest:.3g} of the outer radius; {limit}")
         tissue = {} if self.thickness is None else {"thickness": self.thickness}
         radii = {"inner_radius": self.inner_radius} if self.inner_radius else {}
         return warnings + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})

@@ -10,11 +10,9 @@ from tactsim.analytic.force_factor import LARGEST_RATIO
 from tactsim.model import FrozenModel
 from tactsim.results.quantity import Coordinate
 from tactsim.results.scene import Scene
-from tactsim.units import Force, Length, Time
+from tactsim.units import Force, Length, Positive, Time
 
 Ratio = Annotated[float, Field(gt=0, le=LARGEST_RATIO)]
-PositiveLength = Annotated[Length, Field(gt=0)]
-PositiveForce = Annotated[Force, Field(gt=0)]
 
 
 class DesignPoint(FrozenModel):
@@ -22,9 +20,9 @@ class DesignPoint(FrozenModel):
 
     ratio: Ratio = 0.1
     """Inner over outer radius."""
-    recess: PositiveLength = 0.7e-3
+    recess: Positive[Length] = 0.7e-3
     """Depth L of the small sensor."""
-    force: PositiveForce = 1.0
+    force: Positive[Force] = 1.0
     """Constant force."""
     time: Annotated[Time, Field(gt=0)] = 0.5
     """Time since the force began."""

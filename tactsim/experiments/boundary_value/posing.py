@@ -38,6 +38,7 @@ from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotion, PrescribedMotions, Rotation, Translation
+from tactsim.mechanics.models.solid_model import PATIENCE
 from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
 
@@ -50,8 +51,6 @@ SOFTNESS = 2.5e-3
 """Penetration that the penalty of friction would leave without multipliers, over the body's size: a part of a small cell."""
 FAR = 2.0
 """Distance from which a rigid body approaches, over the body's size."""
-PATIENCE = NewtonOptions(max_iterations=40, patience=12)
-"""Of problems with contact: friction settles slowly."""
 
 
 @dataclass(frozen=True)

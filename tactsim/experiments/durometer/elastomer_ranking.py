@@ -25,17 +25,15 @@ from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.model import FrozenModel
 from tactsim.results.result import Status, StepRecord
-from tactsim.units import Length, Time, format_quantity
-
-PositiveLength = Annotated[Length, Field(gt=0)]
+from tactsim.units import Length, Positive, Time, format_quantity
 
 
 class SpecimenSize(FrozenModel):
     """Size of a cylindrical specimen on a fixed base, of any of the materials."""
 
-    thickness: PositiveLength = 10e-3
+    thickness: Positive[Length] = 10e-3
     """Thickness."""
-    radius: PositiveLength = 15e-3
+    radius: Positive[Length] = 15e-3
     """Radius."""
 
     def of(self, shape: Shape) -> Specimen:
@@ -50,11 +48,11 @@ class SensorTest(FrozenModel):
     """What is pressed."""
     body: Annulus = Annulus(fillet=0.4e-3)
     """The filler plate; a neo-Hookean energy gives way at a sharper edge before the threshold."""
-    recess: PositiveLength = 0.8e-3
+    recess: Positive[Length] = 0.8e-3
     """Depth of the inner sensor."""
     contact: AnyLaw = Coulomb()
     """Friction."""
-    displacement: PositiveLength = 8e-3
+    displacement: Positive[Length] = 8e-3
     """Most that is tried."""
     mesh: MeshSettings = MeshSettings(finest=0.2e-3, growth=0.6)
     """Size of the elements."""

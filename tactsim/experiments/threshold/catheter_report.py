@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT
 from tactsim.array import Array
 from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
@@ -38,8 +39,6 @@ SAME = 1e-9
 """Relative difference below which two tissues are equally hard."""
 ASKED = 4
 """Sensors that the thesis asks for at least."""
-SMALL_DISPLACEMENT = 0.1
-"""Displacement over the outer radius up to which linear theory is meant."""
 
 
 @dataclass(frozen=True)

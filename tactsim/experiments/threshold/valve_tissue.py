@@ -13,9 +13,7 @@ from tactsim.experiments.threshold.tip_contact import SensorContact
 from tactsim.model import FrozenModel
 from tactsim.relaxation import Relaxation
 from tactsim.sensors.threshold.sensor_ring import SensorRing
-from tactsim.units import Length, Pressure, check_increasing
-
-PositiveLength = Annotated[Length, Field(gt=0)]
+from tactsim.units import Length, Positive, Pressure, check_increasing
 
 
 class BandTissue(FrozenModel):
@@ -25,7 +23,7 @@ class BandTissue(FrozenModel):
     """Name in figures and warnings."""
     shear_modulus: Annotated[Pressure, Field(gt=0)]
     """Small-strain shear modulus."""
-    thickness: PositiveLength
+    thickness: Positive[Length]
     """Thickness."""
     base: Literal["bonded", "slipping"] = "bonded"
     """How it rests on what lies below."""
@@ -40,7 +38,7 @@ class ValveSurface(FrozenModel):
 
     tissues: Annotated[tuple[BandTissue, ...], Field(min_length=2)]
     """Tissues from the middle outward: leaflet, annulus, atrium."""
-    borders: Annotated[tuple[PositiveLength, ...], Field(min_length=1)]
+    borders: Annotated[tuple[Positive[Length], ...], Field(min_length=1)]
     """Radii of the borders between them, increasing."""
 
     @model_validator(mode="after")

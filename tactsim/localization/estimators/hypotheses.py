@@ -15,7 +15,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
+from tactsim.localization.candidates import Candidates, ball_candidates, radius_steps, tube_candidates
 from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -39,7 +39,6 @@ COARSE = 4
 """Spacing, in tabulated centres, of the balls that are tried in all pairs."""
 COARSE_SPACING, FINE_SPACING = 4e-3, 2e-3
 """Distance in m of the parallel tubes that are tried in all pairs, and in the best ones."""
-RADIUS_STEP = 1e-3
 
 
 class HypothesesEstimator(Estimator):
@@ -113,7 +112,7 @@ class HypothesesEstimator(Estimator):
             return Estimate(
                 False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
             )
-        balls = ball_candidates(readings.response, readings.block_size, _steps(self.radii), gap=self.gap).signals
+        balls = ball_candidates(readings.response, readings.block_size, radius_steps(self.radii), gap=self.gap).signals
         fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
         explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}
         densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
@@ -164,7 +163,7 @@ class HypothesesEstimator(Estimator):
 
     def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""
-        balls, tubes = _steps(self.radii), _steps(self.tube_radii)
+        balls, tubes = radius_steps(self.radii), radius_steps(self.tube_radii)
         if name == "lump":
             return ball_candidates(response, size, balls, gap=self.gap), None
         if name == "two_lumps":
@@ -188,8 +187,3 @@ class HypothesesEstimator(Estimator):
         """Posterior probability of each class from the log evidence; zero for classes that are not considered."""
         total = scipy.special.logsumexp(list(evidence.values()))
         return {name: float(np.exp(evidence[name] - total)) if name in evidence else 0.0 for name in CLASSES}
-
-
-def _steps(limits: tuple[float, float]) -> list[float]:
-    """Radii from the least to the largest in steps of a millimetre."""
-    return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))

@@ -13,7 +13,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import ball_candidates
+from tactsim.localization.candidates import ball_candidates, radius_steps
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -33,8 +33,6 @@ from tactsim.units import Length
 
 EVERY, COARSE = 2, 4
 """Spacing, in tabulated centres, of the balls of which pairs are made, and of those that are tried in all pairs."""
-RADIUS_STEP = 1e-3
-"""Of the balls of which pairs are made, in m."""
 SEED = 1
 """Of the draws by which pairs are averaged."""
 
@@ -154,8 +152,7 @@ class ModelBasedEstimator(Estimator):
         response, size, difference = readings.response, readings.block_size, readings.difference
         if self.second == 0 or response is None or difference is None:
             return None
-        steps = max(2, round((self.radii[1] - self.radii[0]) / RADIUS_STEP) + 1)
-        radii = list(np.linspace(*self.radii, steps))
+        radii = radius_steps(self.radii)
         fine, coarse = (
             replace(balls, signals=whitened(fit.factor * balls.signals, fit.covariance))
             for balls in (

@@ -19,7 +19,7 @@ from tactsim.mesh.revolved import SweepSymmetry
 from tactsim.results.result import FieldFrame
 
 PATIENCE = NewtonOptions(max_iterations=40, patience=12)
-"""Friction in space settles more slowly than in a section: the direction of slip is an unknown too."""
+"""Of contact in space, where friction settles slowly: the direction of slip is an unknown too."""
 
 
 class SolidModel(PressedModel):

@@ -10,9 +10,8 @@ from pydantic import Field, model_validator
 from tactsim.analytic.annular_area import annular_area
 from tactsim.array import Array
 from tactsim.model import FrozenModel
-from tactsim.units import Angle, Length, format_quantity
+from tactsim.units import Angle, Length, Positive, format_quantity
 
-PositiveLength = Annotated[Length, Field(gt=0)]
 RINGS, SPOKES = 40, 96
 """Points of the quadrature over the face of a sensor: so many radii of equal area, so many angles."""
 
@@ -25,13 +24,13 @@ class SensorRing(FrozenModel):
 
     count: Annotated[int, Field(ge=2, le=64)] = 4
     """Number of sensors; the thesis asks for at least four, and fewer show what they miss."""
-    radius: PositiveLength = 3e-3
+    radius: Positive[Length] = 3e-3
     """Radius of the circle of their centres."""
-    outer_radius: PositiveLength = 1e-3
+    outer_radius: Positive[Length] = 1e-3
     """Outer radius of the face of a sensor."""
-    inner_radius: PositiveLength = 0.5e-3
+    inner_radius: Positive[Length] = 0.5e-3
     """Radius of its hole."""
-    recess: PositiveLength = 0.1e-3
+    recess: Positive[Length] = 0.1e-3
     """Depth L of its small sensor."""
     orientation: Angle = 0.0
     """Angle of the first sensor, from the x axis, counter-clockwise."""
