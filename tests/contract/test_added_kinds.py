@@ -19,6 +19,7 @@ from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, UnknownName
 from tactsim.experiments.grasp.recorder import inclusion_kinds
 from tactsim.experiments.recording import RecordingSettings, recorder_for
+from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
 from tactsim.interfaces import (
     CaseKind,
     ContactLaw,
@@ -36,6 +37,7 @@ from tactsim.live.session.choices import offered_choices
 from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.plotting import figures_for
 from tactsim.registry import forget, kind_class, kinds
+from tactsim.results.result import Status
 
 POINTS = (Material, RigidBody, ContactLaw, Inclusion, SensorFilm, Experiment, Estimator, Recorder, ResultFigures)
 MODULES = {
@@ -108,14 +110,33 @@ MODULES = {
 }
 
 
+RING = """
+    from typing import Literal
+    import numpy as np
+    from tactsim.contact.profile import Revolved, rounded_box
+    from tactsim.interfaces.contact_shape import ContactShape
+    class Added(Revolved):
+        kind: Literal["added"] = "added"
+        @classmethod
+        def example(cls):
+            return cls()
+        @property
+        def contact_shape(self):
+            return ContactShape(3e-3, 1.5e-3, 0.4e-3)
+        def profile_distance(self, p):
+            return rounded_box(p, np.array([1.5e-3, 0.0]), np.array([3e-3, 20e-3]), 0.4e-3)
+"""
+"""A body with a hole and with none of the fields of an annulus."""
+
+
 @pytest.fixture
 def added(tmp_path: Path) -> Iterator[Any]:
     """Defines the modules of extension points; what they register is forgotten in the end."""
     defined: list[type[CaseKind]] = []
 
-    def define(base: Any, name: str = "added_kind") -> Any:
+    def define(base: Any, name: str = "added_kind", text: str | None = None) -> Any:
         module = ModuleType(name)
-        exec(compile(dedent(MODULES[base]), f"{name}.py", "exec", dont_inherit=True), module.__dict__)  # noqa: S102  a user's module
+        exec(compile(dedent(text or MODULES[base]), f"{name}.py", "exec", dont_inherit=True), module.__dict__)  # noqa: S102  a user's module
         defined.append(module.Added)  # type: ignore[attr-defined]
         return defined[-1]
 
@@ -172,6 +193,19 @@ def test_a_body_is_pressed_and_tilted_without_a_radius(added: Any, tmp_path: Pat
     assert experiment.contact_radius == experiment.specimen.radius  # it has none: it reaches as far as the specimen
     tilted = kind_class(RigidBody, "tilted").model_validate({"kind": "tilted", "body": {"kind": "added"}, "tilt_x": 0.1})
     assert type(tilted.body) is cls
+
+
+def test_a_body_with_a_hole_has_a_recess_and_a_threshold(added: Any, tmp_path: Path) -> None:
+    added(RigidBody, text=RING)
+    mesh = "mesh: {finest: 0.3 mm, growth: 1, adaptive: false}"
+    text = PRESS.replace("displacement: 0.2 mm", "displacement: 2 mm")
+    text = text.replace("stop: displacement", f"recess: 0.2 mm\n  {mesh}")
+    ring, annulus = (case(tmp_path, text, {"BODY": body}).run(None) for body in ("added", "annulus, fillet: 0.4 mm"))
+    assert ring.status is Status.CONVERGED
+    assert ring.quantities == annulus.quantities
+    assert ring.steps == annulus.steps
+    assert {"threshold_pressure", "tissue_rise"} <= set(ring.quantities)
+    assert ContactCurve.of_result(ring, beyond=1e-4).shape == SensorShape(1.5e-3, 3e-3, 0.2e-3)
 
 
 def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None:
