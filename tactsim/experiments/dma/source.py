@@ -73,6 +73,7 @@ class DmaSource(FrozenModel):
 class ModelledDma(DmaSource):
     """Data of the model of Table 4.1."""
 
+    kind: str
     times: Literal["retardation_times", "viscosities"] = "retardation_times"
     """The column of times of Table 4.1: in s, as eq. 4.3.8 uses it, or viscosities, as eq. 4.6.4 uses it."""
     frequencies: Annotated[tuple[Positive[Frequency], ...], Field(min_length=FEWEST_FREQUENCIES)] = THESIS_FREQUENCIES
