@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.film_creep import COEFFICIENTS
 from tactsim.identification.film_line import LineProjection, projected_on_line
+from tactsim.sensors.electronics.calibration import LinearCalibration
 from tactsim.sensors.films.composite import Composite
 
 CREEP_FORCES = (2.0, 4.0, 6.0, 8.0)
@@ -37,7 +38,7 @@ class JointFilm:
 
 def identify_film_jointly(
     composite: Composite,
-    line: tuple[float, float],
+    line: LinearCalibration,
     *,
     creep_weight: float | None = None,
     forces: tuple[float, float] = (0.5, 5.0),
@@ -55,8 +56,8 @@ def identify_film_jointly(
     ----------
     composite : Composite
         Gives filler and creep, and the barrier to begin with; its resistances are not used.
-    line : (float, float)
-        m in S/N and n in S of the conductance C = m F + n.
+    line : LinearCalibration
+        The conductance C = m F + n.
     creep_weight : float, optional
         w >= 0; None keeps the creep as it is given.
     forces, delay, points
@@ -90,7 +91,7 @@ def identify_film_jointly(
     initial, contact = projection.resistances.tolist()
     if min(initial, contact) <= 0:
         raise InvalidQuantity(
-            f"the line {line} S/N, S with creep_weight {creep_weight} gives resistances {initial:g} and {contact:g} ohm; "
+            f"the line {line} with creep_weight {creep_weight} gives resistances {initial:g} and {contact:g} ohm; "
             "both must be positive: weigh the creep more"
         )
     fitted = film.model_copy(update={"initial_resistance": initial, "contact_resistance": contact})

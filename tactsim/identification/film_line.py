@@ -9,6 +9,7 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.sensors.electronics.calibration import LinearCalibration
 from tactsim.sensors.films.composite import Composite
 from tactsim.sensors.films.film import Film
 
@@ -25,7 +26,7 @@ class FilmLine:
 
 def identify_film(
     composite: Composite,
-    line: tuple[float, float],
+    line: LinearCalibration,
     *,
     forces: tuple[float, float] = (0.5, 5.0),
     delay: float = 1.0,
@@ -39,8 +40,8 @@ def identify_film(
     ----------
     composite : Composite
         Gives filler and creep; its resistances are not used.
-    line : (float, float)
-        m in S/N and n in S of the conductance C = m F + n.
+    line : LinearCalibration
+        The conductance C = m F + n.
     forces : (float, float)
         Range in N; the thesis (7.1) wants accuracy from 0.5 to 5 N.
     delay : float
@@ -56,7 +57,7 @@ def identify_film(
     projection = projected_on_line(composite, line, forces=forces, delay=delay, points=points)
     initial, touching = projection.resistances
     if min(initial, touching) <= 0:
-        raise InvalidQuantity(f"the line {line} S/N, S gives resistances {initial:g} and {touching:g} ohm; both must be positive")
+        raise InvalidQuantity(f"the line {line} gives resistances {initial:g} and {touching:g} ohm; both must be positive")
     return FilmLine(float(initial), float(touching), projection.forces, projection.errors)
 
 
@@ -70,7 +71,7 @@ class LineProjection:
 
 
 def projected_on_line(
-    composite: Composite, line: tuple[float, float], *, forces: tuple[float, float], delay: float, points: int
+    composite: Composite, line: LinearCalibration, *, forces: tuple[float, float], delay: float, points: int
 ) -> LineProjection:
     """The resistances of ``identify_film``, which may be zero; its arguments.
 
@@ -80,9 +81,9 @@ def projected_on_line(
         If the line or the range is not positive.
     """
     applied = np.linspace(*forces, points)
-    measured = line[0] * applied + line[1]
+    measured = line.slope * applied + line.intercept
     if not (0 < forces[0] < forces[1] and delay > 0 and np.all(measured > 0)):
-        raise InvalidQuantity(f"line {line} S/N, S over {forces} N at {delay} s; allowed: rising forces, C > 0")
+        raise InvalidQuantity(f"line {line} in SI over {forces} N at {delay} s; allowed: rising forces, C > 0")
     # With both resistances at 1 ohm the film's resistance is R_pol / R0 + 1 / sqrt(F).
     unit = Film(composite=composite.model_copy(update={"initial_resistance": 1.0, "contact_resistance": 1.0}))
     history = np.tile(applied, (2, 1))

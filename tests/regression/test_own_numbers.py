@@ -59,7 +59,7 @@ def test_the_height_of_the_contact_on_the_sides_of_the_probe():
 
 def test_the_largest_error_of_the_identified_film():
     """0.112: version 0.1.0, no mesh. Again by ``identify_film`` with the line of the thesis, as below."""
-    identified = identify_film(named_composite("lingstat_literal"), (THESIS_LINE.slope, THESIS_LINE.intercept))
+    identified = identify_film(named_composite("lingstat_literal"), THESIS_LINE)
     assert np.abs(identified.errors).max() == pytest.approx(0.112, abs=0.001)
 
 

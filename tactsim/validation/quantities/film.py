@@ -156,7 +156,7 @@ def film_sensitivity(
     if number == "exponent":
         return float(film.sensitivity([0.0], [force])[0] * force / film.conductance([0.0], [force])[0])
     if number == "line_error":
-        return float(np.abs(identify_film(composite, (THESIS_LINE.slope, THESIS_LINE.intercept)).errors).max())
+        return float(np.abs(identify_film(composite, THESIS_LINE).errors).max())
     return float(varying_coefficient_jump(composite, force) / creep_strain(composite, force, 0.0) - 1)
 
 

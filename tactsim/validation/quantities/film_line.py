@@ -17,7 +17,6 @@ from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.film import IDENTIFIED, LITERAL, FilmComposite
 
 JOINT_UNITS = {"barrier": "J", "initial_resistance": "ohm", "contact_resistance": "ohm"}
-LINE = (THESIS_LINE.slope, THESIS_LINE.intercept)
 LINE_POINTS = 91
 """Forces at which a line is compared."""
 
@@ -84,7 +83,7 @@ def joint_film(
     creep_weight : weight of the creep against the line; null keeps the creep as printed
     force : force of the drift
     """
-    joint = identify_film_jointly(LITERAL, LINE, creep_weight=creep_weight)
+    joint = identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=creep_weight)
     if number == "line_error":
         return float(np.abs(joint.errors).max())
     if number == "creep_change":
@@ -106,7 +105,7 @@ def film_line_and_drift(
     fits = []
     for exponent in exponents:
         composite = changed(LITERAL, np.log([exponent / LITERAL.exponent]))
-        fit = identify_film(composite, LINE)
+        fit = identify_film(composite, THESIS_LINE)
         resistances = {"initial_resistance": fit.initial_resistance, "contact_resistance": fit.contact_resistance}
         fits.append(composite.model_copy(update=resistances))
     ends: tuple[Literal["most"], Literal["least"]] = ("most", "least")

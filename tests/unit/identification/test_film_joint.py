@@ -15,14 +15,13 @@ from tactsim.sensors.films.film import Film
 from tactsim.validation.quantities import film_line as quantities
 
 LITERAL, JOINT = named_composite("lingstat_literal"), named_composite("lingstat_joint")
-LINE = (THESIS_LINE.slope, THESIS_LINE.intercept)
 STATED = {"most": 0.039, "least": -0.0615}
 """Accuracy of the sensor of 3.1.2 in parts of the full scale."""
 
 
 def test_the_fit_is_a_least_and_a_mutant_is_not():
     """The mean square of the errors rises whichever way a constant is moved."""
-    fit = identify_film_jointly(LITERAL, LINE)
+    fit = identify_film_jointly(LITERAL, THESIS_LINE)
     history = np.tile(fit.forces, (2, 1))
 
     def squares(composite):
@@ -40,7 +39,7 @@ def test_the_fit_is_a_least_and_a_mutant_is_not():
 
 
 def test_the_shipped_film_is_the_fitted_one():
-    fitted = identify_film_jointly(LITERAL, LINE).composite
+    fitted = identify_film_jointly(LITERAL, THESIS_LINE).composite
     for name in ("barrier", "initial_resistance", "contact_resistance"):
         assert getattr(JOINT, name) == pytest.approx(getattr(fitted, name), rel=1e-4)
         assert abs(getattr(LITERAL, name) / getattr(fitted, name) - 1) > 0.1
@@ -64,7 +63,7 @@ def test_no_barrier_gives_the_line_without_half_a_drift():
     seen = []
     for factor in np.linspace(0.4, 1.0, 13):
         composite = changed(LITERAL, np.log([factor]))
-        fit = identify_film(composite, LINE)
+        fit = identify_film(composite, THESIS_LINE)
         update = {"initial_resistance": fit.initial_resistance, "contact_resistance": fit.contact_resistance}
         film = composite.model_copy(update=update)
         seen.append((np.abs(fit.errors).max(), quantities.film_drift(film)))
@@ -74,12 +73,12 @@ def test_no_barrier_gives_the_line_without_half_a_drift():
 
 
 def test_a_looser_creep_nears_the_line_and_leaves_the_printed_creep():
-    kept, weighed = (identify_film_jointly(LITERAL, LINE, creep_weight=w) for w in (None, 0.1))
+    kept, weighed = (identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=w) for w in (None, 0.1))
     assert np.abs(kept.creep_changes).max() == 0
     assert np.abs(weighed.errors).max() < 0.75 * np.abs(kept.errors).max()
     assert 0.15 < np.abs(weighed.creep_changes).max() < 0.2
     assert quantities.film_drift(weighed.composite) > quantities.film_drift(kept.composite), "the line is bought with drift"
-    heavy = identify_film_jointly(LITERAL, LINE, creep_weight=1e3)
+    heavy = identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=1e3)
     assert heavy.composite.barrier == pytest.approx(kept.composite.barrier, rel=1e-3)
 
 
@@ -93,7 +92,7 @@ def test_a_looser_creep_nears_the_line_and_leaves_the_printed_creep():
 )
 def test_impossible_settings_are_refused(arguments, words):
     with pytest.raises(InvalidQuantity, match=words):
-        identify_film_jointly(LITERAL, LINE, **arguments)
+        identify_film_jointly(LITERAL, THESIS_LINE, **arguments)
 
 
 def test_numbers_for_the_tables():

@@ -136,12 +136,12 @@ def test_a_smaller_film_is_strained_by_its_pressure():
 
 
 def test_the_identified_resistances_are_those_of_the_line():
-    identified = identify_film(named_composite("lingstat_literal"), (THESIS_LINE.slope, THESIS_LINE.intercept))
+    identified = identify_film(named_composite("lingstat_literal"), THESIS_LINE)
     shipped = named_composite("lingstat_identified")
     assert shipped.initial_resistance == pytest.approx(identified.initial_resistance, rel=1e-4)
     assert shipped.contact_resistance == pytest.approx(identified.contact_resistance, rel=1e-4)
     assert shipped.initial_resistance != pytest.approx(
-        identify_film(shipped, (THESIS_LINE.slope, THESIS_LINE.intercept), forces=(0.5, 8.0)).initial_resistance, rel=0.05
+        identify_film(shipped, THESIS_LINE, forces=(0.5, 8.0)).initial_resistance, rel=0.05
     )
 
 
