@@ -1,9 +1,6 @@
-"""An experiment within another: how it may end, and what its generator returns."""
+"""An experiment within another, and how it may end."""
 
 from __future__ import annotations
-
-from collections.abc import Generator
-from typing import Any
 
 import pytest
 
@@ -30,12 +27,3 @@ def pretend_to_end(monkeypatch: pytest.MonkeyPatch, kind: type[Experiment], erro
         raise error
 
     monkeypatch.setattr(kind, "begin", lambda self: Course(steps(), lambda: Findings("its end was not reached")))
-
-
-def returned(generator: Generator[StepRecord, None, Any]) -> Any:
-    """What a generator returns behind its last step."""
-    try:
-        while True:
-            next(generator)
-    except StopIteration as end:
-        return end.value

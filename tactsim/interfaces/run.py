@@ -11,7 +11,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, Self, final
+from typing import Any, ClassVar, Literal, Self, TypeVar, final
 
 from tactsim.deadline import check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, OutOfTime, Unfinished
@@ -25,6 +25,7 @@ from tactsim.results.scene import Scene
 from tactsim.units import parse_quantity
 
 Progress = Callable[[StepRecord], None]
+Value = TypeVar("Value")
 
 NO_MEMORY = "the memory does not suffice: take larger elements, fewer taxels, steps or samples, or a machine with more of it"
 ACCEPTED_STEPS = "the accepted steps are kept, the run is incomplete"
@@ -219,14 +220,28 @@ def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Resu
     OutOfTime, OutOfMemory
         If the time allowed has passed, or the memory does not suffice.
     """
-    course, early = experiment.begin(), None
     try:
-        yield from course.steps
-    except (OutOfTime, OutOfMemory):
-        raise
-    except Unfinished as error:
-        early = Status.FAILED, failure(error)
-    return _result(experiment, course.findings(), early, {})
+        course, early = experiment.begin(), None
+        try:
+            yield from course.steps
+        except (OutOfTime, OutOfMemory):
+            raise
+        except Unfinished as error:
+            early = Status.FAILED, failure(error)
+        return _result(experiment, course.findings(), early, {})
+    except MemoryError as error:
+        raise OutOfMemory(NO_MEMORY) from error
+
+
+def returned_by(steps: Generator[StepRecord, None, Value]) -> Value:
+    """What steps return at their end, such as those of `run_within_another`; they are reported to nobody."""
+    with quiet():
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                value: Value = end.value
+                return value
 
 
 @contextmanager

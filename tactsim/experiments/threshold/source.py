@@ -97,8 +97,9 @@ class ClosedFormSource(Source):
             raise ValueError("the recess must be smaller than the thickness of the tissue (thesis, end of 3.1.1)")
         return self
 
-    def contact(self) -> ClosedFormTissue:
+    def tissue(self) -> Generator[StepRecord, None, ClosedFormTissue]:
         """The contact in closed form."""
+        yield from ()
         compliance = shear_compliance(self.material)
 
         def punch(radius: float, ratio: float) -> ViscoelasticAnnulus:
@@ -108,11 +109,6 @@ class ClosedFormSource(Source):
         shape = SensorShape(self.inner_radius, self.outer_radius, self.recess)
         annulus = punch(self.outer_radius, self.inner_radius / self.outer_radius)
         return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
-
-    def tissue(self) -> Tissue:
-        """The contact in closed form."""
-        yield from ()
-        return self.contact()
 
     def assumptions(self) -> list[str]:
         """Assumptions of the contact that the result lists."""
@@ -182,11 +178,6 @@ class CurveSource(Source):
         return self
 
     def tissue(self) -> Tissue:
-        """The curve in the file."""
-        yield from ()
-        return self.curve()
-
-    def curve(self) -> ContactCurve:
         """The curve in the file.
 
         Raises
@@ -194,6 +185,7 @@ class CurveSource(Source):
         InvalidQuantity
             If a column is missing.
         """
+        yield from ()
         columns = read_columns(self.path, COLUMNS)
         missing = [name for name in COLUMNS if name not in columns]
         if missing:

@@ -19,7 +19,7 @@ from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShap
 from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact, mixed_contacts
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
-from tactsim.interfaces.run import run_within_another
+from tactsim.interfaces.run import returned_by, run_within_another
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import DisplacementLoading
@@ -210,7 +210,7 @@ def relaxing_curve(tissue: BandTissue, ring: SensorRing, speed: float) -> Contac
         base=tissue.base,
         beyond=tissue.thickness,
     )
-    approach = source.contact().approach(speed)
+    approach = returned_by(source.tissue()).approach(speed)
     times = np.concatenate([np.linspace(0, approach.touch, SAMPLES), np.linspace(approach.touch, approach.duration, SAMPLES)[1:]])
     plate, small = approach.at(times)
     rise = ring.recess * times / approach.touch

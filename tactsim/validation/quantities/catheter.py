@@ -11,6 +11,7 @@ from pydantic import Field
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.catheter_tip import CatheterTip
 from tactsim.interfaces import drawing, quantity
+from tactsim.interfaces.run import returned_by, run_within_another
 from tactsim.results.result import Result
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.inputs import Inputs
@@ -119,7 +120,7 @@ def _runs(
         ring = tip.ring.model_copy(update={"count": sensors, "orientation": float(generator.uniform(0, 2 * np.pi / sensors))})
         distance = float(generator.uniform(inner - ring.radius, outer + ring.radius))
         update = {"ring": ring, "place": (distance, 0.0), "trials": touches, "seed": seed + number}
-        yield tip.model_copy(update=update).run(), band
+        yield returned_by(run_within_another(tip.model_copy(update=update))), band
 
 
 def _counted(number: Number, result: Result, band: int) -> float:

@@ -11,6 +11,7 @@ from tactsim.case import load_case
 from tactsim.errors import InputError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import drawing
+from tactsim.interfaces.run import returned_by, run_within_another
 from tactsim.mechanics.models.section_model import AXIAL_STRESS
 from tactsim.model import FrozenModel
 from tactsim.results import Result, Status
@@ -48,7 +49,7 @@ def section_stresses(inputs: Inputs, title: Title, sections: Annotated[tuple[Dra
     """
     panels = []
     for one in sections:
-        result = load_case(inputs.folder / one.case, overrides(one.set)).experiment.run(None)
+        result = returned_by(run_within_another(load_case(inputs.folder / one.case, overrides(one.set)).experiment))
         panels.append(section_panel(result, one.title))
     return {"form": "sections", "title": title, "unit": "Pa", "label": "normal stress along the axis", "panels": panels}
 

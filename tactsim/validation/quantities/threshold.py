@@ -12,6 +12,7 @@ from tactsim.analytic.annular_area import annular_area as area_of_annulus
 from tactsim.errors import CaseError, InputError
 from tactsim.experiments.threshold.source import CurveSource
 from tactsim.interfaces import drawing, quantity
+from tactsim.interfaces.run import returned_by
 from tactsim.units import Force, Length, Positive, Pressure, format_quantity
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.inputs import Inputs, RunName, StudyName
@@ -63,7 +64,7 @@ def threshold_at_level(
     """
     path = str(inputs.folder / curve)
     source = CurveSource(path=path, inner_radius=inner_radius, outer_radius=outer_radius, recess=recess)
-    approach = source.curve().approach(1e-3)
+    approach = returned_by(source.tissue()).approach(1e-3)
 
     def beyond(time: float) -> float:
         return float(approach.at(np.array(time))[1]) - level

@@ -9,7 +9,7 @@ import pytest
 
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import NO_MEMORY, Course, Findings, run_within_another, timed
+from tactsim.interfaces.run import NO_MEMORY, Course, Findings, returned_by, run_within_another, timed
 from tactsim.registry import forget
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord, rows
@@ -135,17 +135,25 @@ def test_an_experiment_within_another(made: Callable[..., Experiment]) -> None:
     steps, result = drained(made())
     assert len(steps) == 2
     assert result.quantities["count"].value == 2
-    failed = drained(made(after=ConvergenceError("no luck")))[1]
+    failed = returned_by(run_within_another(made(after=ConvergenceError("no luck"))))
     assert (failed.status, failed.reason, len(failed.steps)) == (Status.FAILED, "stopped converging: no luck", 2)
-    assert drained(made(status=Status.FAILED))[1].status is Status.FAILED
+    assert returned_by(run_within_another(made(status=Status.FAILED))).status is Status.FAILED
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt(), OutOfTime("too late"), OutOfMemory("too large"), MemoryError()])
+@pytest.mark.parametrize(
+    ("error", "seen"),
+    [
+        (KeyboardInterrupt(), KeyboardInterrupt),
+        (OutOfTime("too late"), OutOfTime),
+        (OutOfMemory("too large"), OutOfMemory),
+        (MemoryError(), OutOfMemory),
+    ],
+)
 def test_what_ends_an_experiment_within_another_from_outside_ends_both(
-    made: Callable[..., Experiment], error: BaseException
+    made: Callable[..., Experiment], error: BaseException, seen: type[BaseException]
 ) -> None:
-    with pytest.raises(type(error)):
-        drained(made(after=error))
+    with pytest.raises(seen):
+        returned_by(run_within_another(made(after=error)))
 
 
 def test_times_of_parts() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from nested_runs import every_end, pretend_to_end, returned
+from nested_runs import every_end, pretend_to_end
 from scenes import SOLVER
 
 from tactsim.case import load_case
@@ -20,7 +20,7 @@ from tactsim.experiments.threshold.figures.threshold_trial import threshold_erro
 from tactsim.experiments.threshold.sampling import ApproachSampling
 from tactsim.experiments.threshold.source import ClosedFormSource, CurveSource, IndentationSource, RunSource
 from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
-from tactsim.interfaces.run import Course, Findings
+from tactsim.interfaces.run import Course, Findings, returned_by
 from tactsim.materials.library import named_material
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
@@ -168,7 +168,7 @@ def stored(path, *, past, status=Status.CONVERGED, kind="indentation"):
 
 
 def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
-    past, ended = (returned(RunSource(path=str(stored(tmp_path / str(past), past=past))).tissue()) for past in (True, False))
+    past, ended = (returned_by(RunSource(path=str(stored(tmp_path / str(past), past=past))).tissue()) for past in (True, False))
     assert past.threshold_displacement == ended.threshold_displacement == 1e-3
     at = np.array([0.5, 1.0, 1.1])
     plate, small = past.approach(1e-3).at(at)
@@ -181,7 +181,7 @@ def test_a_run_on_disk_with_and_without_what_follows_the_touch(tmp_path):
     assert ended.shape.area == pytest.approx(np.pi * (9 - 2.25) * 1e-6)
     for name, changes in (("failed", {"status": Status.FAILED}), ("kind", {"kind": "grasp"})):
         with pytest.raises(InputError, match="not usable"):
-            returned(RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue())
+            returned_by(RunSource(path=str(stored(tmp_path / name, past=True, **changes))).tissue())
 
 
 @every_end
@@ -247,7 +247,7 @@ def test_bad_curves_are_refused(tmp_path, text, words):
 def test_a_curve_is_read_with_its_units(tmp_path):
     path = tmp_path / "curve.csv"
     path.write_text(HEADER + "1, 1, 0.4, 0\n1.5, 1.5, 0.6, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 10\n")
-    curve = returned(CurveSource(path=str(path)).tissue())
+    curve = returned_by(CurveSource(path=str(path)).tissue())
     assert isinstance(curve, ContactCurve)
     assert curve.shape == SensorShape(1.5e-3, 3e-3, 0.8e-3)
     assert (curve.threshold_displacement, curve.displacement[0], curve.small[-1]) == (2e-3, 0.0, 0.01)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mutants import assert_kills
-from nested_runs import every_end, pretend_to_end, returned
+from nested_runs import every_end, pretend_to_end
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError, ConvergenceError
@@ -23,6 +23,7 @@ from tactsim.experiments.threshold.tip_model import (
     relaxing_curve,
 )
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
+from tactsim.interfaces.run import returned_by
 from tactsim.relaxation import Relaxation
 from tactsim.sensors.threshold.sensor_ring import SensorRing
 
@@ -79,7 +80,7 @@ def test_mixed_curves_of_elastic_tissue_are_the_mixed_closed_form():
 
 def test_slow_tips_meet_softer_tissue():
     def force(tissues, speed):
-        return returned(ClosedFormTip().contacts(tissues, RING, (5e-3, 0.0), speed))[0].contact.force
+        return returned_by(ClosedFormTip().contacts(tissues, RING, (5e-3, 0.0), speed))[0].contact.force
 
     slow, fast = (force(surface(RELAXING), speed) for speed in (1e-4, 1e-2))
     elastic = force(surface(), SPEED)
@@ -158,7 +159,7 @@ def test_what_ends_a_tissue_ends_the_tip(monkeypatch, error, status, reason):
 def test_finite_elements_on_a_flat_tissue_are_within_the_stated_errors(one_thread, recess, friction):
     """Some seconds each; the rows of FLAT_ERRORS are rounded to a thousandth."""
     ring, one = SensorRing(recess=recess), tissue("annulus", 60e3)
-    curve = returned(FiniteElementTip(friction=friction).curve(one, ring, SPEED))
+    curve = returned_by(FiniteElementTip(friction=friction).curve(one, ring, SPEED))
     closed = ValveSurface(tissues=(one, tissue("b", 1e3)), borders=(1.0,)).contacts(ring)[0]
     low, high = flat_errors(recess / ring.outer_radius)
     assert low - 1e-3 <= curve.plate[curve.touch] / closed.force - 1 <= high + 1e-3
@@ -168,7 +169,7 @@ def test_finite_elements_on_a_flat_tissue_are_within_the_stated_errors(one_threa
 def test_relaxing_and_convex_tissue_by_finite_elements(one_thread):
     """A minute: the relaxing flat tissue is the closed form's within its errors; a radius of 20 mm takes 14 % away."""
     one = tissue("annulus", 60e3, relaxation=Relaxation(fractions=(0.2,), times=(5.0,)))
-    flat, convex = (returned(FiniteElementTip(surface_radius=radius).curve(one, RING, SPEED)) for radius in (None, 20e-3))
+    flat, convex = (returned_by(FiniteElementTip(surface_radius=radius).curve(one, RING, SPEED)) for radius in (None, 20e-3))
     closed = relaxing_curve(one, RING, SPEED)
     low, high = flat_errors(0.1)
     assert low <= flat.plate[flat.touch] / closed.plate[closed.touch] - 1 <= high
