@@ -106,7 +106,7 @@ RAMP = "{kind: ramp, to: 1 mm, duration: 1 s}"
 @pytest.mark.parametrize(
     ("name", "setting", "message"),
     [
-        ("annulus_icf", "experiment.steps={first: 1e-30 m}", r"steps\.first .* is lost in round-off; allowed: at least 8 pm"),
+        ("annulus_icf", "experiment.steps={first: 1e-30 m}", r"steps\.first: .* is lost in round-off; allowed: at least 8 pm"),
         ("annulus_icf", "experiment.steps={first: 10 nm, largest: 10 nm}", r"steps\.largest 10 nm asks for 8e\+05 steps"),
         (
             "grasp_plain",

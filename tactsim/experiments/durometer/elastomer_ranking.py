@@ -194,7 +194,7 @@ class ElastomerRanking(Experiment):
         sizes = (("sensor", self.sensor.specimen), ("durometer", self.durometer.specimen))
         assumptions = [
             f"specimen under the {name}: radius {format_quantity(size.radius, 'm')}, thickness "
-            f"{format_quantity(size.thickness, 'm')}, on a fixed base (the thesis prints no size)"
+            f"{format_quantity(size.thickness, 'm')}, on a fixed base (from the case; the thesis prints none)"
             for name, size in sizes
         ]
         assumptions.append(

@@ -23,7 +23,7 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.block_source import SourcedBlock
 from tactsim.mechanics.outcome.contact_history import LAST
-from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord
+from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, UNPRINTED, ContactRecord
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Status, StepRecord
@@ -113,14 +113,14 @@ class GraspRecord(ContactRecord[GraspModel]):
         """What was chosen."""
         experiment, block = self.experiment, self._sourced.block
         size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
-        assumptions = [f"block of {size} (the thesis prints no size)"]
+        assumptions = [f"block of {size} {UNPRINTED}"]
         for side in JAWS:
             jaw = experiment.jaw(side)
             width, depth = format_quantity(jaw.width, "m"), format_quantity(jaw.depth, "m")
             edges = format_quantity(jaw.fillet, "m")
-            assumptions.append(f"{side} jaw of {width} x {depth}, edges rounded by {edges} (not printed)")
+            assumptions.append(f"{side} jaw of {width} x {depth}, edges rounded by {edges} {UNPRINTED}")
         pitch, taxel = format_quantity(experiment.matrix.pitch, "m"), format_quantity(experiment.matrix.size, "m")
-        assumptions.append(f"taxels of {taxel} at a pitch of {pitch} (not printed)")
+        assumptions.append(f"taxels of {taxel} at a pitch of {pitch} {UNPRINTED}")
         for number, lumen in experiment.lumens.items():
             if isinstance(lumen, PulsePressure):
                 least, most = (format_quantity(value, "Pa") for value in lumen.limits)

@@ -62,15 +62,19 @@ class DisplacedSetup(IndentationSetup):
     def _consistent(self) -> Self:
         if self.displacement >= self.specimen.thickness:
             given, most = (format_quantity(v, "m") for v in (self.displacement, self.specimen.thickness))
-            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {most}")
+            raise ValueError(f"displacement: {given} must be smaller than the specimen's thickness {most}")
         if self.hole and self.recess is None:
             raise ValueError("a body with a hole needs the recess of its inner sensor, like recess: 0.8 mm")
         if not self.hole and self.stop == "threshold":
             raise ValueError(
-                f"only a body with a hole has a recess and a threshold; for a {self.body.kind} set stop: displacement"
+                f"stop: only a body with a hole has a recess and a threshold; for a {self.body.kind} set stop: displacement"
             )
-        if any(material.relaxation is not None for material in self.specimen.materials):
-            raise ValueError("a material that relaxes needs a history in time: kind: timed_indentation")
+        for key, material in self.specimen.materials_by_key.items():
+            if material.relaxation is not None:
+                raise ValueError(
+                    f"specimen.{key}: the material relaxes, which needs a history in time: kind: timed_indentation "
+                    "(tactsim new timed_indentation writes a case of it)"
+                )
         self._check_steps()
         return self
 
@@ -79,7 +83,7 @@ class DisplacedSetup(IndentationSetup):
         first, largest = control.first, control.largest
         if first < LEAST_STEP * displacement:
             given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * displacement, "m")
-            raise ValueError(f"steps.first {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
+            raise ValueError(f"steps.first: {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
         check_steps(displacement / largest, f"steps.largest {format_quantity(largest, 'm')}")
 
     def begin(self) -> Course:
@@ -93,7 +97,8 @@ class DisplacedSetup(IndentationSetup):
         return Displaced(
             stops_at_touch=self.stop == "threshold",
             reached=f"{self.stop} reached",
-            missed=f"the threshold was not reached within the displacement of {format_quantity(self.displacement, 'm')}",
+            missed=f"the threshold was not reached within the displacement of {format_quantity(self.displacement, 'm')}; "
+            "a larger displacement or a smaller recess may reach it",
             displacement=self.displacement,
             control=self.control(),
         )

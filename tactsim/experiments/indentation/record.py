@@ -17,7 +17,7 @@ from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.solid_model import SolidModel
 from tactsim.mechanics.outcome.contact_history import LAST
-from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, UNPRINTED, ContactRecord, FollowedPath
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
@@ -210,11 +210,11 @@ def specimen_assumptions(setup: IndentationSetup) -> list[str]:
     """What the thesis does not print of specimen and body, and every case chose."""
     specimen, fillet = setup.specimen, setup.body.contact_shape.fillet
     radius, thickness = format_quantity(specimen.radius, "m"), format_quantity(specimen.thickness, "m")
-    assumptions = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base (the thesis prints no size)"]
+    assumptions = [f"specimen of radius {radius} and thickness {thickness} on a {specimen.base} base {UNPRINTED}"]
     if fillet is not None:
-        assumptions.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} (not printed)")
+        assumptions.append(f"edges of the body filleted by {format_quantity(fillet, 'm')} {UNPRINTED}")
     if any(material.bulk_modulus is None for material in specimen.materials):
-        assumptions.append("exactly incompressible tissue (the thesis prints no bulk modulus)")
+        assumptions.append("exactly incompressible tissue (no bulk modulus is given)")
     return assumptions
 
 

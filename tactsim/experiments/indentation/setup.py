@@ -150,8 +150,7 @@ class IndentationSetup(FrozenModel):
         from tactsim.mechanics.outcome.plausibility import oddities
 
         layers = {f"specimen.layers.{k}": layer for k, layer in enumerate(self.specimen.layers)}
-        materials = {f"{name}.material": layer.material for name, layer in layers.items()}
-        materials |= {"specimen.material": self.specimen.material}
+        materials = {f"specimen.{key}": material for key, material in self.specimen.materials_by_key.items()}
         tissue = {"specimen.thickness": self.specimen.thickness, "specimen.radius": self.specimen.radius}
         tissue |= {f"{name}.thickness": layer.thickness for name, layer in layers.items()}
         bodies = {f"body.{name}": radius for name, radius in self.body.contact_shape.radii.items()}
@@ -175,15 +174,16 @@ class IndentationSetup(FrozenModel):
     def _fitting(self) -> Self:
         width = format_quantity(self.specimen.radius, "m")
         if self.body.contact_shape.radius is not None and self.contact_radius >= self.specimen.radius:
-            raise ValueError(f"the body's radius {format_quantity(self.contact_radius, 'm')} needs a wider specimen than {width}")
+            given = format_quantity(self.contact_radius, "m")
+            raise ValueError(f"specimen.radius: {width} is too small for a body of radius {given}; allowed: more than that")
         largest = max(self.specimen.radius, self.specimen.thickness)
         if largest > LARGEST_RATIO * self.contact_radius:
             big, small = format_quantity(largest, "m"), format_quantity(self.contact_radius, "m")
-            raise ValueError(f"a specimen of {big} under a body of {small}: is one of the units wrong?")
+            raise ValueError(f"specimen: {big} under a body of {small}: is one of the units wrong?")
         finest, narrowest = self.mesh.finest, self._narrowest
         if finest is not None and finest > narrowest / 2:
             given, width = format_quantity(finest, "m"), format_quantity(narrowest, "m")
-            raise ValueError(f"mesh.finest {given} is too coarse for the body, whose contact is {width} wide: at most half of it")
+            raise ValueError(f"mesh.finest: {given} is too coarse for a contact {width} wide; allowed: at most half of it")
         if self.recess is not None:
             self._check_recess(self.recess)
         self._check_penetration()
@@ -196,11 +196,15 @@ class IndentationSetup(FrozenModel):
 
     def _check_recess(self, recess: float) -> None:
         if not self.hole:
-            raise ValueError(f"only a body with a hole, such as an annulus, has a recess; a {self.body.kind} has none")
+            raise ValueError(f"recess: only a body with a hole, such as an annulus, has one; a {self.body.kind} has none")
         if recess >= self.specimen.thickness:
-            raise ValueError("the recess must be smaller than the specimen's thickness (thesis, end of 3.1.1)")
+            given, thickness = (format_quantity(length, "m") for length in (recess, self.specimen.thickness))
+            raise ValueError(f"recess: {given} must be smaller than the specimen's thickness {thickness} (thesis, end of 3.1.1)")
         if self.rise_at_touch >= recess:
-            raise ValueError("the curved surface reaches the inner sensor before it touches the annulus")
+            given, rise = format_quantity(recess, "m"), format_quantity(self.rise_at_touch, "m")
+            raise ValueError(
+                f"recess: {given} is too shallow: the curved surface stands {rise} in the hole before it touches the annulus"
+            )
 
     @property
     def contact_radius(self) -> float:

@@ -88,24 +88,24 @@ class TimedIndentation(IndentationSetup, Experiment):
         least, most = self.loading.least_and_most()
         if self.loading.control == "force" and least <= 0:
             raise ValueError(
-                f"the force falls to {format_quantity(least, 'N')}: it must press all the time, or the contact opens and no "
-                "displacement answers it; preload more (at least 1.5 times the amplitude of a sine)"
+                f"loading: the force falls to {format_quantity(least, 'N')}: it must press all the time, or the contact opens "
+                "and no displacement answers it; preload more (at least 1.5 times the amplitude of a sine)"
             )
         if self.loading.control == "displacement" and most <= 0:
-            raise ValueError("the displacement never becomes positive: nothing is pressed; positive is into the tissue")
+            raise ValueError("loading: the displacement never becomes positive: nothing is pressed; positive is into the tissue")
         if self.loading.control == "displacement" and most >= self.specimen.thickness:
             given, thickness = format_quantity(most, "m"), format_quantity(self.specimen.thickness, "m")
-            raise ValueError(f"displacement {given} must be smaller than the specimen's thickness {thickness}")
+            raise ValueError(f"loading: displacement {given} must be smaller than the specimen's thickness {thickness}")
         if self.stop == "touch" and self.recess is None:
-            raise ValueError("stop: touch needs the recess of the inner sensor, like recess: 0.8 mm")
+            raise ValueError("stop: the touch needs the recess of the inner sensor, like recess: 0.8 mm")
         if self.compare is not None:
             self._check_comparable()
         return self
 
     def _check_comparable(self) -> None:
         if self.body.kind not in ("annulus", "punch"):
-            raise ValueError(f"a closed form exists for an annulus or a punch, not for a {self.body.kind}")
+            raise ValueError(f"compare: a closed form exists for an annulus or a punch, not for a {self.body.kind}")
         if len(self.specimen.materials) > 1 or self.specimen.surface != "flat":
-            raise ValueError("a closed form exists for one material and a flat surface")
+            raise ValueError("compare: a closed form exists for one material and a flat surface")
         if self.specimen.material.bulk_modulus is not None:
-            raise ValueError("the closed form is that of incompressible tissue; set bulk_modulus: null")
+            raise ValueError("compare: the closed form is that of incompressible tissue; set bulk_modulus: null")

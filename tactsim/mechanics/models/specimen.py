@@ -67,6 +67,11 @@ class Specimen(FrozenModel):
         return (*(layer.material for layer in self.layers), self.material)
 
     @property
+    def materials_by_key(self) -> dict[str, Material]:
+        """The same by their key paths within the specimen, such as ``layers.0.material``."""
+        return {f"layers.{k}.material": layer.material for k, layer in enumerate(self.layers)} | {"material": self.material}
+
+    @property
     def interfaces(self) -> tuple[float, ...]:
         """Heights in m of the top, of every layer's lower face and of the base, on a flat specimen."""
         depths = np.cumsum([layer.thickness for layer in self.layers])

@@ -24,6 +24,8 @@ from tactsim.results.result import FieldFrame, Status, StepRecord
 from tactsim.results.scene import Scene, SolverReport
 from tactsim.units import format_quantity
 
+UNPRINTED = "(from the case; the thesis prints none)"
+"""Said of a size that the case chose, or its default, where the thesis leaves it open."""
 UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
 ERROR_IN_TIME = "estimated error of the stress in time below {:g} of its size"
 """Assumption of a path in time, by its tolerance."""

@@ -134,11 +134,11 @@ def test_interruption_keeps_what_was_accepted():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"specimen": {"radius": 2.9e-3}}, "wider specimen"),
-        ({"displacement": 3e-3}, "smaller than the specimen's thickness"),
+        ({"specimen": {"radius": 2.9e-3}}, "is too small for a body"),
+        ({"displacement": 3e-3}, "displacement: 3 mm must be smaller than the specimen's thickness 3 mm"),
         ({"recess": None}, "needs the recess"),
-        ({"recess": 3.1e-3, "displacement": 1e-3}, "recess must be smaller"),
-        ({"body": Sphere(radius=2e-3)}, "only a body with a hole, such as an annulus, has a recess"),
+        ({"recess": 3.1e-3, "displacement": 1e-3}, "recess: 3.1 mm must be smaller"),
+        ({"body": Sphere(radius=2e-3)}, "only a body with a hole, such as an annulus, has one"),
         ({"mesh": MeshSettings(finest=1e-3)}, "too coarse"),
         ({"specimen": {"thickness": 1e4}}, "units wrong"),
         ({"specimen": {"surface": "convex", "surface_radius": 12e-3}, "recess": 0.05e-3}, "before it touches the annulus"),

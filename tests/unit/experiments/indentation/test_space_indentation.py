@@ -88,7 +88,7 @@ def test_stopped_before_the_threshold_and_interruption_keep_what_was_accepted():
         ({"mesh": {"sectors": 1}}, "at least 2"),
         ({"mesh": {"adaptive": True}}, "False"),
         ({"recess": None}, "needs the recess"),
-        ({"body": Sphere(radius=2e-3)}, "only a body with a hole, such as an annulus, has a recess"),
+        ({"body": Sphere(radius=2e-3)}, "only a body with a hole, such as an annulus, has one"),
         ({"displacement": 3e-3}, "smaller than the specimen's thickness"),
     ],
 )

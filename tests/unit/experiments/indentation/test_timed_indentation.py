@@ -146,7 +146,7 @@ def test_an_interruption_keeps_the_steps():
         ({"loading": displaced({"kind": "hold", "duration": 1.0})}, "never becomes positive"),
         ({"loading": displaced(JUMP | {"to": -1e-4})}, "never becomes positive"),
         ({"stop": "touch"}, "needs the recess"),
-        ({"body": Sphere(radius=2e-3), "recess": 1e-4}, "only a body with a hole, such as an annulus, has a recess"),
+        ({"body": Sphere(radius=2e-3), "recess": 1e-4}, "only a body with a hole, such as an annulus, has one"),
     ],
 )
 def test_impossible_experiments_are_refused(changes, words):
