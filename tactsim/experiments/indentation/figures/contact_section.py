@@ -18,8 +18,7 @@ from tactsim.experiments.indentation.figures.section import (
 )
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import RigidBody
-from tactsim.plotting.canvas import despined
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, despined
 from tactsim.results import Result
 from tactsim.units import format_quantity
 

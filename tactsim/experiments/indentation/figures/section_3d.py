@@ -13,8 +13,7 @@ from tactsim.contact.tilted import Tilted
 from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, draw_inner_sensor
 from tactsim.experiments.indentation.figures.section import Section, draw_body, draw_field, pressure_bar, pressure_scale
 from tactsim.experiments.indentation.scene import Indentation3dScene
-from tactsim.plotting.canvas import despined
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, despined
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
