@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from tactsim.case.model import Case
 from tactsim.errors import InputError, UnknownName
 from tactsim.outside.text import one_line
+from tactsim.plotting import figures_for
 from tactsim.plotting.canvas import encoded
-from tactsim.plotting.result_figures import figures_for
 from tactsim.results import Result, read_result, write_result
 from tactsim.units import format_quantity
 

@@ -79,7 +79,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> None:
 
     registry.kinds(Experiment)  # what is loaded later would be forgotten with the patch below
     monkeypatch.setitem(registry._registered, Experiment, {"pretence": pretence.Pretence})
-    monkeypatch.setattr(plotting, "figures_for", lambda result: {"pretence": lambda: pretence.PNG}, raising=False)
+    monkeypatch.setattr(plotting, "figures_for", lambda result: {"pretence": lambda: pretence.PNG})
 
 
 @pytest.fixture

@@ -1,14 +1,15 @@
-"""Scenes of results that nobody computed."""
+"""Scenes of results that nobody computed, and what every figure of a result says."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.results import SolverReport
+from tactsim.results import Result, SolverReport, Status
 
 SOLVER = SolverReport(unknowns=1000, elements=100, linear_solver="superlu", rejected_steps=0, newton_iterations=12)
 MESH = MeshReport(
@@ -38,3 +39,10 @@ def grasp_scene(
         mesh=MESH,
         control="displacement",
     )
+
+
+def unmarked_figures(result: Result) -> list[str]:
+    """Names of those figures that would not say so across their foot if the run had been interrupted."""
+    figures = replace(result, status=Status.INTERRUPTED, reason="stopped by the user").plot()
+    words = {name: " ".join(figure.get_supxlabel().split()) for name, figure in figures.items()}
+    return [name for name, said in words.items() if not said.startswith("INTERRUPTED") or "stopped by the user" not in said]

@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.contact.profile import check_fillet, rounded_box
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
-from tactsim.interfaces.taxel_layout import JawName
+from tactsim.interfaces.taxel_layout import OUTWARD, JawName
 from tactsim.units import Angle, Length
 
 
@@ -51,7 +51,7 @@ class Jaw(RigidBody):
     @property
     def rotation(self) -> Array:
         """Matrix (3, 3) that turns the jaw's own axes (x, y, and z away from the tissue) into those of the tissue."""
-        facing = np.diag([1.0, 1.0, 1.0 if self.side == "upper" else -1.0])
+        facing = np.diag([1.0, 1.0, OUTWARD[self.side]])
         return tilt_matrix(self.tilt_x, self.tilt_y) @ facing
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:

@@ -14,6 +14,8 @@ from tactsim.units import Length, format_quantity
 JawName = Literal["upper", "lower"]
 JAWS: tuple[str, ...] = get_args(JawName)
 """Names of the jaws of a grasp, in the order of the first axis of every array of forces or readings."""
+OUTWARD = {"upper": 1.0, "lower": -1.0}
+"""Direction along z from the tissue to each jaw."""
 PositiveLength = Annotated[Length, Field(gt=0)]
 
 

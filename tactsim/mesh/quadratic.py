@@ -11,9 +11,15 @@ from tactsim.errors import InputError
 
 FLAT = 1e-12
 """Determinant of an element's sides over a power of the longest below which it is flat: round-off of its coordinates."""
-_EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
-_MIRROR = {2: [0, 2, 1, 5, 4, 3], 3: [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
-_FACETS = {2: ((0, 1), (1, 2), (2, 0)), 3: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))}
+EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
+"""Corners at the ends of the edges of a triangle and of a tetrahedron, in the order of the nodes in the middle of these."""
+FACETS = {
+    2: ((0, 1, 3), (1, 2, 4), (2, 0, 5)),
+    3: ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
+}
+"""Nodes of the sides of a quadratic triangle and tetrahedron as seen from outside: corners, then the middles between them."""
+MIRROR = {2: [0, 2, 1, 5, 4, 3], 3: [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
+"""Order of the nodes with which an element that is inside out is put right."""
 
 
 @dataclass(frozen=True)
@@ -43,29 +49,18 @@ class QuadraticMesh:
 
     def edges(self) -> tuple[Array, Array]:
         """Edges (m, 2) by their corners, ascending, and the node in the middle of each (m,)."""
-        pairs = np.concatenate([np.sort(self.elements[:, list(edge)], axis=1) for edge in _EDGES[self.dim]])
+        pairs = np.concatenate([np.sort(self.elements[:, list(edge)], axis=1) for edge in EDGES[self.dim]])
         _, first = np.unique(pairs[:, 0] * self.corner_count + pairs[:, 1], return_index=True)
         return pairs[first], self.elements[:, self.dim + 1 :].T.ravel()[first]
 
     def boundary_facets(self) -> tuple[Array, Array]:
         """Facets of one element only, outward oriented: node numbers (F, 3) edges or (F, 6) triangles, and their elements."""
-        corners = np.concatenate([self.elements[:, list(facet)] for facet in _FACETS[self.dim]])
-        owner = np.tile(np.arange(len(self.elements)), len(_FACETS[self.dim]))
-        keys = np.sort(corners, axis=1)
+        facets = np.concatenate([self.elements[:, list(facet)] for facet in FACETS[self.dim]])
+        owner = np.tile(np.arange(len(self.elements)), len(FACETS[self.dim]))
+        keys = np.sort(facets[:, : self.dim], axis=1)
         _, first, counts = np.unique(keys, axis=0, return_index=True, return_counts=True)
         chosen = np.sort(first[counts == 1])
-        corners, owner = corners[chosen], owner[chosen]
-        pairs = ((0, 1),) if self.dim == 2 else ((0, 1), (1, 2), (0, 2))
-        return np.hstack([corners, *[self._middle(corners[:, [a, b]], owner)[:, None] for a, b in pairs]]), owner
-
-    def _middle(self, pairs: Array, owner: Array) -> Array:
-        """Mid-edge node between two corners of an element, for pairs (F, 2) in elements ``owner``."""
-        middle = np.full(len(pairs), -1)
-        for slot, (a, b) in enumerate(_EDGES[self.dim]):
-            edge = self.elements[owner][:, [a, b]]
-            same = (np.sort(edge, axis=1) == np.sort(pairs, axis=1)).all(axis=1)
-            middle[same] = self.elements[owner[same], self.dim + 1 + slot]
-        return middle
+        return facets[chosen], owner[chosen]
 
     def moved(self, nodes: Array) -> QuadraticMesh:
         """The same mesh with other node coordinates."""
@@ -89,9 +84,9 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
         raise InputError("the mesh has node coordinates that are not finite numbers")
     used, simplices = np.unique(simplices, return_inverse=True)
     corners, simplices = corners[used], simplices.reshape(-1, dim + 1)
-    edges = np.concatenate([np.sort(simplices[:, list(edge)], axis=1) for edge in _EDGES[dim]])
+    edges = np.concatenate([np.sort(simplices[:, list(edge)], axis=1) for edge in EDGES[dim]])
     unique, number = np.unique(edges, axis=0, return_inverse=True)
-    middles = len(corners) + number.reshape(len(_EDGES[dim]), -1).T
+    middles = len(corners) + number.reshape(len(EDGES[dim]), -1).T
     elements = np.hstack([simplices, middles]).astype(np.int64)
     sides = corners[simplices[:, 1:]] - corners[simplices[:, :1]]
     volume = np.linalg.det(np.moveaxis(sides, 1, 2))
@@ -99,6 +94,6 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
     if flat.any():
         raise InputError(f"element {int(np.flatnonzero(flat)[0])} of the mesh is flat")
     mirrored = volume < 0
-    elements[mirrored] = elements[mirrored][:, _MIRROR[dim]]
+    elements[mirrored] = elements[mirrored][:, MIRROR[dim]]
     nodes = np.vstack([corners, corners[unique].mean(axis=1)])
     return QuadraticMesh(nodes, elements, np.zeros(len(elements), np.int64) if regions is None else np.asarray(regions))

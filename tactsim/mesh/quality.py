@@ -8,10 +8,9 @@ from functools import cache
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.quadratic import EDGES, QuadraticMesh
 
 TO_REGULAR = np.linalg.inv(np.array([[1.0, 0.5, 0.5], [0.0, np.sqrt(3) / 2, np.sqrt(3) / 6], [0.0, 0.0, np.sqrt(2 / 3)]]))
-_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
 def regular_map(corners: Array, simplices: Array) -> Array:
@@ -34,7 +33,7 @@ def shape_gradients(barycentric: Array) -> Array:
     """Gradients (Q, 10, 3) of the quadratic functions on the reference tetrahedron at barycentric coordinates (Q, 4)."""
     slope = np.vstack([-np.ones(3), np.eye(3)])
     corner = (4 * barycentric - 1)[:, :, None] * slope
-    pairs = [4 * (barycentric[:, [a]] * slope[b] + barycentric[:, [b]] * slope[a]) for a, b in _EDGES]
+    pairs = [4 * (barycentric[:, [a]] * slope[b] + barycentric[:, [b]] * slope[a]) for a, b in EDGES[3]]
     return np.concatenate([corner, np.stack(pairs, axis=1)], axis=1)
 
 
@@ -48,7 +47,7 @@ def determinants(nodes: Array, elements: Array, barycentric: Array) -> Array:
 def checked_points() -> Array:
     """Corners, middles of edges and of faces, and quadrature points of a tetrahedron, as barycentric coordinates (Q, 4)."""
     corners = np.eye(4)
-    middles = np.array([(corners[a] + corners[b]) / 2 for a, b in _EDGES])
+    middles = np.array([(corners[a] + corners[b]) / 2 for a, b in EDGES[3]])
     faces = np.array([corners[list(face)].mean(axis=0) for face in itertools.combinations(range(4), 3)])
     return np.vstack([corners, middles, faces, _quadrature(2)[0]])
 

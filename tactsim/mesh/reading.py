@@ -12,7 +12,7 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
 from tactsim.mesh.foreign import ForeignMesh, read_foreign
-from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
+from tactsim.mesh.quadratic import EDGES, MIRROR, QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
@@ -22,8 +22,6 @@ LOWER = frozenset({"vertex", "line", "line3", "triangle", "triangle6"})
 """Cells of boundaries that a file of tetrahedra may hold beside them."""
 COINCIDENT = 1e-9
 """Distance of two nodes, over the extent of the mesh, at which they stand in one place."""
-_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-_MIRRORED = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 
 
 def read_mesh(
@@ -113,11 +111,11 @@ def _quadratic(points: Array, cells: Array, regions: Array, name: str) -> Quadra
     elements, nodes = number[cells], points[np.concatenate([corners, middles])]
     sides = nodes[elements[:, 1:4]] - nodes[elements[:, :1]]
     mirrored = np.linalg.det(sides) < 0
-    elements[mirrored] = elements[mirrored][:, _MIRRORED]
+    elements[mirrored] = elements[mirrored][:, MIRROR[3]]
     bad = np.flatnonzero(jacobian_ratio(nodes, elements) <= 0)
     if len(bad):
         raise InputError(f"{name}: {len(bad)} tetrahedra are flat or turned inside out by their mid-nodes, the first is {bad[0]}")
-    edges = np.concatenate([np.sort(elements[:, list(edge)], axis=1) for edge in _EDGES])
+    edges = np.concatenate([np.sort(elements[:, list(edge)], axis=1) for edge in EDGES[3]])
     with_middle = np.column_stack([edges, elements[:, 4:].T.ravel()])
     if len(np.unique(edges, axis=0)) != len(np.unique(with_middle, axis=0)):
         raise InputError(f"{name}: neighbouring tetrahedra have different nodes in the middle of a common edge")

@@ -10,13 +10,12 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
+from tactsim.mesh.quadratic import EDGES, QuadraticMesh, quadratic_mesh
 
 LARGEST_SECTOR = np.pi / 4
 """Wider sectors turn the elements beside the axis nearly inside out."""
 LARGEST_SQUEEZE = 0.6
 """Largest part by which moving the side of a cylinder may shorten an element; the steepest slope of the map is 1.5."""
-_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 _THIRDS = np.array([[[0, 0], [1, 0], [2, 0], [2, 1]], [[0, 0], [1, 0], [1, 1], [2, 1]], [[0, 0], [0, 1], [1, 1], [2, 1]]])
 """Corners of the three tetrahedra of a prism: place in the ascending triangle, and 0 before or 1 after the sector. The one in row
 2 - i holds corner i twice, which is flat if that corner lies on the axis."""
@@ -107,7 +106,7 @@ def _prisms(triangles: Array, on_axis: Array, sectors: int) -> tuple[Array, Arra
 
 def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, sectors: int, turn: float) -> Swept:
     """The mesh with the middles of its edges half way in angle; ``places`` (n, 2) are section node and plane of the corners."""
-    ends = places[straight.elements[:, _EDGES]].reshape(-1, 2, 2)
+    ends = places[straight.elements[:, EDGES[3]]].reshape(-1, 2, 2)
     middles, first = np.unique(straight.elements[:, 4:].ravel(), return_index=True)
     ends = ends[first]
     nodes, planes = ends[..., 0], ends[..., 1].copy()

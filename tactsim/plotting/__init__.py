@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tactsim.plotting.result_figures import figures_for
+    from tactsim.interfaces import Drawing
+    from tactsim.results import Result
 
-__all__ = ["figures_for"]
 
+def figures_for(result: Result) -> dict[str, Drawing]:
+    """File name -> drawing of every figure of a result, the main one first; empty for a kind without figures."""
+    from tactsim.errors import UnknownName  # here, since the renderer, a process of its own, does without them
+    from tactsim.interfaces import ResultFigures
+    from tactsim.registry import kind_class
 
-def __getattr__(name: str) -> Any:
-    """``figures_for`` when it is first used: the renderer, a process of its own, does without it."""
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from tactsim.plotting.result_figures import figures_for
-
-    return figures_for
+    try:
+        figures = kind_class(ResultFigures, result.kind)
+    except UnknownName:
+        return {}
+    return dict(figures().drawings(result))

@@ -1,10 +1,12 @@
-"""Figures without a window: made, styled and turned into PNG."""
+"""Figures without a window: made, styled, titled, marked if they show a run that did not end as it should, and encoded."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+import textwrap
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.outside.text import one_line
+from tactsim.results import Result, Status
 
 RESOLUTION = 160
 """In dots per inch."""
@@ -28,6 +32,20 @@ LONGEST_TITLE = 200
 VECTOR = {"svg.fonttype": "none", "svg.hashsalt": "tactsim", "pdf.fonttype": 42}
 UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 STYLE = {"font.size": 9.0, "axes.titlesize": 9.5, "axes.linewidth": 0.7, "legend.frameon": False, "lines.linewidth": 1.5}
+FAILED_COLOUR = "#b00020"
+FAILED_SIZE, LETTERS_PER_INCH, LINES_PER_INCH = 9.5, 9, 72 / (1.2 * 9.5)
+"""Of the words across the foot of a failed run; the size in points."""
+BRIGHT, LUMA = 0.5, (0.299, 0.587, 0.114)
+"""Brightness of a colour above which words on it are black, and the weights of red, green and blue in it (ITU-R BT.601)."""
+PRESSURE_COLOURS = "viridis"
+"""The colour map of pressures and forces, the same in every figure and on the page.
+
+Its lightness rises evenly from dark to bright, so that it reads alike in grey print and with any colour blindness, and its hues
+are far enough apart to distinguish one level from the next, which those of cividis, most of them grey, are not.
+
+Source: S. van der Walt & N. Smith 2015, https://bids.github.io/colormap; compared by J. Nunez, C. Anderton & R. Renslow 2018,
+doi:10.1371/journal.pone.0199239.
+"""
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -76,12 +94,81 @@ def entitle(figure: Figure, title: str, below: str = "", *, size: float = 11) ->
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
 
 
+@contextmanager
+def titled_figure(width: float, height: float, title: str, below: str = "", *, title_size: float = 11) -> Iterator[Figure]:
+    """An empty figure of a size in inches, in the style of tactsim; it gets its title when what draws it is done."""
+    with styled():
+        figure = new_figure(width, height)
+        yield figure
+        entitle(figure, title, below, size=title_size)
+
+
+@contextmanager
+def result_figure(
+    result: Result,
+    size: tuple[float, float],
+    title: str = "",
+    *,
+    remark: str = "",
+    below: str = "",
+    where: str = "",
+    title_size: float = 11,
+) -> Iterator[Figure]:
+    """The figure of a result: as `titled_figure`, and marked unless the run converged; no figure of a result is made otherwise.
+
+    Parameters
+    ----------
+    size : width and height in inches
+    title : stands above a result without a title of its own
+    remark : follows the title and a colon
+    below : second line of the title
+    where : what follows the status of a run that did not converge, such as " at 2 s"
+    """
+    head = ": ".join(part for part in (result.title or title, remark) if part)
+    with titled_figure(*size, head, below, title_size=title_size) as figure:
+        yield figure
+    if result.status is not Status.CONVERGED:
+        _mark_failure(figure, result, where)
+
+
+def _mark_failure(figure: Figure, result: Result, where: str) -> None:
+    """Writes status and reason across the foot, in up to four lines above the figure's legends, and draws a coloured frame."""
+    words = f"{str(result.status).upper()}{where}: {result.reason}"
+    lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=4, placeholder=" …")
+    legends = max((legend.get_window_extent().height / figure.dpi for legend in figure.legends), default=0.0)
+    lines += [""] * int(np.ceil(LINES_PER_INCH * legends))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure.supxlabel("\n".join(lines), color=FAILED_COLOUR, fontsize=FAILED_SIZE, fontweight="bold")
+    figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)
+
+
+class SingleFigure(ResultFigures):
+    """The figures of a kind that has one, in a file of the kind's name."""
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """The one figure, if there is anything to draw."""
+        return {f"{self.kind}.png": Plot(lambda: self.figure(result))} if self.can_draw(result) else {}
+
+    def can_draw(self, result: Result) -> bool:
+        """Whether the result has what the figure shows: here, a step."""
+        return bool(result.steps)
+
+    @abstractmethod
+    def figure(self, result: Result) -> Figure:
+        """The figure of a result that has what it shows."""
+
+
 def scale_of(largest: float, unit: str) -> tuple[float, str]:
     """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``."""
     for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ")):
         if largest >= 10.0**exponent:
             return 10.0**-exponent, f"{prefix}{unit}"
     return 1.0, unit
+
+
+def ink_on(colour: Sequence[float]) -> str:
+    """Black or white, in which words are read on a colour of red, green and blue from 0 to 1."""
+    return "k" if float(np.dot(colour[:3], LUMA)) > BRIGHT else "w"
 
 
 def despined(axis: Axes) -> None:

@@ -8,20 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.mesh.quadratic import EDGES, FACETS, MIRROR
 from tactsim.results import FieldFrame
 
-FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
-"""Nodes of the faces of a quadratic tetrahedron, as quadratic triangles seen from outside, in the order of VTK."""
-_TURNED = [0, 2, 1, 5, 4, 3]
+FACES = np.array(FACETS[3])
+"""Nodes (4, 6) of the faces of a quadratic tetrahedron, as quadratic triangles seen from outside, in the order of VTK."""
 QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Corners of the straight triangles in a quadratic triangle."""
 _EIGHTHS = np.array(
     [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5], [4, 9, 5, 6]]
 )
 """Corners of the straight tetrahedra in a quadratic tetrahedron."""
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-FACE_EDGES = EDGES[:3]
-"""Corners at the ends of the edges of a tetrahedron and of a triangle."""
 PARTS = 4
 """Straight parts, a power of two, in which a curved edge is drawn."""
 BEYOND_NODES = 0.15
@@ -91,14 +88,14 @@ def _crossed(nodal_values: Array, elements: Array) -> Array:
 
 def _quadratic_values(corners: Array) -> Array:
     """Values (E, 10) at the nodes of elements in which they are linear, from those at the corners (E, 4)."""
-    return np.hstack([corners, np.stack([(corners[:, i] + corners[:, j]) / 2 for i, j in EDGES], axis=1)])
+    return np.hstack([corners, np.stack([(corners[:, i] + corners[:, j]) / 2 for i, j in EDGES[3]], axis=1)])
 
 
 def _divided(nodal_values: Array) -> Array:
     """What quadratic simplices carry at their nodes (E, 6 or 10, c), at the corners (S, d + 1, c) of small straight ones."""
     flat = nodal_values.shape[1] == 6
     corners = _TRIANGLES if flat else _TETRAHEDRA
-    shapes = _quadratic(corners, FACE_EDGES if flat else EDGES)
+    shapes = _quadratic(corners, EDGES[2 if flat else 3])
     return np.einsum("pka,eac->epkc", shapes, nodal_values).reshape(-1, corners.shape[1], nodal_values.shape[2])
 
 
@@ -134,7 +131,7 @@ def interfaces(frame: FieldFrame) -> tuple[Array, Array]:
     kept = ~second & (mine != others)
     both = np.sort(np.column_stack([mine, others])[kept], axis=1)
     between, inward = faces[order[kept]], mine[kept] < others[kept]
-    between[inward] = between[inward][:, _TURNED]
+    between[inward] = between[inward][:, MIRROR[2]]
     return between, both
 
 
@@ -174,4 +171,4 @@ def _crossing(first: Array, second: Array) -> Array:
     return (1 - share) * first + share * second
 
 
-_TRIANGLES, _TETRAHEDRA = _parts(FACE_EDGES, QUARTERS), _parts(EDGES, _EIGHTHS)
+_TRIANGLES, _TETRAHEDRA = _parts(EDGES[2], QUARTERS), _parts(EDGES[3], _EIGHTHS)

@@ -14,8 +14,16 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tactsim.errors import UnknownName
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled, weighted_percentiles
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import (
+    PRESSURE_COLOURS,
+    despined,
+    entitle,
+    new_figure,
+    png,
+    scale_of,
+    styled,
+    weighted_percentiles,
+)
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import RowOutcome
 

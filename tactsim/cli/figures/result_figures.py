@@ -32,7 +32,7 @@ def rendered_figures(result: Result, form: str = "png", *, main_only: bool = Fal
     """File name -> content of a result's figures, the main one first or alone, and warnings."""
 
     def drawings() -> Mapping[str, Callable[..., bytes]]:
-        from tactsim.plotting import figures_for  # type: ignore[attr-defined,unused-ignore]
+        from tactsim.plotting import figures_for
 
         figures: Mapping[str, Callable[..., bytes]] = figures_for(result)
         return dict(list(figures.items())[:1]) if main_only else figures

@@ -11,8 +11,8 @@ from matplotlib.ticker import MaxNLocator
 
 from tactsim.array import Array
 from tactsim.dataset import load
-from tactsim.plotting.canvas import Plot, despined, new_figure, scale_of, styled
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, Plot, despined, new_figure, scale_of, styled
 
 if TYPE_CHECKING:
     import xarray
@@ -21,7 +21,6 @@ MOST_PANELS = 12
 COLUMNS = 4
 SPREAD, TAXELS = "spread.png", "taxels.png"
 FIGURE_FILES = (SPREAD, TAXELS)
-JAWS = ("upper jaw", "lower jaw")
 
 
 def card_figures(store: str | Path) -> dict[str, Plot]:
@@ -65,10 +64,10 @@ def taxels(force: Array) -> Figure:
     """Mean force (jaw, row, column) in N, row 1 at the bottom."""
     with styled():
         figure = new_figure(5.2, 2.4)
-        for number, (name, values) in enumerate(zip(JAWS, force, strict=True), 1):
+        for number, (side, values) in enumerate(zip(JAWS, force, strict=True), 1):
             axis = figure.add_subplot(1, 2, number)
             image = axis.imshow(values, origin="lower", vmin=0.0, vmax=float(force.max()), cmap=PRESSURE_COLOURS)
-            axis.set_title(f"mean force, {name}", loc="left")
+            axis.set_title(f"mean force, {side} jaw", loc="left")
             axis.set(xlabel="column, the smallest x first", ylabel="row, the nearest to the front first")
             axis.set_xticks(range(values.shape[1]), [str(k + 1) for k in range(values.shape[1])])
             axis.set_yticks(range(values.shape[0]), [str(k + 1) for k in range(values.shape[0])])

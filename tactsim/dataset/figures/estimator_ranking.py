@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import Plot, despined, titled_figure
 
 Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
@@ -80,8 +80,8 @@ def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
 
 def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
     """Rates and median errors, one row each, over depth, radius, contrast and closing, one column each, with 95 % intervals."""
-    with styled():
-        figure = new_figure(2.6 * len(AXES) + 0.6, 2.1 * len(ROWS) + 0.5)
+    below = "numbers above: lumps in each bin; bars: 95 % intervals"
+    with titled_figure(2.6 * len(AXES) + 0.6, 2.1 * len(ROWS) + 0.5, "Errors of the estimators", below) as figure:
         grid = figure.subplots(len(ROWS), len(AXES), squeeze=False, sharex="col", sharey="row")
         for row, measure in enumerate(ROWS):
             for column, (label, words) in enumerate(AXES.items()):
@@ -92,14 +92,12 @@ def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 if row == len(ROWS) - 1:
                     axis.set_xlabel(words)
         _legend(figure, grid[0, 0])
-        entitle(figure, "Errors of the estimators", "numbers above: lumps in each bin; bars: 95 % intervals")
     return figure
 
 
 def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
     """The same over the noise."""
-    with styled():
-        figure = new_figure(2.7 * len(ROWS), 2.7)
+    with titled_figure(2.7 * len(ROWS), 2.7, "Estimators under noise") as figure:
         for axis, measure in zip(figure.subplots(1, len(ROWS)), ROWS, strict=True):
             for style, estimator in zip(_styles(estimators), estimators, strict=True):
                 multiples = np.array([measures["multiple"] for measures in estimator["noise"]])
@@ -111,15 +109,13 @@ def noise_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
             axis.set_title(measure.heading, loc="left")
             _finish(axis, measure)
         _legend(figure, figure.axes[0])
-        entitle(figure, "Estimators under noise")
     return figure
 
 
 def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[float]) -> Figure:
     """Estimated over true x, y and height of the lumps that were detected."""
     names = ("x", "y", "height")
-    with styled():
-        figure = new_figure(2.6 * len(estimators) + 0.3, 7.4)
+    with titled_figure(2.6 * len(estimators) + 0.3, 7.4, "Estimated over true places") as figure:
         grid = figure.subplots(3, len(estimators), squeeze=False, sharex="row", sharey="row")
         for column, one in enumerate(estimators):
             hits = [row for row in one["samples"] if row["found"] and row["truth"]["center"] is not None]
@@ -133,7 +129,6 @@ def places_figure(estimators: Sequence[Mapping[str, Any]], block_size: Sequence[
                 if column == 0:
                     axis.set_ylabel(f"estimated {name} in mm")
             grid[0, column].set_title(f"{_shown(one['name'])}\n{len(hits)} detected", loc="left", fontsize=8)
-        entitle(figure, "Estimated over true places")
     return figure
 
 

@@ -11,11 +11,16 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, extension, new_figure, scale_of, styled, weighted_percentiles
-from tactsim.plotting.colours import PRESSURE_COLOURS
-from tactsim.plotting.failure import mark_failure
-from tactsim.plotting.plane_cut import QUARTERS
+from tactsim.plotting.canvas import (
+    PRESSURE_COLOURS,
+    SingleFigure,
+    despined,
+    extension,
+    result_figure,
+    scale_of,
+    weighted_percentiles,
+)
+from tactsim.plotting.plane_cut import FACES, QUARTERS
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
@@ -26,31 +31,22 @@ MOST_CURVES = 6
 """Curves in the second panel."""
 LONGEST_LINEAR = 1e3
 """Ratio of the last to the first positive time above which the time is drawn on a logarithmic axis."""
-_FACES = ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6))
-"""Nodes of the faces of a tetrahedron, outward: corners, then the middles of their edges."""
 
 
-class BoundaryValueFigures(ResultFigures):
-    """One figure: the body and the course side by side."""
+class BoundaryValueFigures(SingleFigure):
+    """The body and the course side by side."""
 
     kind: Literal["boundary_value_problem"] = "boundary_value_problem"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``boundary_value_problem.png``, unless no step was accepted."""
-        return {"boundary_value_problem.png": Plot(lambda: boundary_value_figure(result))} if result.steps else {}
-
-
-def boundary_value_figure(result: Result) -> Figure:
-    """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
-    scene = result.scene_as(BoundaryValueScene)
-    with styled():
-        figure = new_figure(10.0 if result.frames else 6.0, 4.2)
-        axes = figure.subplots(1, 2 if result.frames else 1, squeeze=False, width_ratios=(1.2, 1) if result.frames else None)[0]
-        if result.frames:
-            draw_body(axes[0], result.frames[-1], scene.dimension)
-        draw_course(axes[-1], result, scene)
-        entitle(figure, result.title or "Boundary value problem")
-        mark_failure(figure, result, f" at {format_quantity(result.steps[-1].values['time'], 's')}")
+    def figure(self, result: Result) -> Figure:
+        """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
+        scene, body = result.scene_as(BoundaryValueScene), bool(result.frames)
+        where = f" at {format_quantity(result.steps[-1].values['time'], 's')}"
+        with result_figure(result, (10.0 if body else 6.0, 4.2), "Boundary value problem", where=where) as figure:
+            axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=(1.2, 1) if body else None)[0]
+            if body:
+                draw_body(axes[0], result.frames[-1], scene.dimension)
+            draw_course(axes[-1], result, scene)
         return figure
 
 
@@ -106,11 +102,11 @@ def _section(frame: FieldFrame) -> tuple[Array, Array]:
 def _surface(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
     """Triangles (T, 3) of the surface that face the eye, the farthest first, and their elements (T,)."""
     elements = frame.cells["tetra10"]
-    faces = elements[:, np.array(_FACES)].reshape(-1, 6)
+    faces = elements[:, FACES].reshape(-1, 6)
     _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
     outside = first[count == 1]
     triangles = faces[outside][:, QUARTERS].reshape(-1, 3)
-    owners = np.repeat(outside // len(_FACES), len(QUARTERS))
+    owners = np.repeat(outside // len(FACES), len(QUARTERS))
     corners = places[triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     seen = np.flatnonzero(normal @ VIEW > 0)

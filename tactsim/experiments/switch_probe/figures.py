@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import cycle
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,10 +13,11 @@ from matplotlib.patches import Polygon, Rectangle
 
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import Plot, despined, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
+TITLE_SIZE = 10.5
 COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f", "#795548")
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
 FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))
@@ -24,11 +25,25 @@ FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))
 
 
 @dataclass(frozen=True)
+class Curve:
+    """A curve by its name, and the tissue and the rate in m/s that it is of."""
+
+    name: str
+    tissue: str
+    rate: float
+
+    def steps(self, result: Result) -> list[dict[str, float]]:
+        """Values of the steps that it joins."""
+        names, of = result.scene_as(SwitchProbeScene).tissues, (self.tissue, self.rate)
+        return [step.values for step in result.steps if (names[int(step.values["tissue"]) - 1], step.values["rate"]) == of]
+
+
+@dataclass(frozen=True)
 class Panel:
-    """A panel of curves: the name of each, and the tissue and the rate in m/s that it is of."""
+    """A panel of curves."""
 
     title: str
-    curves: list[tuple[str, tuple[str, float]]]
+    curves: list[Curve]
 
 
 class SwitchProbeFigures(ResultFigures):
@@ -51,14 +66,14 @@ def force_over_depth_figure(result: Result) -> Figure:
     """One panel per tissue, one curve per rate (Fig. 5.7); dots are what was read when switches closed."""
     scene = result.scene_as(SwitchProbeScene)
     rates = sorted({touch.rate for touch in scene.touches})
-    panels = [Panel(tissue, [(_rate(rate), (tissue, rate)) for rate in rates]) for tissue in scene.tissues]
+    panels = [Panel(tissue, [Curve(_rate(rate), tissue, rate) for rate in rates]) for tissue in scene.tissues]
     return _curves_figure(result, panels, "Force over depth", narrowest=6.4)
 
 
 def tissues_by_rate_figure(result: Result) -> Figure:
     """One panel per rate, one curve per tissue (Fig. 5.8)."""
     scene = result.scene_as(SwitchProbeScene)
-    panels = [Panel(_rate(rate), [(tissue, (tissue, rate)) for tissue in scene.tissues]) for rate in sorted(scene.rates)]
+    panels = [Panel(_rate(rate), [Curve(tissue, tissue, rate) for tissue in scene.tissues]) for rate in sorted(scene.rates)]
     return _curves_figure(result, panels, "Tissues at the same rate")
 
 
@@ -67,14 +82,13 @@ def _rate(rate: float) -> str:
 
 
 def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
-    with styled():
-        figure = new_figure(max(narrowest, 1.6 + 3.1 * len(panels)), 3.8)
+    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; dots: read as each switch closed, at its height"
+    with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
-            for colour, (name, touch) in zip(cycle(COLOURS), panel.curves, strict=False):
-                _draw_curve(axis, result, touch, colour, name)
+            for colour, curve in zip(cycle(COLOURS), panel.curves, strict=False):
+                _draw_curve(axis, result, curve, colour)
             _finish(axis, result, panel.title)
-        _title(figure, result, f"{title}; dots: read as each switch closed, at its height")
     return figure
 
 
@@ -82,14 +96,13 @@ def switch_panel_figure(result: Result) -> Figure:
     """The display of the array (Fig. 5.5): each switch with its force and time, the force over time, and the mean rate."""
     scene = result.scene_as(SwitchProbeScene)
     touch = scene.touches[0]
-    with styled():
-        figure = new_figure(9.4, 3.7)
+    rate = touch.mean_rate
+    words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
+    words = f"{touch.tissue} at {_rate(touch.rate)} — {words}"
+    with result_figure(result, (9.4, 3.7), below=words, title_size=TITLE_SIZE) as figure:
         probe, record = figure.subplots(1, 2, width_ratios=(1.1, 1))
         _draw_probe(probe, scene.switch_sides, touch)
         _draw_record(record, result, touch)
-        rate = touch.mean_rate
-        words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
-        _title(figure, result, f"{touch.tissue} at {1e3 * touch.rate:g} mm/s — {words}")
     return figure
 
 
@@ -114,7 +127,7 @@ def _draw_probe(axis: Axes, sides: tuple[str, ...], touch: RecordedTouch) -> Non
 
 def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     """The force of the first touch over time, with the moments at which switches closed."""
-    steps = [step.values for step in result.steps if _is(step.values, result, (touch.tissue, touch.rate))]
+    steps = Curve(_rate(touch.rate), touch.tissue, touch.rate).steps(result)
     time, force = (np.array([values[name] for values in steps]) for name in ("time", "read_force"))
     start = touch.start or 0.0
     axis.plot(time - start, force, color=COLOURS[0], label="force sensor")
@@ -130,21 +143,17 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     despined(axis)
 
 
-def _draw_curve(axis: Axes, result: Result, which: tuple[str, float], colour: Any, label: str) -> None:
-    steps = [step.values for step in result.steps if _is(step.values, result, which)]
+def _draw_curve(axis: Axes, result: Result, curve: Curve, colour: str) -> None:
+    steps = curve.steps(result)
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
     loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
-    axis.plot(1e3 * depth[loading], force[loading], color=colour, label=label)
+    axis.plot(1e3 * depth[loading], force[loading], color=colour, label=curve.name)
     scene = result.scene_as(SwitchProbeScene)
     heights = 1e3 * np.array(scene.heights)
     for touch in scene.touches:
-        if (touch.tissue, touch.rate) == which:
+        if (touch.tissue, touch.rate) == (curve.tissue, curve.rate):
             at = [heights[closing.switch - 1] for closing in touch.closings]
             axis.plot(at, [closing.force for closing in touch.closings], "o", color=colour, markersize=4)
-
-
-def _is(values: dict[str, float], result: Result, which: tuple[str, float]) -> bool:
-    return result.scene_as(SwitchProbeScene).tissues[int(values["tissue"]) - 1] == which[0] and values["rate"] == which[1]
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:
@@ -155,7 +164,3 @@ def _finish(axis: Axes, result: Result, title: str) -> None:
     if axis.get_subplotspec().is_first_col():  # type: ignore[union-attr]
         axis.set_ylabel("force in N")
     despined(axis)
-
-
-def _title(figure: Figure, result: Result, words: str) -> None:
-    entitle(figure, result.title, words, size=10.5)

@@ -10,10 +10,8 @@ from tactsim.fem.assembly.history_variables import mean_stress
 from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.fields.ellipticity import elliptic_in
-from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.mesh.quadratic import EDGES, QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-EDGES = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]
 
 
 def solid_frame(
@@ -31,7 +29,7 @@ def solid_frame(
     if isochoric is not None:
         at_corners = at_corners - corner_means(body, mean_stress(body, state.kinematics, isochoric))
     pressure[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
-    pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES]].mean(axis=2)
+    pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES[3]]].mean(axis=2)
     return FieldFrame(
         time=time,
         points=mesh.nodes,

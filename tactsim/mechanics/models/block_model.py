@@ -21,7 +21,7 @@ from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
-from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
@@ -32,7 +32,7 @@ from tactsim.mechanics.fields.solid_fields import solid_frame
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
-CLOSING = {"upper": np.array([0.0, 0.0, -1.0]), "lower": np.array([0.0, 0.0, 1.0])}
+CLOSING = {side: np.array([0.0, 0.0, -OUTWARD[side]]) for side in JAWS}
 """Directions in which the jaws close."""
 START_PATIENCE = 6
 """Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""

@@ -11,7 +11,7 @@ from matplotlib import colormaps
 
 import tactsim
 from tactsim.experiments.grasp.figures.views import colour_table
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS
 
 SEEN = {
     "normal": np.eye(3),

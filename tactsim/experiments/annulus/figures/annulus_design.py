@@ -15,8 +15,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -31,41 +30,37 @@ DECADES = 4
 """Decades of the force that are coloured below the largest one."""
 
 
-class AnnulusDesignFigures(ResultFigures):
-    """One figure: a map for each of up to three times."""
+class AnnulusDesignFigures(SingleFigure):
+    """A map for each of up to three times."""
 
     kind: Literal["annulus_design"] = "annulus_design"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``annulus_design.png``, unless the map is incomplete."""
-        complete = "force_to_touch" in result.quantities
-        return {"annulus_design.png": Plot(lambda: annulus_design_figure(result))} if complete else {}
+    def can_draw(self, result: Result) -> bool:
+        """Whether the map is complete."""
+        return "force_to_touch" in result.quantities
 
-
-def annulus_design_figure(result: Result) -> Figure:
-    """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
-    times = result.scene_as(AnnulusDesignScene).times
-    shown = list(range(len(times))) if len(times) <= PANELS else [0, len(times) // 2, len(times) - 1]
-    force = np.array(result.quantities["force_to_touch"].value, dtype=float)
-    largest = 10.0 ** np.ceil(np.log10(np.nanmax(force[:, :, shown])))
-    smallest = max(largest / 10**DECADES, float(np.nanmin(force[:, :, shown])))
-    norm = LogNorm(smallest, largest)
-    with styled():
-        figure = new_figure(1.6 + 3.4 * len(shown), 4.9)
-        axes = figure.subplots(1, len(shown), squeeze=False, sharey=True)[0]
-        for axis, index in zip(axes, shown, strict=True):
-            drawn = _draw_map(axis, result, force[:, :, index].T, norm)
-            _draw_point(axis, result, times[index])
-            axis.set_title(f"after {format_quantity(times[index], 's')}", loc="left")
-            axis.set_xlabel("ratio of the radii ri/ro")
-        axes[0].set_ylabel("recess L in mm")
-        extend = "min" if np.nanmin(force[:, :, shown]) < smallest * (1 - 1e-9) else "neither"
-        bar = figure.colorbar(drawn, ax=list(axes), pad=0.01, aspect=30, extend=extend)
-        bar.set_label("constant force with which the tissue touches, in N")
-        bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
-        entitle(figure, result.title or "Annular sensor: where the tissue touches")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
+        times = result.scene_as(AnnulusDesignScene).times
+        shown = list(range(len(times))) if len(times) <= PANELS else [0, len(times) // 2, len(times) - 1]
+        force = np.array(result.quantities["force_to_touch"].value, dtype=float)
+        largest = 10.0 ** np.ceil(np.log10(np.nanmax(force[:, :, shown])))
+        smallest = max(largest / 10**DECADES, float(np.nanmin(force[:, :, shown])))
+        norm = LogNorm(smallest, largest)
+        with result_figure(result, (1.6 + 3.4 * len(shown), 4.9), "Annular sensor: where the tissue touches") as figure:
+            axes = figure.subplots(1, len(shown), squeeze=False, sharey=True)[0]
+            for axis, index in zip(axes, shown, strict=True):
+                drawn = _draw_map(axis, result, force[:, :, index].T, norm)
+                _draw_point(axis, result, times[index])
+                axis.set_title(f"after {format_quantity(times[index], 's')}", loc="left")
+                axis.set_xlabel("ratio of the radii ri/ro")
+            axes[0].set_ylabel("recess L in mm")
+            extend = "min" if np.nanmin(force[:, :, shown]) < smallest * (1 - 1e-9) else "neither"
+            bar = figure.colorbar(drawn, ax=list(axes), pad=0.01, aspect=30, extend=extend)
+            bar.set_label("constant force with which the tissue touches, in N")
+            bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
+        return figure
 
 
 def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:

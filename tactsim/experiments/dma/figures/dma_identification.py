@@ -13,9 +13,8 @@ from tactsim.array import Array
 from tactsim.experiments.dma.figures.signals import signals_figure
 from tactsim.experiments.dma.scene import DmaScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
-from tactsim.plotting.failure import mark_failure
-from tactsim.results import Result, Status
+from tactsim.plotting.canvas import Plot, despined, result_figure
+from tactsim.results import Result
 
 PARTS = ("elastic", "viscous")
 METHODS = {"least_squares": ("least squares", "#1f4e79", "-"), "genetic": ("genetic algorithm", "#b8540a", "--")}
@@ -42,8 +41,7 @@ class DmaIdentificationFigures(ResultFigures):
 
 def dma_identification_figure(result: Result) -> Figure:
     """Curves with bands above, relative differences of data and curves from the first fit below."""
-    with styled():
-        figure = new_figure(10.0, 6.0)
+    with result_figure(result, (10.0, 6.0), "Generalized Kelvin model from dynamic mechanical analysis") as figure:
         axes = figure.subplots(2, 2, sharex=True, sharey="row", height_ratios=(1.7, 1), squeeze=False)
         for column, part in enumerate(PARTS):
             _draw_curves(axes[0, column], result, part)
@@ -52,7 +50,6 @@ def dma_identification_figure(result: Result) -> Figure:
         axes[0, 0].set_ylabel("compliance in 1/MPa")
         axes[1, 0].set_ylabel(f"relative to {METHODS[_first(result)][0]}, %")
         axes[0, 1].legend(loc="lower left", handlelength=2.6)
-        entitle(figure, result.title or "Generalized Kelvin model from dynamic mechanical analysis")
         _draw_foot(figure, result)
     return figure
 
@@ -120,10 +117,7 @@ def _draw_differences(axis: Axes, result: Result, part: str) -> None:
 
 
 def _draw_foot(figure: Figure, result: Result) -> None:
-    """How many constants the data determine, or why the run did not end well."""
-    if result.status is not Status.CONVERGED:
-        mark_failure(figure, result)
-        return
+    """How many constants the data determine; the mark of a run that did not end well takes its place."""
     combinations = result.quantities.get("determined_combinations")
     if combinations is not None:
         words = f"the data determine {combinations.value} {combinations.description.removesuffix(' that the data determine')}"

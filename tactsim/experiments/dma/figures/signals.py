@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.dma.scene import DmaScene, ShownSignals
-from tactsim.plotting.canvas import despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import despined, result_figure
 from tactsim.results import Result
 
 LOAD, DISPLACEMENT, TANGENT = "#1f4e79", "#b8540a", "#4d9221"
@@ -20,8 +20,7 @@ TRUE_LINE: dict[str, Any] = {"linestyle": ":", "linewidth": 1.2}
 def signals_figure(result: Result) -> Figure:
     """Signals at the lowest and at the highest frequency above; below the moduli with two standard errors, and the tangent."""
     scene = result.scene_as(DmaScene)
-    with styled():
-        figure = new_figure(10.0, 6.4)
+    with result_figure(result, (10.0, 6.4), "Signals and moduli of a dynamic mechanical analysis") as figure:
         axes = figure.subplots(2, 2)
         for axis, shown in zip(axes[0], scene.signals, strict=True):
             _draw_signals(axis, shown)
@@ -29,7 +28,6 @@ def signals_figure(result: Result) -> Figure:
         _draw_tangent(axes[1, 1], result, np.array(scene.data_frequencies))
         for axis in axes[1]:
             despined(axis)
-        entitle(figure, result.title or "Signals and moduli of a dynamic mechanical analysis")
     return figure
 
 

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.figures.indentation import section_beside
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, scale_of
+from tactsim.plotting.canvas import SingleFigure, scale_of
 from tactsim.results import Result
 
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
@@ -19,19 +18,14 @@ ROOM = 1.25
 """The force axis ends at this many times the larger of spring and tissue."""
 
 
-class DurometerFigures(ResultFigures):
-    """One figure: section and balance of forces side by side."""
+class DurometerFigures(SingleFigure):
+    """Section and balance of forces side by side."""
 
     kind: Literal["durometer"] = "durometer"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``durometer.png``, unless no step was accepted."""
-        return {"durometer.png": Plot(lambda: durometer_figure(result))} if result.steps else {}
-
-
-def durometer_figure(result: Result) -> Figure:
-    """Section (if the result has fields) and forces over the depth."""
-    return section_beside(result, _draw_balance, result.title or "Durometer")
+    def figure(self, result: Result) -> Figure:
+        """Section (if the result has fields) and forces over the depth."""
+        return section_beside(result, _draw_balance, "Durometer")
 
 
 def _draw_balance(axis: Axes, result: Result) -> None:

@@ -13,9 +13,7 @@ from matplotlib.figure import Figure
 from tactsim.array import Array
 from tactsim.experiments.durometer.elastomers import Elastomer
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
-from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
+from tactsim.plotting.canvas import FAILED_COLOUR, SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 LINE_COLOUR = "0.6"
@@ -27,28 +25,24 @@ BESIDE = 0.08
 """Offset of the names beside the ends of the ranks."""
 
 
-class ElastomerRankingFigures(ResultFigures):
-    """One figure: readings, moduli and ranks."""
+class ElastomerRankingFigures(SingleFigure):
+    """Readings, moduli and ranks."""
 
     kind: Literal["elastomer_ranking"] = "elastomer_ranking"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``elastomer_ranking.png``, unless no shape was finished."""
-        return {"elastomer_ranking.png": Plot(lambda: elastomer_ranking_figure(result))} if _finished(result) else {}
+    def can_draw(self, result: Result) -> bool:
+        """Whether a shape was finished."""
+        return _finished(result) > 0
 
-
-def elastomer_ranking_figure(result: Result) -> Figure:
-    """Predicted against printed reading, the two moduli of each elastomer, and the ranks by every test."""
-    with styled():
-        figure = new_figure(13.0, 4.6)
-        axes = figure.subplots(1, 3, width_ratios=(1, 1, 1.35))
-        colours = colormaps["viridis"](np.linspace(0.0, 0.92, len(_names(result))))
-        _draw_readings(axes[0], result, colours)
-        _draw_moduli(axes[1], result, colours)
-        _draw_ranks(axes[2], result, colours)
-        entitle(figure, result.title or "Elastomers by durometer, hand and sensor")
-        mark_failure(figure, result)
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Predicted against printed reading, the two moduli of each elastomer, and the ranks by every test."""
+        with result_figure(result, (13.0, 4.6), "Elastomers by durometer, hand and sensor") as figure:
+            axes = figure.subplots(1, 3, width_ratios=(1, 1, 1.35))
+            colours = colormaps["viridis"](np.linspace(0.0, 0.92, len(_names(result))))
+            _draw_readings(axes[0], result, colours)
+            _draw_moduli(axes[1], result, colours)
+            _draw_ranks(axes[2], result, colours)
+        return figure
 
 
 def _draw_readings(axis: Axes, result: Result, colours: Array) -> None:

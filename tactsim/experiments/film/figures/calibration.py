@@ -11,36 +11,29 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.film.scene import CalibrationScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
+from tactsim.sensors.electronics.calibration import MILLISIEMENS
 
 LINE_COLOUR, DATA_COLOUR, LIMIT_COLOUR = "#1f4e79", "#000000", "#b8540a"
-MILLISIEMENS = 1e3
+PER_SIEMENS = 1 / MILLISIEMENS
 DENSE = 200
 """Forces at which the bands are compared."""
 COLUMNS = ("force", "line", "line_lower", "line_upper", "conductance", "used")
 
 
-class ForceCalibrationFigures(ResultFigures):
-    """One figure, after Fig. 3.4 of the thesis."""
+class ForceCalibrationFigures(SingleFigure):
+    """After Fig. 3.4 of the thesis."""
 
     kind: Literal["calibration"] = "calibration"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``calibration.png``."""
-        return {"calibration.png": Plot(lambda: force_calibration_figure(result))} if result.steps else {}
-
-
-def force_calibration_figure(result: Result) -> Figure:
-    """Readings, line and band above; force errors with the two limits of linearity below."""
-    with styled():
-        figure = new_figure(6.6, 5.6)
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        _draw_line(upper, result)
-        _draw_errors(lower, result)
-        entitle(figure, result.title or "Calibration of a force sensor")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Readings, line and band above; force errors with the two limits of linearity below."""
+        with result_figure(result, (6.6, 5.6), "Calibration of a force sensor") as figure:
+            upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+            _draw_line(upper, result)
+            _draw_errors(lower, result)
+        return figure
 
 
 def _draw_line(axis: Axes, result: Result) -> None:
@@ -52,7 +45,7 @@ def _draw_line(axis: Axes, result: Result) -> None:
         force, line, low, high, conductance, used = (sensor.history_values(name) for name in COLUMNS)
         order = np.argsort(force, kind="stable")
         labels = (confidence, _equation(result), "readings") if number == 0 else (None, None, None)
-        low, line, high, conductance = (MILLISIEMENS * values for values in (low, line, high, conductance))
+        low, line, high, conductance = (PER_SIEMENS * values for values in (low, line, high, conductance))
         axis.fill_between(force[order], low[order], high[order], color=LINE_COLOUR, alpha=0.3, linewidth=0, label=labels[0])
         axis.plot(force[order], line[order], color=LINE_COLOUR, linewidth=_width(result), label=labels[1])
         axis.plot(force, conductance, "o", color=DATA_COLOUR, markersize=_size(result), label=labels[2])
@@ -67,7 +60,7 @@ def _draw_line(axis: Axes, result: Result) -> None:
 
 def _equation(result: Result) -> str:
     """The line in the form that the thesis prints, or how many there are."""
-    slope, intercept = (MILLISIEMENS * np.atleast_1d(result.quantities[name].value) for name in ("slope", "intercept"))
+    slope, intercept = (PER_SIEMENS * np.atleast_1d(result.quantities[name].value) for name in ("slope", "intercept"))
     if slope.size > 1:
         return f"lines of {slope.size} sensors, F = {1 / slope.max():.2f} C to {1 / slope.min():.2f} C (N, mS)"
     return f"F = {1 / slope[0]:.2f} C {'−' if intercept[0] >= 0 else '+'} {abs(intercept[0] / slope[0]):.3f} (N, mS)"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from tactsim.plotting.canvas import despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import despined, result_figure
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
@@ -15,8 +15,7 @@ def capacitive_test_figure(result: Result) -> Figure:
     """Capacitance and strain over force and, if an amplifier reads it, its voltage."""
     forces, capacitance = result.quantities["forces"].numbers, 1e12 * result.quantities["reading_capacitance"].numbers
     amplified = "reading_voltage" in result.quantities
-    with styled():
-        figure = new_figure(10.0, 4.0)
+    with result_figure(result, (10.0, 4.0), "Capacitive film under constant forces") as figure:
         axes = np.atleast_1d(figure.subplots(1, 3 if amplified else 2))
         axes[0].plot(forces, capacitance, "o-", color=DATA, markersize=3, label="film")
         slope, intercept = (1e12 * float(result.quantities[f"line_{part}"].value) for part in ("slope", "intercept"))
@@ -36,5 +35,4 @@ def capacitive_test_figure(result: Result) -> Figure:
             axes[2].set_title("charge amplifier", loc="left")
         for axis in axes:
             despined(axis)
-        entitle(figure, result.title or "Capacitive film under constant forces")
     return figure

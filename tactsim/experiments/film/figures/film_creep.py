@@ -11,35 +11,27 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.film.figures.film_test import COEFFICIENTS, coefficient_axes, finish_coefficients
 from tactsim.experiments.film.scene import FilmCreepScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 PER_CENT = 100.0
 MARKERS = "os^"
 
 
-class FilmCreepFigures(ResultFigures):
-    """One figure: creep on the left, coefficients on the right."""
+class FilmCreepFigures(SingleFigure):
+    """Creep on the left, coefficients on the right; nothing unless a fit was made."""
 
     kind: Literal["film_creep"] = "film_creep"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``film_creep.png``, unless no fit was made."""
-        return {"film_creep.png": Plot(lambda: film_creep_figure(result))} if result.steps else {}
-
-
-def film_creep_figure(result: Result) -> Figure:
-    """Strain over time of every test with its fit, and E0, E1 and mu1 over the force with intervals."""
-    with styled():
-        figure = new_figure(10.0, 4.2)
-        creep, coefficients = figure.subplots(1, 2)
-        _draw_creep(creep, result)
-        _draw_coefficients(coefficients, result)
-        for axis in (creep, coefficients):
-            despined(axis)
-        entitle(figure, result.title or "Creep of a piezoresistive film")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Strain over time of every test with its fit, and E0, E1 and mu1 over the force with intervals."""
+        with result_figure(result, (10.0, 4.2), "Creep of a piezoresistive film") as figure:
+            creep, coefficients = figure.subplots(1, 2)
+            _draw_creep(creep, result)
+            _draw_coefficients(coefficients, result)
+            for axis in (creep, coefficients):
+                despined(axis)
+        return figure
 
 
 def _draw_creep(axis: Axes, result: Result) -> None:

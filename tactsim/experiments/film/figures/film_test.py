@@ -18,7 +18,7 @@ from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import Plot, despined, result_figure
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
@@ -54,15 +54,13 @@ class FilmTestFigures(ResultFigures):
 
 def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]) -> Figure:
     """Thesis Fig. 2.5a, 2.5b, 2.9b and 2.6b."""
-    with styled():
-        figure = new_figure(10.0, 7.0)
+    with result_figure(result, (10.0, 7.0), "Piezoresistive film under constant forces") as figure:
         axes = figure.subplots(2, 2)
         _draw_readings(axes[0, 0], axes[0, 1], result)
         _draw_creep(axes[1, 0], result)
         _draw_coefficients(axes[1, 1], result.quantities["forces"].numbers, coefficients)
         for axis in axes.flat:
             despined(axis)
-        entitle(figure, result.title or "Piezoresistive film under constant forces")
         if result.assumptions:  # which line the film was identified to, and over what, which is not the line of these readings
             figure.supxlabel(result.assumptions[0], x=0.01, ha="left", fontsize=8.5)
     return figure
@@ -70,8 +68,7 @@ def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]
 
 def film_surface_figure(result: Result) -> Figure:
     """Resistance over force and time, thesis Fig. 2.10."""
-    with styled():
-        figure = new_figure(7.0, 5.5)
+    with result_figure(result, (7.0, 5.5), below="Resistance over force and time") as figure:
         axis: Any = figure.add_subplot(projection="3d")
         forces, times = np.meshgrid(result.quantities["forces"].numbers, result.quantities["times"].numbers)
         kilohms = result.quantities["resistance"].numbers / 1e3
@@ -87,7 +84,6 @@ def film_surface_figure(result: Result) -> Figure:
         bar.set_label("resistance in kΩ")
         bar.ax.yaxis.set_ticks(ticks, [f"{value:g}" for value in ticks])
         bar.ax.yaxis.set_minor_formatter(NullFormatter())
-        entitle(figure, result.title, "Resistance over force and time")
     return figure
 
 

@@ -6,8 +6,7 @@ from typing import Literal
 
 from matplotlib.figure import Figure
 
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 READINGS = (
@@ -18,36 +17,29 @@ READINGS = (
 APPLIED, SATURATED = "#000000", "#b00020"
 
 
-class SensorResponseFigures(ResultFigures):
-    """One figure: forces above, errors below."""
+class SensorResponseFigures(SingleFigure):
+    """Forces above, errors below."""
 
     kind: Literal["sensor_response"] = "sensor_response"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``sensor_response.png``."""
-        return {"sensor_response.png": Plot(lambda: sensor_response_figure(result))}
-
-
-def sensor_response_figure(result: Result) -> Figure:
-    """Applied force with the three readings, and each reading's error."""
-    columns = {name: result.history_values(name) for name in result.units}
-    time, force = columns["time"], columns["force"]
-    with styled():
-        figure = new_figure(10.0, 6.0)
-        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1))
-        above.plot(time, force, "--", color=APPLIED, linewidth=1.0, label="applied", zorder=5)
-        for name, label, colour, width, order in READINGS:
-            above.plot(time, columns[name], color=colour, linewidth=width, label=label, zorder=order)
-            below.plot(time, columns[name] - force, color=colour, linewidth=min(width, 1.4), zorder=5 - order)
-        flagged = columns["saturated"] > 0
-        if flagged.any():
-            above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")
-        rms = float(result.quantities["rms_error"].value)
-        below.set(xlabel="time in s", ylabel="reading − applied in N")
-        below.set_title(f"error; root mean square {rms:.3g} N with low pass", loc="left")
-        above.set(ylabel="force in N")
-        above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-        for axis in (above, below):
-            despined(axis)
-        entitle(figure, result.title or "Response of a piezoresistive sensor")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Applied force with the three readings, and each reading's error."""
+        columns = {name: result.history_values(name) for name in result.units}
+        time, force = columns["time"], columns["force"]
+        with result_figure(result, (10.0, 6.0), "Response of a piezoresistive sensor") as figure:
+            above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1))
+            above.plot(time, force, "--", color=APPLIED, linewidth=1.0, label="applied", zorder=5)
+            for name, label, colour, width, order in READINGS:
+                above.plot(time, columns[name], color=colour, linewidth=width, label=label, zorder=order)
+                below.plot(time, columns[name] - force, color=colour, linewidth=min(width, 1.4), zorder=5 - order)
+            flagged = columns["saturated"] > 0
+            if flagged.any():
+                above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")
+            rms = float(result.quantities["rms_error"].value)
+            below.set(xlabel="time in s", ylabel="reading − applied in N")
+            below.set_title(f"error; root mean square {rms:.3g} N with low pass", loc="left")
+            above.set(ylabel="force in N")
+            above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+            for axis in (above, below):
+                despined(axis)
+        return figure

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.experiments.film.scene import ThermogravimetryScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 CURVE, POINT = "#1f4e79", "#b8540a"
@@ -19,27 +18,20 @@ REACH = 1.25
 """The curve goes beyond the densities by this factor."""
 
 
-class ThermogravimetryFigures(ResultFigures):
+class ThermogravimetryFigures(SingleFigure):
     """Two panels: the fraction over the density, and what the uncertainty comes from."""
 
     kind: Literal["thermogravimetry"] = "thermogravimetry"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``thermogravimetry.png``."""
-        return {"thermogravimetry.png": Plot(lambda: thermogravimetry_figure(result))} if result.steps else {}
-
-
-def thermogravimetry_figure(result: Result) -> Figure:
-    """Fraction by volume over the filler's density with its readings, and the parts of their uncertainties."""
-    with styled():
-        figure = new_figure(9.6, 3.9)
-        over_density, parts = figure.subplots(1, 2, width_ratios=(1.3, 1))
-        _draw_fractions(over_density, result)
-        _draw_parts(parts, result)
-        for axis in (over_density, parts):
-            despined(axis)
-        entitle(figure, result.title or "Fraction of the filler by thermogravimetric analysis")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Fraction by volume over the filler's density with its readings, and the parts of their uncertainties."""
+        with result_figure(result, (9.6, 3.9), "Fraction of the filler by thermogravimetric analysis") as figure:
+            over_density, parts = figure.subplots(1, 2, width_ratios=(1.3, 1))
+            _draw_fractions(over_density, result)
+            _draw_parts(parts, result)
+            for axis in (over_density, parts):
+                despined(axis)
+        return figure
 
 
 def _draw_fractions(axis: Axes, result: Result) -> None:

@@ -9,15 +9,14 @@ from matplotlib.figure import Figure
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
 from tactsim.experiments.grasp.figures.maps import draw_maps
 from tactsim.experiments.grasp.figures.moment import shown_moment
-from tactsim.experiments.grasp.figures.parts import loaded_taxels
+from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure
 from tactsim.experiments.grasp.figures.viewed import has_views, viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.canvas import Plot, result_figure
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1
@@ -40,7 +39,7 @@ class GraspFigures(ResultFigures):
         if has_history(result):
             drawings["grasp_history.png"] = Plot(lambda: history_figure(result))
         if has_views(result):
-            drawings[VIEWS] = Plot(lambda: views_figure(viewed(moment), result.title))
+            drawings[VIEWS] = Plot(lambda: views_figure(moment, viewed(moment)))
         if has_voltages(result):
             drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
@@ -50,34 +49,21 @@ class GraspFigures(ResultFigures):
 
 def section_figure(result: Result) -> Figure:
     """The section through the deformed block, between the jaws."""
-    with styled():
-        figure = new_figure(9.0, 5.2)
+    with result_figure(result, (9.0, 5.2), TITLE, where=WHERE) as figure:
         draw_section(figure.add_subplot(), result, loaded_taxels(result))
-        _entitle(figure, result)
     return figure
 
 
 def maps_figure(result: Result) -> Figure:
     """The pressure on every taxel of both jaws."""
-    with styled():
-        figure = new_figure(9.0, 5.0)
-        axes = figure.subplots(1, 2)
-        draw_maps((axes[0], axes[1]), result, loaded_taxels(result))
-        _entitle(figure, result)
+    with result_figure(result, (9.0, 5.0), TITLE, where=WHERE) as figure:
+        draw_maps(figure.subplots(1, 2), loaded_taxels(result))
     return figure
 
 
 def history_figure(result: Result) -> Figure:
     """The forces of the jaws, the pressure in an artery and the taxels that carry most, over time."""
-    with styled():
-        rows = panels(result)
-        figure = new_figure(8.0, PANEL_HEIGHT * len(rows) + 0.8)
-        draw_histories(figure.subplots(len(rows), 1, squeeze=False)[:, 0].tolist(), result)
-        _entitle(figure, result)
+    rows = len(panels(result))
+    with result_figure(result, (8.0, PANEL_HEIGHT * rows + 0.8), TITLE, where=WHERE) as figure:
+        draw_histories(figure.subplots(rows, 1, squeeze=False)[:, 0].tolist(), result)
     return figure
-
-
-def _entitle(figure: Figure, result: Result) -> None:
-    """The title, and across the foot of a run that did not end as it should its status and reason."""
-    entitle(figure, result.title or "Grasp")
-    mark_failure(figure, result, "; the last accepted step is shown")

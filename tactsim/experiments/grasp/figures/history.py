@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS
 from tactsim.experiments.grasp.scene import GraspScene
-from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
 
@@ -75,8 +75,7 @@ def _lumens(result: Result) -> list[str]:
 
 
 def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
-    signs = {"upper": 1.0, "lower": -1.0}
-    forces = {side: signs[side] * result.history_values(f"jaw_force_{side}_z") for side in JAWS}
+    forces = {side: OUTWARD[side] * result.history_values(f"jaw_force_{side}_z") for side in JAWS}
     factor, unit = _scale(list(forces.values()), "N")
     for side, force in forces.items():
         colour, line, marker = FORCE_STYLES[side]

@@ -9,18 +9,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PatchCollection
-from matplotlib.colors import Normalize
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels
+from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, PressureScale
 from tactsim.experiments.grasp.figures.viewed import outline, true_bodies
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import scale_of
-from tactsim.plotting.colours import PRESSURE_COLOURS
-from tactsim.results import Result
+from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on
 
 MOST_NAMED = 5
 """Matrices with more rows or columns than this have the first and the last one named."""
@@ -28,19 +25,13 @@ MOST_WRITTEN = 100
 """Matrices with more taxels than this show colours only, without borders, which would cover them."""
 BESIDE = 0.6
 """Distance in mm of the names of rows and columns from the jaw."""
-BRIGHT = 0.5
-"""Brightness of a cell above which numbers are dark."""
-LUMA = (0.299, 0.587, 0.114)
-"""Weights of red, green and blue in brightness (ITU-R BT.601)."""
 
 
-def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> None:
+def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     """The upper and the lower jaw seen from above, with one colour bar."""
-    factor, unit = scale_of(grasp.largest_pressure, "Pa")
-    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    bodies = list(true_bodies(grasp.scene))
+    scale, bodies = grasp.pressure_scale, list(true_bodies(grasp.scene))
     for axis, side in zip(axes, JAWS, strict=True):
-        _draw_matrix(axis, grasp, side, (factor, unit, norm))
+        _draw_matrix(axis, grasp, side, scale)
         _draw_surroundings(axis, grasp, side, bodies)
         total = float(grasp.forces[side].sum())
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
@@ -49,19 +40,21 @@ def draw_maps(axes: tuple[Axes, Axes], result: Result, grasp: LoadedTaxels) -> N
         axis.tick_params(length=2.5)
     axes[1].set_ylabel("")
     bar = axes[0].figure.colorbar(
-        ScalarMappable(norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
+        ScalarMappable(scale.norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
     small = "; beneath it the force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
     dashed = "undeformed block" + (" and outline of the inclusions" if bodies else "")
-    bar.set_label(f"mean pressure on the taxel in {unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}")
+    bar.set_label(
+        f"mean pressure on the taxel in {scale.unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}"
+    )
     bar.outline.set_linewidth(0.5)
 
 
-def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float, str, Normalize]) -> None:
+def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScale) -> None:
     """The taxels as squares with their pressure and force; the names of rows and columns beside them."""
     import matplotlib
 
-    layout, place, (factor, unit, norm) = grasp.scene.matrix, grasp.scene.place(side), scale
+    layout, place = grasp.scene.matrix, grasp.scene.place(side)
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
     large = float(np.clip(22 / max(layout.rows, layout.columns), 3.0, 9.0))
@@ -69,21 +62,19 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: tuple[float,
     squares: list[Rectangle] = []
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
         corner = (columns[column, 0], rows[row, 0])
-        shade = float(norm(factor * pressure))
+        shade = float(scale.norm(scale.factor * pressure))
         squares.append(Rectangle(corner, size, size, facecolor=colours(shade), edgecolor="#30363d", linewidth=border))
         if grasp.pressures[side].size > MOST_WRITTEN:
             continue
-        brightness = float(np.dot(colours(shade)[:3], LUMA))
         style: dict[str, Any] = {
             "ha": "center",
-            "color": "k" if brightness > BRIGHT else "w",
+            "color": ink_on(colours(shade)),
             "zorder": 4,
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
-        axis.text(
-            x, y, f"{factor * pressure:#.3g}".rstrip(".") + f" {unit}", va="bottom", fontsize=large, fontweight="bold", **style
-        )
+        written = f"{scale.factor * pressure:#.3g}".rstrip(".")
+        axis.text(x, y, f"{written} {scale.unit}", va="bottom", fontsize=large, fontweight="bold", **style)
         force = f"{grasp.forces[side][row, column]:#.2g}".rstrip(".")
         axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute

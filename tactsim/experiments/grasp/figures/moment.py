@@ -7,11 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from tactsim.experiments.grasp.scene import SimulatedGrasp
-from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.results import Quantity, Result
 from tactsim.units import format_quantity
-
-OUTWARD = {"upper": 1.0, "lower": -1.0}
 
 
 def shown_moment(result: Result) -> Result:

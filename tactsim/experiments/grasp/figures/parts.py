@@ -6,16 +6,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.colors import Normalize
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.plotting.canvas import scale_of
 from tactsim.plotting.plane_cut import regions_of
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
+TITLE, WHERE = "Grasp", "; the last accepted step is shown"
+"""Title of a grasp without one, and what is said of one that did not end as it should."""
 LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""
+
+
+@dataclass(frozen=True)
+class PressureScale:
+    """The unit in which the pressures of taxels are shown, the factor from Pa to it, and the ends of their colours in it."""
+
+    factor: float
+    unit: str
+    norm: Normalize
 
 
 @dataclass(frozen=True)
@@ -42,6 +55,12 @@ class LoadedTaxels:
     def smallest_pressure(self) -> float:
         """Smallest pressure in Pa on any taxel, at most zero."""
         return min(0.0, *(float(np.min(self.pressures[side])) for side in JAWS))
+
+    @property
+    def pressure_scale(self) -> PressureScale:
+        """One scale for the taxels of both jaws."""
+        factor, unit = scale_of(self.largest_pressure, "Pa")
+        return PressureScale(factor, unit, Normalize(factor * self.smallest_pressure, factor * self.largest_pressure))
 
 
 def loaded_taxels(result: Result) -> LoadedTaxels:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,7 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import despined, extension, scale_of, weighted_percentiles
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, despined, extension, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
 
@@ -33,14 +33,20 @@ MOST_NAMED = 12
 TAXEL_COLOUR, INCLUSION_COLOUR = "#e69f00", "#000000"
 
 
-def cutting_plane(frame: FieldFrame, size: Array) -> tuple[int, float, int]:
-    """Axis across the cut, its level in m where the body is deformed, and the inclusion that it passes through (0 if none).
+@dataclass(frozen=True)
+class CuttingPlane:
+    """A vertical plane: the axis across it, its level in m where the body is deformed, and the inclusion in it (0 if none)."""
 
-    The inclusion is that whose middle is the farthest from both jaws; a long one is cut across its length.
-    """
+    across: int
+    level: float
+    inclusion: int
+
+
+def cutting_plane(frame: FieldFrame, size: Array) -> CuttingPlane:
+    """The plane through the inclusion whose middle is the farthest from both jaws; a long one is cut across its length."""
     places, inclusions = deformed(frame), inclusions_of(frame)
     if not inclusions:
-        return 1, float(size[1] / 2), 0
+        return CuttingPlane(1, float(size[1] / 2), 0)
 
     def height(nodes: Array) -> float:
         middle = (frame.points[nodes, 2].min() + frame.points[nodes, 2].max()) / 2
@@ -50,24 +56,24 @@ def cutting_plane(frame: FieldFrame, size: Array) -> tuple[int, float, int]:
     reached = places[inclusions[number]]
     extent = np.ptp(reached, axis=0)
     axis = 0 if extent[0] > LONGER * extent[1] else 1
-    return axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number
+    return CuttingPlane(axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number)
 
 
 def draw_section(axis: Axes, result: Result, grasp: LoadedTaxels) -> None:
     """The cut of the last frame."""
     frame = result.frames[-1]
-    across, level, number = cutting_plane(frame, grasp.scene.size)
+    plane = cutting_plane(frame, grasp.scene.size)
     pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
-    cut = plane_cut(frame, across, level, np.asarray(pressure))
+    cut = plane_cut(frame, plane.across, plane.level, np.asarray(pressure))
     _draw_pressure(axis, cut)
     _draw_outlines(axis, cut, result)
     limits = _window(cut, grasp)
     for side in JAWS:
-        _draw_jaw(axis, grasp, side, limits, (across, level))
-    along = "yx"[across]
+        _draw_jaw(axis, grasp, side, limits, plane)
+    along = "yx"[plane.across]
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
-    through = f"the middle of {result.scene_as(GraspScene).named_inclusion(number)}" if number else "the middle of the block"
-    place = f"cut at {'xy'[across]} = {1e3 * level:.3g} mm through {through}"
+    middle = result.scene_as(GraspScene).named_inclusion(plane.inclusion) if plane.inclusion else "the block"
+    place = f"cut at {'xy'[plane.across]} = {1e3 * plane.level:.3g} mm through the middle of {middle}"
     axis.set_title(place + ("\n" if moment_of(result) else "; ") + ending(result), loc="left")
     despined(axis)
 
@@ -127,14 +133,14 @@ def _window(cut: PlaneCut, grasp: LoadedTaxels) -> tuple[tuple[float, float], tu
 
 
 def _draw_jaw(
-    axis: Axes, grasp: LoadedTaxels, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: tuple[int, float]
+    axis: Axes, grasp: LoadedTaxels, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: CuttingPlane
 ) -> None:
     """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes."""
-    jaw, place, (across, level) = grasp.scene.jaws[side], grasp.scene.place(side), plane
+    jaw, place, across = grasp.scene.jaws[side], grasp.scene.place(side), plane.across
     middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
     along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
     points = np.empty((3, along.size))
-    points[1 - across], points[2], points[across] = 1e-3 * along.ravel(), 1e-3 * height.ravel(), level
+    points[1 - across], points[2], points[across] = 1e-3 * along.ravel(), 1e-3 * height.ravel(), plane.level
     distance = jaw.signed_distance(points - place[:, None])[0].reshape(along.shape)
     if distance.min() > 0:
         return
@@ -147,10 +153,10 @@ def _draw_jaw(
     axis.text(max(left, limits[0][0]) + 0.6, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
 
 
-def _draw_taxels(axis: Axes, grasp: LoadedTaxels, side: str, plane: tuple[int, float]) -> None:
+def _draw_taxels(axis: Axes, grasp: LoadedTaxels, side: str, plane: CuttingPlane) -> None:
     """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
-    (across, level), jaw, place = plane, grasp.scene.jaws[side], grasp.scene.place(side)
-    fixed = (level - place[across]) / jaw.rotation[across, across]
+    across, jaw, place = plane.across, grasp.scene.jaws[side], grasp.scene.place(side)
+    fixed = (plane.level - place[across]) / jaw.rotation[across, across]
     passed = grasp.scene.matrix.borders("xy"[across])
     hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
     for index in hit:

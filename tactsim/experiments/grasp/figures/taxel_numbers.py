@@ -11,11 +11,8 @@ from matplotlib.colors import Normalize
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import scale_of
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, scale_of
 
-BRIGHT, LUMA = 0.5, (0.299, 0.587, 0.114)
-"""Brightness of a cell above which its number is dark, and the weights of red, green and blue in it (ITU-R BT.601)."""
 PLACES = ((0.0, 0.0), (0.5, 0.0))
 """Lower left corners of the two maps in the axes."""
 SIDE, LARGEST, SMALLEST = 0.38, 9.0, 4.5
@@ -32,8 +29,8 @@ def draw_taxel_numbers(axis: Axes, grasp: ViewedGrasp) -> None:
         small: Any = axis.inset_axes((*place, SIDE, SIDE))
         small.imshow(signal, cmap=PRESSURE_COLOURS, norm=norm, origin="lower")
         for (row, column), value in np.ndenumerate(signal):
-            dark = float(np.dot(colours(norm(value))[:3], LUMA)) > BRIGHT
-            small.text(column, row, f"{factor * value:.3g}", ha="center", va="center", fontsize=size, color="k" if dark else "w")
+            style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": size, "color": ink_on(colours(norm(value)))}
+            small.text(column, row, f"{factor * value:.3g}", **style)
         small.set_xticks(range(signal.shape[1]), [f"{k + 1}" for k in range(signal.shape[1])], fontsize=7)
         small.set_yticks(range(signal.shape[0]), [f"{k + 1}" for k in range(signal.shape[0])], fontsize=7)
         small.tick_params(length=0)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
+from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of
 from tactsim.results import Result
 
 VOLTAGES = "taxel_voltages.png"
@@ -21,7 +21,7 @@ READ, APPLIED = "#1f4e79", "#b8540a"
 
 
 class MatrixReadoutFigures(ResultFigures):
-    """One figure."""
+    """The voltages."""
 
     kind: Literal["matrix_readout"] = "matrix_readout"
 
@@ -37,8 +37,7 @@ def has_voltages(result: Result) -> bool:
 
 def voltages_figure(result: Result) -> Figure:
     """Upper jaw in the upper row: its voltages over time, and the force of each taxel at the end, read and applied."""
-    with styled():
-        figure = new_figure(10.5, 6.4)
+    with result_figure(result, (10.5, 6.4), "Voltages of the matrices") as figure:
         axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
         factor, unit = scale_of(max(float(result.quantities[f"voltage_{side}_history"].numbers.max()) for side in JAWS), "V")
         for row, side in zip(axes, JAWS, strict=True):
@@ -52,7 +51,6 @@ def voltages_figure(result: Result) -> Figure:
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes.flat:
             despined(axis)
-        entitle(figure, result.title or "Voltages of the matrices")
     return figure
 
 

@@ -13,14 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LoadedTaxels, ending, inclusions_of, loaded_taxels
+from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, LoadedTaxels, ending, inclusions_of, loaded_taxels
 from tactsim.experiments.grasp.scene import GraspScene
-from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import entitle, new_figure, scale_of, styled
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
+from tactsim.plotting.canvas import PRESSURE_COLOURS, result_figure
 from tactsim.plotting.off_screen import Camera, Surface, pictures
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
-from tactsim.results import FieldFrame, Result, Status
+from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
 
 FROM_ABOVE, FROM_BELOW = (0.55, -1.0, 0.5), (0.55, -1.0, -0.5)
@@ -35,9 +34,10 @@ LEAST_BAR = 0.01
 TISSUE_COLOUR, INCLUSION_COLOUR, JAW_COLOUR = "#f0b8a0", "#009e73", "#aab1ba"
 ARROW = 0.15
 """Length of the arrows along the axes, over the longest side of the block."""
-_BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
-_BOX_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
-_BOX_TRIANGLES = _BOX_SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+BOX_TRIANGLES = _SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+"""Corners (8, 3) of a box with sides of 1, and its triangles (12, 3) as seen from outside."""
 VIEW = "grasp_view.png"
 """File name of the view."""
 
@@ -48,8 +48,7 @@ def view_figure(result: Result) -> Figure:
     surfaces = scene(frame, grasp)
     cameras = [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
     images = pictures(surfaces, cameras)
-    with styled():
-        figure = new_figure(12.0, 5.8)
+    with result_figure(result, (12.0, 5.8), TITLE, remark=ending(result), where=WHERE) as figure:
         figure.set_layout_engine("constrained", h_pad=0.12)
         axes = figure.subplots(1, 2)
         for axis, camera, image, words in zip(axes, cameras, images, ("from above", "from below"), strict=True):
@@ -59,18 +58,16 @@ def view_figure(result: Result) -> Figure:
             annotate(axis, grasp, camera)
             _name_inclusions(axis, result, camera)
         pressure_bar(figure, axes, grasp, "pressure", "its bar on the back of the jaw")
-        status = "" if result.status is Status.CONVERGED else f"; {str(result.status).upper()}, last accepted step"
-        title = result.title or "Grasp"
-        entitle(figure, f"{title}: {ending(result)}{status}")
     return figure
 
 
 def pressure_bar(figure: Figure, axes: Any, grasp: LoadedTaxels, meaning: str, bars: str) -> None:
     """The colours of the bars on the taxels; ``meaning`` is what their colour and the length of ``bars`` show."""
-    factor, unit = scale_of(grasp.largest_pressure, "Pa")
-    norm = Normalize(factor * grasp.smallest_pressure, factor * grasp.largest_pressure)
-    bar = figure.colorbar(ScalarMappable(norm, PRESSURE_COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01)
-    bar.set_label(f"mean {meaning} on the taxel in {unit}: colour and length of {bars}")
+    scale = grasp.pressure_scale
+    bar = figure.colorbar(
+        ScalarMappable(scale.norm, PRESSURE_COLOURS), ax=axes, location="bottom", shrink=0.5, aspect=40, pad=0.01
+    )
+    bar.set_label(f"mean {meaning} on the taxel in {scale.unit}: colour and length of {bars}")
     bar.outline.set_linewidth(0.5)
 
 
@@ -109,18 +106,18 @@ def jaw_surfaces(grasp: LoadedTaxels, side: str) -> list[Surface]:
     jaw, layout, height = grasp.scene.jaws[side], grasp.scene.matrix, float(grasp.scene.size[2])
     back = PLATE * height
     low = np.array([-jaw.width / 2, -jaw.depth / 2, 0.0])
-    plate = _placed(grasp, side, _BOX * np.array([jaw.width, jaw.depth, back]) + low)
+    plate = _placed(grasp, side, BOX * np.array([jaw.width, jaw.depth, back]) + low)
     boxes, colours = [], []
     norm = Normalize(grasp.smallest_pressure, grasp.largest_pressure)
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
         length = height * max(LEAST_BAR, BAR * max(0.0, float(pressure)) / grasp.largest_pressure)
         corner = np.array([layout.borders("x")[column, 0], layout.borders("y")[row, 0], back + APART * height])
-        boxes.append(_placed(grasp, side, _BOX * np.array([layout.size, layout.size, length]) + corner))
+        boxes.append(_placed(grasp, side, BOX * np.array([layout.size, layout.size, length]) + corner))
         colours.append(matplotlib.colormaps[PRESSURE_COLOURS](float(norm(pressure)))[:3])
-    triangles = np.arange(len(boxes))[:, None, None] * len(_BOX) + _BOX_TRIANGLES
-    painted = np.repeat(np.array(colours), len(_BOX_TRIANGLES), axis=0)
+    triangles = np.arange(len(boxes))[:, None, None] * len(BOX) + BOX_TRIANGLES
+    painted = np.repeat(np.array(colours), len(BOX_TRIANGLES), axis=0)
     bars = Surface(np.concatenate(boxes), triangles.reshape(-1, 3), painted, creases=True)
-    return [Surface(plate, _BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
+    return [Surface(plate, BOX_TRIANGLES, JAW_COLOUR, opacity=0.3, creases=True), bars]
 
 
 def _placed(grasp: LoadedTaxels, side: str, points: Array) -> Array:
@@ -158,10 +155,10 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
     words = f"arrows: {format_quantity(length, 'm')}"
     axis.text(0.0, -0.06, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
     for side in JAWS:
-        jaw, sign = grasp.scene.jaws[side], 1.0 if side == "upper" else -1.0
+        jaw = grasp.scene.jaws[side]
         plate_corner = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
         x, y = camera.project(_placed(grasp, side, plate_corner[None]))[0]
-        axis.text(x - 14, y - sign * 10, f"{side} jaw", ha="right", va="center")
+        axis.text(x - 14, y - OUTWARD[side] * 10, f"{side} jaw", ha="right", va="center")
 
 
 def _name_inclusions(axis: Axes, result: Result, camera: Camera) -> None:

@@ -23,8 +23,8 @@ from tactsim.experiments.grasp.figures.taxel_numbers import draw_taxel_numbers
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies, outline
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.localization.views import SHAPE, views
-from tactsim.plotting.canvas import despined, entitle, new_figure, scale_of, styled
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, despined, result_figure, scale_of
+from tactsim.results import Result
 
 VIEWS = "views.png"
 JAW = 1.2
@@ -75,7 +75,7 @@ def colour_table(levels: int) -> list[int]:
     return np.round(255 * colormaps[PRESSURE_COLOURS](np.arange(levels))[:, :3]).astype(int).ravel().tolist()
 
 
-def views_figure(grasp: ViewedGrasp, title: str) -> Figure:
+def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
     """The top view above the front view, the left view beside it; every picture has its colours, in force and in pressure.
 
     The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
@@ -86,14 +86,13 @@ def views_figure(grasp: ViewedGrasp, title: str) -> Figure:
     left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
     top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
     x, y, z = 1e3 * grasp.scene.size
-    with styled():
-        figure = new_figure(10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
+    size = (10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
+    with result_figure(result, size, "Three views of the grasp") as figure:
         axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
         for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
             _draw(axis, view, grasp)
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp)
-        entitle(figure, title or "Three views of the grasp")
     return figure
 
 

@@ -1,7 +1,8 @@
-"""The deformed section under a rigid body, with its pressure and the inner sensor."""
+"""The deformed section of tissue under a rigid body, with its pressure and the inner sensor: of a section, or cut from space."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,7 @@ from tactsim.experiments.indentation.figures.section import (
     pressure_scale,
 )
 from tactsim.experiments.indentation.scene import PressedBodyScene
-from tactsim.interfaces import RigidBody
-from tactsim.plotting.canvas import despined
-from tactsim.plotting.colours import PRESSURE_COLOURS
+from tactsim.plotting.canvas import PRESSURE_COLOURS, despined
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -32,59 +31,85 @@ WORDS = 0.22
 """Height of the three lines above the inner sensor, over half the width of the picture."""
 
 
+@dataclass(frozen=True, eq=False)
+class PressedSection:
+    """A section and the body above it; lengths in mm.
+
+    Attributes
+    ----------
+    section : the tissue
+    scene : the body and its sensor
+    height : of the body's reference point
+    limits : of the picture, along the horizontal and the vertical axis
+    sides : 1.0, and -1.0 too if the mirror image of the tissue is shown
+    meshed : those of the sides on which elements are drawn
+    turn : matrix (3, 3) from the axes of the body to those of the tissue; None for an axisymmetric section
+    """
+
+    section: Section
+    scene: PressedBodyScene
+    height: float
+    limits: tuple[tuple[float, float], tuple[float, float]]
+    sides: tuple[float, ...]
+    meshed: tuple[float, ...]
+    turn: Array | None = None
+
+    def draw(self, axis: Axes, xlabel: str, title: str) -> None:
+        """Everything, with the pressure in colours."""
+        self._draw_pressure(axis)
+        draw_mesh(axis, self.section, self.sides, self.meshed)
+        self._draw_body(axis)
+        if self.scene.recess is not None and self.scene.body.contact_shape.hole:
+            self._draw_sensor(axis, self.scene.recess, self.scene.body.contact_shape.hole)
+        axis.set(xlim=self.limits[0], ylim=self.limits[1], aspect="equal", xlabel=xlabel, ylabel="height in mm")
+        axis.set_title(title, loc="left")
+        despined(axis)
+
+    def _draw_pressure(self, axis: Axes) -> None:
+        """The pressure with robust limits, so that the singular edges do not take all the colours."""
+        (left, right), (bottom, _) = self.limits
+        pressure = np.asarray(self.section.frame.point_data["pressure [Pa]"]).ravel()
+        x, z = self.section.places.T
+        seen = (x >= left) & (x <= right) & (z >= bottom)
+        (low, high), factor, unit = pressure_scale(self.section, pressure, seen)
+        drawn = draw_field(axis, self.section, factor * pressure, self.sides, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
+        pressure_bar(axis, drawn, factor * pressure[seen], (low, high), unit)
+
+    def _draw_body(self, axis: Axes) -> None:
+        """The body filled from its signed distance; an axisymmetric one is traced from the axis on, and mirrored."""
+        mirrored, (left, right) = self.turn is None, self.limits[0]
+        x, z = np.meshgrid(np.linspace(0.0 if mirrored else left, right, GRID), np.linspace(*self.limits[1], GRID))
+        points = np.zeros((2 if mirrored else 3, x.size))
+        points[0], points[-1] = x.ravel(), z.ravel() - self.height
+        distance = self.scene.body.signed_distance(points * 1e-3)[0].reshape(x.shape)
+        draw_body(axis, distance, (x, z), sides=(-1.0, 1.0) if mirrored else (1.0,))
+
+    def _draw_sensor(self, axis: Axes, recess: float, hole: float) -> None:
+        """The plane of the inner sensor across the hole, with its recess."""
+        ends = (np.eye(3) if self.turn is None else self.turn) @ np.array([[-hole, hole], [0.0, 0.0], [recess, recess]])
+        x, z = 1e3 * ends[0], 1e3 * ends[2] + self.height
+        axis.plot(x, z, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
+        words = f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face"
+        style: dict[str, Any] = {"ha": "center", "va": "bottom", "color": SENSOR_COLOUR, "fontsize": 7, "zorder": 5}
+        axis.annotate(words, (x.mean(), z.mean()), (0.0, 3.0), textcoords="offset points", **style)
+
+
 def draw_contact_section(axis: Axes, result: Result, displacement: float) -> None:
-    """The deformed section of the last frame with its pressure, under the body at a displacement in m."""
-    frame = result.frames[-1]
-    section = Section(frame)
-    pressure = np.asarray(frame.point_data["pressure [Pa]"]).ravel()
-    scene = result.scene_as(PressedBodyScene)
-    body, height = scene.body, 1e3 * (scene.starting_height - displacement)
-    limits = _window(section, body, height)
-    if scene.recess is not None and body.contact_shape.hole:
-        limits = (*limits[:2], max(limits[2], height + 1e3 * scene.recess + WORDS * limits[0]))
-    _draw_pressure(axis, section, pressure, limits)
-    draw_mesh(axis, section)
-    r, z = np.meshgrid(np.linspace(0, limits[0], GRID), np.linspace(limits[1], limits[2], GRID))
-    points = np.stack([r.ravel(), z.ravel() - height]) * 1e-3
-    draw_body(axis, body.signed_distance(points)[0].reshape(r.shape), (r, z))
-    _draw_sensor(axis, scene, height)
-    axis.set(xlim=(-limits[0], limits[0]), ylim=limits[1:], aspect="equal", xlabel="radius in mm", ylabel="height in mm")
-    axis.set_title(f"at a displacement of {format_quantity(displacement, 'm')} (elements shown on the left)", loc="left")
+    """The axisymmetric section of the last frame under the body at a displacement in m, both halves, elements on the left."""
+    section, scene = Section(result.frames[-1]), result.scene_as(PressedBodyScene)
+    height = 1e3 * (scene.starting_height - displacement)
+    half, bottom, top = _window(section, 1e3 * scene.body.contact_shape.reach, height)
+    if scene.recess is not None and scene.body.contact_shape.hole:
+        top = max(top, height + 1e3 * scene.recess + WORDS * half)
+    shown = PressedSection(section, scene, height, ((-half, half), (bottom, top)), sides=(-1.0, 1.0), meshed=(-1.0,))
+    title = f"at a displacement of {format_quantity(displacement, 'm')} (elements shown on the left)"
+    shown.draw(axis, "radius in mm", title)
     axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
-    despined(axis)
 
 
-def _draw_pressure(axis: Axes, section: Section, pressure: Array, limits: tuple[float, float, float]) -> None:
-    """The pressure with robust limits, so that the singular edges do not take all the colours."""
-    seen = (section.places[:, 0] <= limits[0]) & (section.places[:, 1] >= limits[1])
-    (low, high), factor, unit = pressure_scale(section, pressure, seen)
-    values = factor * pressure
-    drawn = draw_field(axis, section, values, cmap=PRESSURE_COLOURS, vmin=low, vmax=high)
-    pressure_bar(axis, drawn, values[seen], (low, high), unit)
-
-
-def _window(section: Section, body: RigidBody, height: float) -> tuple[float, float, float]:
-    """Half width, bottom and top of the picture in mm."""
-    radius = 1e3 * body.contact_shape.reach
-    widest = float(section.places[:, 0].max())
-    half = min(1.03 * widest, SHOWN_RADII * radius)
+def _window(section: Section, radius: float, height: float) -> tuple[float, float, float]:
+    """Half width, bottom and top of the picture in mm, under a body of a radius and at a height in mm."""
+    half = min(1.03 * float(section.places[:, 0].max()), SHOWN_RADII * radius)
     bottom, top = max(section.places[:, 1].min(), -half), section.places[section.places[:, 0] <= half, 1].max()
     margin = 0.03 * (top - bottom)
     return half, float(bottom - margin), float(max(top, height) + 0.2 * min(half, radius) + margin)
-
-
-def _draw_sensor(axis: Axes, scene: PressedBodyScene, height: float) -> None:
-    """The inner sensor's plane across the hole."""
-    recess, inner = scene.recess, scene.body.contact_shape.hole
-    if recess is None or not inner:
-        return
-    level, edge = height + 1e3 * recess, 1e3 * inner
-    draw_inner_sensor(axis, np.array([[-edge, edge], [level, level]]), recess)
-
-
-def draw_inner_sensor(axis: Axes, ends: Array, recess: float) -> None:
-    """The plane of the sensor in a hole between its ends (2, 2) in mm, one in each column, with its recess in m."""
-    axis.plot(*ends, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
-    words = f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face"
-    style: dict[str, Any] = {"ha": "center", "va": "bottom", "color": SENSOR_COLOUR, "fontsize": 7, "zorder": 5}
-    axis.annotate(words, tuple(ends.mean(axis=1)), (0.0, 3.0), textcoords="offset points", **style)

@@ -12,42 +12,31 @@ from matplotlib.figure import Figure
 from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
-from tactsim.plotting.failure import FAILED_COLOUR, mark_failure
+from tactsim.plotting.canvas import FAILED_COLOUR, SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 
 FORCE_COLOUR, RISE_COLOUR = "#1f4e79", "#b8540a"
 
 
-class IndentationFigures(ResultFigures):
-    """One figure: section and curve side by side."""
+class IndentationFigures(SingleFigure):
+    """Section and curve side by side."""
 
     kind: Literal["indentation"] = "indentation"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``indentation.png``, unless no step was accepted."""
-        return {"indentation.png": Plot(lambda: indentation_figure(result))} if result.steps else {}
-
-
-def indentation_figure(result: Result) -> Figure:
-    """Section (if the result has fields) and force-displacement curve of an indentation."""
-    title = result.title or f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}"
-    return section_beside(result, draw_curve, title)
+    def figure(self, result: Result) -> Figure:
+        """Section (if the result has fields) and force-displacement curve of an indentation."""
+        return section_beside(result, draw_curve, f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}")
 
 
 def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:
-    """The section of the last frame, if there is one, and a curve that ``draw`` draws; a failure across the foot."""
-    with styled():
-        has_section = bool(result.frames)
-        figure = new_figure(11.0 if has_section else 6.0, 4.4)
-        axes = figure.subplots(1, 2 if has_section else 1, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
+    """The section of the last frame, if there is one, and a curve that ``draw`` draws."""
+    has_section = bool(result.frames)
+    with result_figure(result, (11.0 if has_section else 6.0, 4.4), title, where=after(result)) as figure:
+        axes = figure.subplots(1, 1 + has_section, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
         if has_section:
             draw_contact_section(axes[0], result, result.frames[-1].time)
         draw(axes[-1], result)
-        entitle(figure, title)
-        mark_failure(figure, result, after(result))
     return figure
 
 

@@ -11,37 +11,28 @@ from matplotlib.figure import Figure
 from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
 from tactsim.experiments.indentation.scene import Indentation3dScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result
 
 
-class SpaceIndentationFigures(ResultFigures):
-    """One figure: the cut, and the curves beside it."""
+class SpaceIndentationFigures(SingleFigure):
+    """The cut, and the curves beside it."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``indentation_3d.png``, unless no step was accepted."""
-        return {"indentation_3d.png": Plot(lambda: space_indentation_figure(result))} if result.steps else {}
-
-
-def space_indentation_figure(result: Result) -> Figure:
-    """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""
-    around = "pressure_around" in result.quantities and result.scene_as(Indentation3dScene).symmetry != "quarter"
-    with styled():
+    def figure(self, result: Result) -> Figure:
+        """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""
+        around = "pressure_around" in result.quantities and result.scene_as(Indentation3dScene).symmetry != "quarter"
         wide = bool(result.frames)
-        figure = new_figure(11.0 if wide else 6.0, 5.6 if around else 4.4)
-        grid = figure.add_gridspec(1 + around, 1 + wide, width_ratios=(1.5, 1) if wide else None)
-        if wide:
-            draw_cut(figure.add_subplot(grid[:, 0]), result)
-        draw_curve(figure.add_subplot(grid[0, -1]), result)
-        if around:
-            _draw_around(figure.add_subplot(grid[1, -1]), result)
-        entitle(figure, result.title or "Indentation in space")
-        mark_failure(figure, result, after(result))
-    return figure
+        size = (11.0 if wide else 6.0, 5.6 if around else 4.4)
+        with result_figure(result, size, "Indentation in space", where=after(result)) as figure:
+            grid = figure.add_gridspec(1 + around, 1 + wide, width_ratios=(1.5, 1) if wide else None)
+            if wide:
+                draw_cut(figure.add_subplot(grid[:, 0]), result)
+            draw_curve(figure.add_subplot(grid[0, -1]), result)
+            if around:
+                _draw_around(figure.add_subplot(grid[1, -1]), result)
+        return figure
 
 
 def _draw_around(axis: Axes, result: Result) -> None:

@@ -81,7 +81,7 @@ def pressure_bar(axis: Axes, drawn: Any, pressure: Array, limits: tuple[float, f
     bar.outline.set_linewidth(0.5)
 
 
-def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, ...] = (-1, 1), **style: Any) -> Any:
+def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, ...], **style: Any) -> Any:
     """Colours the section, or its mirror image where a side is -1, by nodal values; returns the mappable of the last side."""
     quarters = section.elements[:, QUARTERS].reshape(-1, 3)
     r, z = section.places.T
@@ -90,17 +90,18 @@ def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, 
     return drawn
 
 
-def draw_mesh(axis: Axes, section: Section) -> None:
-    """Boundary and interfaces on both sides, the elements faintly on the left."""
+def draw_mesh(axis: Axes, section: Section, sides: tuple[float, ...], meshed: tuple[float, ...]) -> None:
+    """Boundary and interfaces on the sides (1.0, and -1.0 for the mirror image), the elements faintly on those in ``meshed``."""
     edges, outline = section.edges()
-    mirror = np.array([-1.0, 1.0])
     style: dict[str, Any] = {"colors": "k", "linewidths": 0.25, "alpha": 0.35, "rasterized": True}
-    axis.add_collection(LineCollection(list(section.curves(edges) * mirror), **style))
-    for side in (mirror, 1.0):
-        axis.add_collection(LineCollection(list(section.curves(edges[outline]) * side), colors="k", linewidths=0.9))
+    for side in sides:
+        mirror = np.array([side, 1.0])
+        if side in meshed:
+            axis.add_collection(LineCollection(list(section.curves(edges) * mirror), **style))
+        axis.add_collection(LineCollection(list(section.curves(edges[outline]) * mirror), colors="k", linewidths=0.9))
 
 
-def draw_body(axis: Axes, distance: Array, grid: tuple[Array, Array], sides: tuple[float, ...] = (-1, 1)) -> None:
+def draw_body(axis: Axes, distance: Array, grid: tuple[Array, Array], sides: tuple[float, ...]) -> None:
     """A rigid body filled from its signed distance on a grid (r, z) in mm, mirrored where a side is -1."""
     r, z = grid
     for side in sides:

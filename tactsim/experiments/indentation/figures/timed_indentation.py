@@ -11,56 +11,47 @@ from matplotlib.figure import Figure
 from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
 from tactsim.experiments.indentation.scene import TimedIndentationScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result
 
 COMPUTED_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
+HISTORIES = (("reaction_force", "force", "N"), ("displacement", "displacement", "m"))
 DECADES = 1e3
 """Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
 
 
-class TimedIndentationFigures(ResultFigures):
-    """One figure: section beside the histories."""
+class TimedIndentationFigures(SingleFigure):
+    """Section beside the histories."""
 
     kind: Literal["timed_indentation"] = "timed_indentation"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``timed_indentation.png``, unless no step was accepted."""
-        return {"timed_indentation.png": Plot(lambda: timed_indentation_figure(result))} if result.steps else {}
-
-
-def timed_indentation_figure(result: Result) -> Figure:
-    """Section (if the result has fields) and histories of a timed indentation."""
-    histories = [("reaction_force", "force", "N"), ("displacement", "displacement", "m")]
-    compared = "closed_form_difference" in result.steps[-1].values
-    with styled():
-        figure = new_figure(11.0 if result.frames else 6.0, 5.6 if compared else 4.6)
-        rows = len(histories) + compared
-        grid = figure.add_gridspec(rows, 2 if result.frames else 1, width_ratios=(1.3, 1) if result.frames else None)
-        if result.frames:
-            draw_contact_section(figure.add_subplot(grid[:, 0]), result, result.steps[-1].values["displacement"])
-        axes = [figure.add_subplot(grid[row, -1]) for row in range(rows)]
-        for axis, (name, words, unit) in zip(axes, histories, strict=False):
-            _draw_history(axis, result, (name, words, unit))
-        if compared:
-            _draw_difference(axes[-1], result)
-        axes[-1].set_xlabel("time in s")
-        for axis in axes[:-1]:
-            axis.tick_params(labelbottom=False)
-        entitle(figure, _title(result))
-        mark_failure(figure, result, f" at {result.steps[-1].values['time']:.4g} s")
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Section (if the result has fields) and histories of a timed indentation."""
+        last, has_section = result.steps[-1].values, bool(result.frames)
+        compared = "closed_form_difference" in last
+        size, where = (11.0 if has_section else 6.0, 5.6 if compared else 4.6), f" at {last['time']:.4g} s"
+        with result_figure(result, size, _title(result), where=where) as figure:
+            rows = len(HISTORIES) + compared
+            grid = figure.add_gridspec(rows, 1 + has_section, width_ratios=(1.3, 1) if has_section else None)
+            if has_section:
+                draw_contact_section(figure.add_subplot(grid[:, 0]), result, last["displacement"])
+            axes = [figure.add_subplot(grid[row, -1]) for row in range(rows)]
+            for axis, (name, words, unit) in zip(axes, HISTORIES, strict=False):
+                _draw_history(axis, result, name, words, unit)
+            if compared:
+                _draw_difference(axes[-1], result)
+            axes[-1].set_xlabel("time in s")
+            for axis in axes[:-1]:
+                axis.tick_params(labelbottom=False)
+        return figure
 
 
 def _title(result: Result) -> str:
     scene = result.scene_as(TimedIndentationScene)
-    return result.title or f"Prescribed {scene.control} on a rigid {scene.body.kind}"
+    return f"Prescribed {scene.control} on a rigid {scene.body.kind}"
 
 
-def _draw_history(axis: Axes, result: Result, what: tuple[str, str, str]) -> None:
-    name, words, unit = what
+def _draw_history(axis: Axes, result: Result, name: str, words: str, unit: str) -> None:
     time, values = result.history_values("time"), result.history_values(name)
     factor, prefixed = scale_of(float(np.abs(values).max()), unit)
     axis.plot(time, factor * values, ".-", color=COMPUTED_COLOUR, markersize=4, linewidth=1, label="finite elements")

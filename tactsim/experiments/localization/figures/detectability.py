@@ -13,8 +13,7 @@ from matplotlib.patches import Patch
 
 from tactsim.array import Array
 from tactsim.experiments.localization.scene import DetectabilityScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -27,33 +26,29 @@ NEVER = "#d0d7de"
 """Colour of the radii that do not fit at a depth."""
 
 
-class DetectabilityFigures(ResultFigures):
-    """One figure."""
+class DetectabilityFigures(SingleFigure):
+    """The smallest radius over the depth."""
 
     kind: Literal["detectability"] = "detectability"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``detectability.png``, of a complete result."""
-        complete = all(name in result.quantities for name in PANELS)
-        return {"detectability.png": Plot(lambda: detectability_figure(result))} if complete else {}
+    def can_draw(self, result: Result) -> bool:
+        """Whether the result is complete."""
+        return all(name in result.quantities for name in PANELS)
 
-
-def detectability_figure(result: Result) -> Figure:
-    """Smallest radius over depth, a panel for either noise, a colour for each matrix and a line for each stiffness."""
-    values: Any = {name: quantity.value for name, quantity in result.quantities.items()}
-    colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(values["matrices"])))
-    with styled():
-        figure = new_figure(10.4, 5.0)
-        axes = figure.subplots(1, 2, sharey=True)
-        for axis, (name, words) in zip(axes, PANELS.items(), strict=True):
-            radii = np.array(values[name], dtype=float)
-            _draw(axis, radii, 1e3 * np.array(values["depths"]), colours)
-            _name_curves(axis, radii, values, colours)
-            axis.set_title(words, loc="left")
-        axes[0].set_ylabel("smallest radius found in mm")
-        figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
-        entitle(figure, _title(result))
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """Smallest radius over depth, a panel for either noise, a colour for each matrix and a line for each stiffness."""
+        values: Any = {name: quantity.value for name, quantity in result.quantities.items()}
+        colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(values["matrices"])))
+        with result_figure(result, (10.4, 5.0), "Smallest lump found", remark=_wanted(result)) as figure:
+            axes = figure.subplots(1, 2, sharey=True)
+            for axis, (name, words) in zip(axes, PANELS.items(), strict=True):
+                radii = np.array(values[name], dtype=float)
+                _draw(axis, radii, 1e3 * np.array(values["depths"]), colours)
+                _name_curves(axis, radii, values, colours)
+                axis.set_title(words, loc="left")
+            axes[0].set_ylabel("smallest radius found in mm")
+            figure.legend(handles=_legend(values, colours), loc="outside lower center", ncols=4, fontsize=8.5)
+        return figure
 
 
 def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
@@ -109,7 +104,7 @@ def _legend(values: Any, colours: Array) -> list[Any]:
     return [*handles, Patch(color=NEVER, label="reaches the upper face")]
 
 
-def _title(result: Result) -> str:
-    scene, title = result.scene_as(DetectabilityScene), result.title or "Smallest lump found"
+def _wanted(result: Result) -> str:
+    scene = result.scene_as(DetectabilityScene)
     share, alarms = 100 * scene.probability, 100 * scene.false_alarms
-    return f"{title}: {share:g} % found at {alarms:g} % false alarms, noise {format_quantity(scene.noise, 'N')}"
+    return f"{share:g} % found at {alarms:g} % false alarms, noise {format_quantity(scene.noise, 'N')}"

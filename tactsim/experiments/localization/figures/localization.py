@@ -22,6 +22,6 @@ class LocalizationFigures(ResultFigures):
         """``views.png`` and ``space.png``; the last needs a renderer."""
         if not has_views(result):
             return {}
-        drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(localized(result), result.title))}
+        drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(result, localized(result)))}
         drawings[SPACE] = Plot(lambda: space_figure(result))
         return drawings

@@ -12,12 +12,21 @@ from matplotlib.patches import Patch
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LoadedTaxels
-from tactsim.experiments.grasp.figures.view import FROM_ABOVE, TISSUE_COLOUR, annotate, framing_camera, jaw_surfaces, pressure_bar
+from tactsim.experiments.grasp.figures.view import (
+    BOX,
+    BOX_TRIANGLES,
+    FROM_ABOVE,
+    TISSUE_COLOUR,
+    annotate,
+    framing_camera,
+    jaw_surfaces,
+    pressure_bar,
+)
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import entitle, new_figure, styled
+from tactsim.plotting.canvas import result_figure
 from tactsim.plotting.off_screen import Surface, pictures
 from tactsim.results import Result
 
@@ -30,8 +39,6 @@ WITHIN = 2e-3
 """Distance from the faces of the block, over its size, at which bodies are cut."""
 UNKNOWN_RADIUS = 0.06
 """Radius over the block's height with which the place of an inclusion of unknown size is marked."""
-_BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
-_SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 
 
 def space_figure(result: Result) -> Figure:
@@ -43,8 +50,7 @@ def space_figure(result: Result) -> Figure:
     camera = framing_camera(outside, FROM_ABOVE)
     inclusions = [replace(body, seen_by=(k,)) for k, bodies in enumerate(scenes.values()) for body in bodies]
     images = pictures([*outside, *inclusions], [camera] * len(scenes))
-    with styled():
-        figure = new_figure(12.0, 5.9)
+    with result_figure(result, (12.0, 5.9), "Localization", remark=result.reason.partition(";")[0]) as figure:
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
         for axis, image, (words, inside) in zip(axes, images, scenes.items(), strict=True):
@@ -53,13 +59,7 @@ def space_figure(result: Result) -> Figure:
             axis.set_title(words if inside else f"{words}: none", loc="left")
             annotate(axis, grasp, camera)
         _scale(figure, axes, grasp, shown)
-        entitle(figure, _title(result))
     return figure
-
-
-def _title(result: Result) -> str:
-    title = result.title or "Localization"
-    return f"{title}: {result.reason.partition(';')[0]}" if result.reason else title
 
 
 def _scale(figure: Figure, axes: Any, grasp: LoadedTaxels, shown: ViewedGrasp) -> None:
@@ -78,7 +78,7 @@ def _grasp(shown: ViewedGrasp) -> LoadedTaxels:
 
 
 def _tissue(size: Array) -> Surface:
-    return Surface(_BOX * size, _SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3), TISSUE_COLOUR, opacity=0.18, creases=True)
+    return Surface(BOX * size, BOX_TRIANGLES, TISSUE_COLOUR, opacity=0.18, creases=True)
 
 
 def _true(shown: ViewedGrasp) -> Iterator[Surface]:

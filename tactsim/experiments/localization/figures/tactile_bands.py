@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.experiments.localization.scene import BandsScene
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.localization.bands import GREY_LEVELS, band_intensities
-from tactsim.plotting.canvas import Plot, entitle, new_figure, styled
+from tactsim.plotting.canvas import Plot, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -21,7 +21,7 @@ BAND_HEIGHT, SECTION_HEIGHT = 0.75, 2.6
 
 
 class TactileBandsFigures(ResultFigures):
-    """One figure."""
+    """The bands."""
 
     kind: Literal["tactile_bands"] = "tactile_bands"
 
@@ -41,16 +41,14 @@ def bands_figure(result: Result) -> Figure:
         pictures += [(words, levels[None]), (f"{array}, {band.size} pixels", band[None])]
     if "section" in result.quantities:
         section = result.quantities["section"].numbers
-    with styled():
-        heights = [BAND_HEIGHT] * len(pictures) + ([] if section is None else [SECTION_HEIGHT])
-        figure = new_figure(7.0, 1.0 + sum(heights) + 0.25 * len(heights))
+    heights = [BAND_HEIGHT] * len(pictures) + ([] if section is None else [SECTION_HEIGHT])
+    with result_figure(result, (7.0, 1.0 + sum(heights) + 0.25 * len(heights)), "Readings as bands") as figure:
         axes = figure.subplots(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
         for axis, (words, levels) in zip(axes, pictures, strict=False):
             _draw(axis, levels, words)
         if section is not None:
             _draw(axes[-1], band_intensities(section, float(section.max()) or 1.0), "between the arrays, the upper one above")
         axes[-1].set_xlabel("pixel")
-        entitle(figure, result.title or "Readings as bands")
     return figure
 
 

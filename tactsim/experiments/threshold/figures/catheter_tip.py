@@ -13,10 +13,7 @@ from matplotlib.patches import Circle, Patch, Rectangle, Wedge
 
 from tactsim.array import Array
 from tactsim.experiments.threshold.scene import CatheterTipScene
-from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, styled
-from tactsim.plotting.colours import PRESSURE_COLOURS
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.canvas import PRESSURE_COLOURS, SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 TINTS = ("#ffffff", "#d9d9d9", "#f0f0f0", "#c4c4c4", "#e4e4e4")
@@ -27,33 +24,25 @@ MARGIN = 1.6
 """Half of the picture's width over the radius of the tip."""
 
 
-class CatheterTipFigures(ResultFigures):
-    """One figure: the map beside the thresholds around the tip."""
+class CatheterTipFigures(SingleFigure):
+    """The map beside the thresholds around the tip; nothing unless a sensor was read."""
 
     kind: Literal["catheter_tip"] = "catheter_tip"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``catheter_tip.png``, unless no sensor was read."""
-        return {"catheter_tip.png": Plot(lambda: catheter_tip_figure(result))} if result.steps else {}
-
-
-def catheter_tip_figure(result: Result) -> Figure:
-    """The tip on the surface (Fig. 7.1), and the thresholds over the angle."""
-    with styled():
-        figure = new_figure(11.0, 4.9)
-        left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
-        pressures = KILOPASCALS * result.history_values("reported_pressure")
-        largest = float(np.nanmax(pressures)) if np.isfinite(pressures).any() else 1.0
-        colours = ScalarMappable(Normalize(0.0, largest), PRESSURE_COLOURS)
-        _draw_surface(left, result)
-        _draw_sensors(left, result, pressures, colours)
-        bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)
-        bar.set_label("reported threshold pressure in kPa")
-        _draw_thresholds(right, result, pressures)
-        title = result.title or "Threshold sensors around the tip of a catheter"
-        entitle(figure, title, _answer(result))
-        mark_failure(figure, result)
-    return figure
+    def figure(self, result: Result) -> Figure:
+        """The tip on the surface (Fig. 7.1), and the thresholds over the angle."""
+        title = "Threshold sensors around the tip of a catheter"
+        with result_figure(result, (11.0, 4.9), title, below=_answer(result)) as figure:
+            left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
+            pressures = KILOPASCALS * result.history_values("reported_pressure")
+            largest = float(np.nanmax(pressures)) if np.isfinite(pressures).any() else 1.0
+            colours = ScalarMappable(Normalize(0.0, largest), PRESSURE_COLOURS)
+            _draw_surface(left, result)
+            _draw_sensors(left, result, pressures, colours)
+            bar = figure.colorbar(colours, ax=left, pad=0.02, aspect=25)
+            bar.set_label("reported threshold pressure in kPa")
+            _draw_thresholds(right, result, pressures)
+        return figure
 
 
 def _answer(result: Result) -> str:

@@ -15,8 +15,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, entitle, new_figure, scale_of, styled
-from tactsim.plotting.failure import mark_failure
+from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -59,8 +58,10 @@ def threshold_error_figure(result: Result) -> Figure:
     """For each noise a map of the error over speed and cut-off, and below what makes the mean error at the middle cut-off."""
     noises = result.scene_as(ThresholdTrialScene).noises
     shown = np.unique(np.linspace(0, len(noises) - 1, min(len(noises), MOST_MAPS)).round().astype(int))
-    with styled():
-        figure = new_figure(max(8.5, 1.6 + 3.7 * len(shown)), 7.2)
+    force = result.quantities["threshold_force"].value
+    true_force = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
+    words = f"true threshold {true_force}; in the squares: mean ± standard deviation of the error in %"
+    with result_figure(result, (max(8.5, 1.6 + 3.7 * len(shown)), 7.2), below=words) as figure:
         axes = figure.subplots(2, len(shown), squeeze=False, sharey="row", height_ratios=(1.15, 1))
         norm = _norm(result)
         for column, noise in enumerate(shown):
@@ -77,15 +78,7 @@ def threshold_error_figure(result: Result) -> Figure:
         bar.ax.yaxis.set_major_locator(FixedLocator([tick for tick in TICKS if low <= tick <= high]))
         bar.ax.yaxis.set_minor_locator(NullLocator())
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
-        force = result.quantities["threshold_force"].value
-        true_force = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
-        _headed(figure, result, f"true threshold {true_force}; in the squares: mean ± standard deviation of the error in %")
-        mark_failure(figure, result)
     return figure
-
-
-def _headed(figure: Figure, result: Result, words: str) -> None:
-    entitle(figure, result.title, words)
 
 
 def _grid(result: Result, name: str) -> Array:
@@ -172,8 +165,10 @@ def threshold_signal_figure(result: Result) -> Figure:
     capture = _capture(result)
     result = _around(capture, result)
     time = result.history_values("time")
-    with styled():
-        figure = new_figure(8.0, 5.6)
+    touch = ((capture.speed, "m/s"), (capture.noise, "V"), (capture.cutoff, "Hz"))
+    speed, noise, cutoff = (format_quantity(value, unit) for value, unit in touch)
+    words = f"One touch at {speed}, white noise {noise} rms, low pass {cutoff}"
+    with result_figure(result, (8.0, 5.6), below=words) as figure:
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(1.4, 1))
         large, unit = scale_of(float(result.history_values("large_reading").max()), "N")
         small, small_unit = scale_of(float(result.history_values("small_reading").max()), "N")
@@ -191,10 +186,6 @@ def threshold_signal_figure(result: Result) -> Figure:
         axes[1].set(xlabel="time in s", ylabel=f"small sensor in {small_unit}", xlim=(time[0], time[-1]))
         for axis in axes:
             axis.legend(fontsize=8, loc="upper left")
-        speed, noise, cutoff = (
-            format_quantity(value, unit) for value, unit in ((capture.speed, "m/s"), (capture.noise, "V"), (capture.cutoff, "Hz"))
-        )
-        _headed(figure, result, f"One touch at {speed}, white noise {noise} rms, low pass {cutoff}")
     return figure
 
 

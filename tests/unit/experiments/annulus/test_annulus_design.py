@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import unmarked_figures
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.force_factor import force_factor, rise_factor
 from tactsim.case import load_case
 from tactsim.errors import CaseError
 from tactsim.experiments.annulus.annulus_design import AnnulusDesign, AtrialTissue
-from tactsim.plotting.result_figures import figures_for
+from tactsim.plotting import figures_for
 from tactsim.results import Status
 from tactsim.results.document import document_text, parse_document, result_of
 
@@ -150,6 +151,7 @@ def test_the_shipped_case_runs_and_is_drawn():
     (name, draw), *rest = figures_for(result).items()
     assert (name, rest) == ("annulus_design.png", [])
     assert draw().startswith(b"\x89PNG")
+    assert unmarked_figures(result) == []
 
 
 def test_a_map_without_contours_is_drawn():

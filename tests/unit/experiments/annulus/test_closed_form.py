@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scenes import unmarked_figures
 
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.analytic.force_factor import force_factor
@@ -64,6 +65,7 @@ def test_a_pull_and_a_deep_displacement_are_reported_and_drawn():
     pulled = ClosedForm.example().model_copy(update={"loading": pulling}).run()
     assert any("a real contact opens there" in warning for warning in pulled.warnings)
     assert all(draw().startswith(b"\x89PNG") for draw in figures_for(pulled).values())
+    assert unmarked_figures(pulled) == []
 
 
 @pytest.mark.parametrize(

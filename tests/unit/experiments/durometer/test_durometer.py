@@ -13,7 +13,7 @@ from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
-from tactsim.plotting.result_figures import figures_for
+from tactsim.plotting import figures_for
 
 COARSE = MeshSettings(finest=0.5e-3, growth=1.5, adaptive=False)
 HARD = NeoHookean(c10=135e3 / 6)

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 from matplotlib.text import Text
-from scenes import SOLVER
+from scenes import SOLVER, unmarked_figures
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.durometer.figures.durometer import durometer_figure
+from tactsim.experiments.durometer.figures.durometer import DurometerFigures
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord
@@ -34,7 +34,7 @@ def texts(figure):
 
 
 def test_the_reading_is_reported_with_its_interval():
-    written = texts(durometer_figure(made_up(**READ)))
+    written = texts(DurometerFigures().figure(made_up(**READ)))
     for words in ("A title", "63.0", "(62.9 to 63.2)", "spring", "Hertz", "reading", "depth of the indentor in mm"):
         assert words in written
     assert "bottoms out" not in written
@@ -42,13 +42,13 @@ def test_the_reading_is_reported_with_its_interval():
 
 
 def test_off_the_scale_is_reported():
-    assert "bottoms out: below 0" in texts(durometer_figure(made_up(reading=0.0)))
-    assert "no reading" in texts(durometer_figure(made_up()))
+    assert "bottoms out: below 0" in texts(DurometerFigures().figure(made_up(reading=0.0)))
+    assert "no reading" in texts(DurometerFigures().figure(made_up()))
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    written = texts(durometer_figure(replace(made_up(), status=status)))
+    written = texts(DurometerFigures().figure(replace(made_up(), status=status)))
     assert f"{status.upper()} after a displacement of 2.5 mm: because" in written
 
 
@@ -56,4 +56,5 @@ def test_png_by_name_and_nothing_without_steps():
     (name, draw), *rest = figures_for(made_up(**READ)).items()
     assert (name, rest) == ("durometer.png", [])
     assert draw().startswith(b"\x89PNG")
+    assert unmarked_figures(made_up(**READ)) == []
     assert figures_for(replace(made_up(), steps=())) == {}

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 from matplotlib.text import Text
+from scenes import unmarked_figures
 
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3
-from tactsim.experiments.durometer.figures.elastomer_ranking import elastomer_ranking_figure
+from tactsim.experiments.durometer.figures.elastomer_ranking import ElastomerRankingFigures
 from tactsim.experiments.durometer.scene import ElastomerRankingScene
 from tactsim.plotting import figures_for
 from tactsim.results import Result, Status, StepRecord
@@ -31,14 +32,14 @@ def texts(figure):
 
 
 def test_elastomers_shapes_and_ties_are_named():
-    written = texts(elastomer_ranking_figure(made_up()))
+    written = texts(ElastomerRankingFigures().figure(made_up()))
     for words in (*(one.name for one in TABLE_3_3), "B1-A stable", "durometer", "hand", "sensor", "3 tied", "5 tied"):
         assert words in written
     assert "FAILED" not in written
 
 
 def test_markers_and_ranks_stand_where_the_numbers_are():
-    readings, _, ranks = elastomer_ranking_figure(made_up()).axes
+    readings, _, ranks = ElastomerRankingFigures().figure(made_up()).axes
     offsets = np.asarray(readings.collections[0].get_offsets())
     np.testing.assert_allclose(offsets, np.stack([[48, 45, 42, 36, 13, 4, 1], PREDICTED[0]], axis=1))
     hardest, softest = ranks.lines[0].get_ydata(), ranks.lines[6].get_ydata()
@@ -51,11 +52,12 @@ def test_what_is_missing_leaves_a_gap():
         replace(step, values={k: v for k, v in step.values.items() if k != "predicted_reading"}) for step in made_up().steps[:7]
     ]
     result = replace(made_up(), steps=(*cut, *made_up().steps[7:10]), status=Status.INTERRUPTED, reason="stopped")
-    assert "INTERRUPTED: stopped" in texts(elastomer_ranking_figure(result))
+    assert "INTERRUPTED: stopped" in texts(ElastomerRankingFigures().figure(result))
 
 
 def test_png_by_name_and_nothing_without_a_shape():
     (name, draw), *rest = figures_for(made_up()).items()
     assert (name, rest) == ("elastomer_ranking.png", [])
     assert draw().startswith(b"\x89PNG")
+    assert unmarked_figures(made_up()) == []
     assert figures_for(replace(made_up(), steps=made_up().steps[:6])) == {}

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.text import Text
 
 from tactsim.experiments.film.calibration import ForceCalibration
-from tactsim.experiments.film.figures.calibration import force_calibration_figure
+from tactsim.experiments.film.figures.calibration import ForceCalibrationFigures
 from tactsim.experiments.film.force_calibration_source import SyntheticCalibration
 from tactsim.plotting import figures_for
 from tactsim.results import Result, Status
@@ -43,7 +43,7 @@ def test_it_is_found_by_the_kind_and_drawn(result):
 
 
 def test_it_says_line_band_and_limits(result):
-    figure = force_calibration_figure(result)
+    figure = ForceCalibrationFigures().figure(result)
     written = words(figure)
     offset = result.quantities["intercept"].value / result.quantities["slope"].value
     assert f"F = {1e-3 / result.quantities['slope'].value:.2f} C − {offset:.3f} (N, mS)" in written
@@ -56,11 +56,11 @@ def test_it_says_line_band_and_limits(result):
 
 
 def test_saturated_readings_are_shown_as_left_out():
-    assert "saturated, left out" in words(force_calibration_figure(calibrated(converter=Converter(high=2.0))))
+    assert "saturated, left out" in words(ForceCalibrationFigures().figure(calibrated(converter=Converter(high=2.0))))
 
 
 def test_many_sensors_have_a_line_each():
-    figure = force_calibration_figure(calibrated(sensors=18))
+    figure = ForceCalibrationFigures().figure(calibrated(sensors=18))
     assert "lines of 18 sensors" in words(figure)
     assert len(figure.axes[0].lines) == 36
     assert len(figure.axes[0].get_legend().get_texts()) == 3

@@ -11,7 +11,7 @@ from mutants import assert_kills
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
-from tactsim.experiments.film.figures.thermogravimetry import thermogravimetry_figure
+from tactsim.experiments.film.figures.thermogravimetry import ThermogravimetryFigures
 from tactsim.experiments.film.thermogravimetry import ThermogravimetricAnalysis
 from tactsim.plotting import figures_for
 from tactsim.sensors.films.composite_library import named_composite
@@ -87,7 +87,7 @@ def test_the_case_with_both_densities():
     for number, (low, high) in enumerate(zip(*_exponents(result), strict=True)):
         assert result.quantities["exponent_deviation"].value[number] == pytest.approx(abs(high - low) / 2, rel=2e-3)
     assert any("E27" in warning for warning in result.warnings)
-    words = " ".join(text.get_text() for text in thermogravimetry_figure(result).findobj(Text))
+    words = " ".join(text.get_text() for text in ThermogravimetryFigures().figure(result).findobj(Text))
     assert "bulk: 0.2875" in words
     assert list(figures_for(result)) == ["thermogravimetry.png"]
 

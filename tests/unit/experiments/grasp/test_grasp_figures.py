@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from scenes import grasp_scene
+from scenes import grasp_scene, unmarked_figures
 
 from tactsim.cli.figures.result_figures import rendered_figures
 from tactsim.errors import TactsimError
 from tactsim.experiments.grasp.figures import view as grasp_view
 from tactsim.experiments.grasp.figures.grasp import history_figure, maps_figure, section_figure
 from tactsim.experiments.grasp.figures.moment import shown_moment
-from tactsim.experiments.grasp.figures.section import cutting_plane
+from tactsim.experiments.grasp.figures.section import CuttingPlane, cutting_plane
 from tactsim.experiments.grasp.figures.viewed import outline
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
@@ -156,13 +156,12 @@ def test_interfaces_close_every_region_once(frame):
 
 
 def test_plane_passes_the_inclusion_and_crosses_a_long_one(frame):
-    assert cutting_plane(frame, SIZE)[::2] == (1, 1)
-    assert cutting_plane(frame, SIZE)[1] == pytest.approx(20e-3, abs=1e-4)
+    assert cutting_plane(frame, SIZE) == CuttingPlane(1, pytest.approx(20e-3, abs=1e-4), 1)
     rod = np.abs(frame.points[frame.cells["tetra10"]].mean(axis=1)[:, 1:] - [20e-3, 10e-3]).max(axis=1) < 5e-3
     along_x = replace(frame, cell_data={"region [1]": rod.astype(float)})
-    assert cutting_plane(along_x, SIZE)[::2] == (0, 1)
+    assert cutting_plane(along_x, SIZE) == CuttingPlane(0, pytest.approx(20e-3, abs=1e-4), 1)
     bare = replace(frame, cell_data={"region [1]": 0.0 * rod})
-    assert cutting_plane(bare, SIZE) == (1, 20e-3, 0)
+    assert cutting_plane(bare, SIZE) == CuttingPlane(1, 20e-3, 0)
 
 
 def test_outline_of_a_ball_is_that_of_its_disc():
@@ -222,8 +221,10 @@ def test_single_step_without_fields_leaves_the_maps():
     assert figures_for(replace(alone, steps=())) == {}
 
 
-def test_failed_run_is_marked():
-    assert "FAILED" in text_of(maps_figure(made_up(status=Status.FAILED)))
+def test_failed_run_is_marked(frame, monkeypatch):
+    assert "FAILED; the last accepted step is shown: because" in text_of(maps_figure(made_up(status=Status.FAILED)))
+    monkeypatch.setattr(grasp_view, "pictures", lambda surfaces, cameras: [np.zeros((2, 2, 3))] * len(cameras))
+    assert unmarked_figures(made_up(frame=frame)) == []
 
 
 def test_maps_come_first_and_the_view_last(frame):

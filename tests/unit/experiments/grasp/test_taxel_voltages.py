@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scenes import unmarked_figures
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
-from tactsim.plotting.result_figures import figures_for
+from tactsim.plotting import figures_for
 from tactsim.results import Status
 from tactsim.results.writing import write_result
 from tactsim.sensors.matrix_readout import MatrixReadout
@@ -70,6 +71,7 @@ def test_a_stored_grasp_is_read_alike(read_grasp, tmp_path):
     other = MatrixReadoutRun(grasp=str(folder), readout=MatrixReadout(seed=4, scatter=None)).run()
     assert np.abs(value(other, "voltage_upper") - value(read_grasp, "voltage_upper")).max() > 1e-4
     assert figures_for(again)["taxel_voltages.png"]()[:4] == b"\x89PNG"
+    assert unmarked_figures(again) == []
 
 
 def test_a_folder_without_a_grasp_is_refused(tmp_path):

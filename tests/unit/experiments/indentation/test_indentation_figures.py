@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from scenes import SOLVER
+from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
-from tactsim.experiments.indentation.figures.indentation import indentation_figure
+from tactsim.experiments.indentation.figures.indentation import IndentationFigures
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.plotting import figures_for
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
@@ -39,7 +39,7 @@ def texts(figure):
 
 
 def test_threshold_and_title_are_reported():
-    written = texts(indentation_figure(made_up()))
+    written = texts(IndentationFigures().figure(made_up()))
     for words in ("A title", "threshold", "75.45 kPa", "1.6 N", "pressure in kPa", "displacement in"):
         assert words in written
     assert "FAILED" not in written
@@ -49,23 +49,23 @@ def test_a_colour_bar_says_what_lies_beyond_its_colours():
     plain = made_up()
     (frame,) = plain.frames
     singular = {**frame.point_data, "pressure [Pa]": np.array([7.2e4, 1e3, 1e3, 2e3, 3e3, -5e2])}
-    written = texts(indentation_figure(replace(plain, frames=(replace(frame, point_data=singular),))))
+    written = texts(IndentationFigures().figure(replace(plain, frames=(replace(frame, point_data=singular),))))
     assert "arrows: what lies beyond them, up to 72 kPa" in written
     even = np.full(6, 1e3)
     level = replace(plain, frames=(replace(frame, point_data={**frame.point_data, "pressure [Pa]": even}),))
-    assert "arrows" not in texts(indentation_figure(level))
+    assert "arrows" not in texts(IndentationFigures().figure(level))
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    written = texts(indentation_figure(replace(made_up(status), quantities={})))
+    written = texts(IndentationFigures().figure(replace(made_up(status), quantities={})))
     assert f"{status.upper()} after a displacement" in written
     assert "because" in written
 
 
 def test_labels_of_a_run_that_stopped_early_lie_on_nothing():
     early = replace(made_up(Status.FAILED), quantities={}, scene=scene_with(8e-4))
-    figure = indentation_figure(early)
+    figure = IndentationFigures().figure(early)
     figure.canvas.draw()
     section, curve = figure.axes[0], next(axis for axis in figure.axes if "force on the body" in axis.get_ylabel())
     (sensor,) = [text for text in section.texts if "inner sensor" in text.get_text()]
@@ -89,7 +89,7 @@ def drawn_points(axis):
 
 
 def test_rise_reaches_the_recess_on_its_own_axis():
-    figure = indentation_figure(made_up())
+    figure = IndentationFigures().figure(made_up())
     rise = next(axis for axis in figure.axes if "rise" in axis.get_ylabel())
     np.testing.assert_allclose(rise.lines[0].get_ydata()[-1], 0.2)
     assert 0.2 < rise.get_ylim()[1] < 0.3
@@ -99,5 +99,6 @@ def test_png_by_name_and_nothing_without_steps():
     drawings = figures_for(made_up())
     assert list(drawings) == ["indentation.png"]
     assert drawings["indentation.png"]().startswith(b"\x89PNG")
+    assert unmarked_figures(made_up()) == []
     assert figures_for(replace(made_up(), steps=())) == {}
     assert figures_for(replace(made_up(), kind="unheard_of")) == {}

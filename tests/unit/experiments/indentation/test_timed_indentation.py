@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scenes import unmarked_figures
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
@@ -120,6 +121,7 @@ def test_elastic_tissue_has_no_memory_and_a_figure():
     assert np.ptp(history(result, "reaction_force")) < 1e-6 * history(result, "reaction_force")[0]
     assert abs(result.quantities["closed_form_difference"].value) < 0.5, "a fillet of an eighth of the radius costs force"
     assert all(draw().startswith(b"\x89PNG") for draw in figures_for(result).values())
+    assert unmarked_figures(result) == []
     assert any("closed form is meant for" in warning for warning in result.warnings)
 
 

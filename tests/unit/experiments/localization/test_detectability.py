@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scenes import unmarked_figures
 from scipy.special import ndtr, ndtri
 from scipy.stats import ncx2
 
@@ -14,9 +15,9 @@ from tactsim.experiments.localization.detectability_statistics import (
     smallest_radius,
     unit_templates,
 )
-from tactsim.experiments.localization.figures.detectability import detectability_figure
+from tactsim.experiments.localization.figures.detectability import DetectabilityFigures
 from tactsim.localization.lump_response import LumpResponse
-from tactsim.plotting.result_figures import figures_for
+from tactsim.plotting import figures_for
 
 RADII = np.array([2e-3, 4e-3, 6e-3, 8e-3])
 
@@ -106,8 +107,9 @@ def test_what_is_not_found_is_null_and_the_figure_is_drawn(run):
     result = run(noise=50.0, depths=(3e-3, 10e-3)).run()
     assert result.quantities["smallest_radius"].value[0][0] == [None, None]
     assert figures_for(result)["detectability.png"]()[:4] == b"\x89PNG"
+    assert unmarked_figures(result) == []
     some = run(depths=(3e-3, 6e-3, 10e-3)).run()
-    axes = detectability_figure(some).axes
+    axes = DetectabilityFigures().figure(some).axes
     lines = [line for line in axes[0].lines if len(line.get_xdata())]
     expected = np.array(some.quantities["smallest_radius"].value, dtype=float)
     np.testing.assert_allclose(lines[0].get_ydata(), 1e3 * expected[0, 0])

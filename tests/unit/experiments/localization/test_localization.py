@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from scenes import grasp_scene
+from scenes import grasp_scene, unmarked_figures
 
 from tactsim.case.loading import load_case
 from tactsim.errors import CaseError, InputError, StorageError
 from tactsim.experiments.grasp.figures.viewed import outline
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
+from tactsim.experiments.localization.figures import space
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.localization import Localization
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
-from tactsim.plotting.result_figures import figures_for
+from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
 
@@ -93,7 +94,7 @@ def test_plain_tissue_has_nothing_in_it(folders):
     assert figures_for(result)[VIEWS]()[:4] == b"\x89PNG"
 
 
-def test_the_views_show_the_true_and_the_estimated_place(folders):
+def test_the_views_show_the_true_and_the_estimated_place(folders, monkeypatch):
     result = run(folders)
     grasp_seen = localized(result)
     np.testing.assert_allclose(grasp_seen.signal, BALL, atol=1e-12)
@@ -104,7 +105,9 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
     within = 1e3 * np.array([SPHERE.center[0], SPHERE.center[2]])
     covered = np.hypot(first[None] - within[0], second[:, None] - within[1]) < 4.9
     assert (distance[covered] < 0).all()
-    figure = views_figure(localized(result), result.title)
+    monkeypatch.setattr(space, "pictures", lambda surfaces, cameras: [np.zeros((2, 2, 3))] * len(cameras))
+    assert unmarked_figures(result) == []
+    figure = views_figure(result, localized(result))
     titles = [axis.get_title(loc="left") for axis in figure.axes]
     assert sum("view" in title for title in titles) == 3
     front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("front"))
@@ -116,7 +119,8 @@ def test_the_views_show_the_true_and_the_estimated_place(folders):
 
 
 def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
-    figure = views_figure(localized(run(folders)), "")
+    result = run(folders)
+    figure = views_figure(result, localized(result))
     for side, forces in zip(("upper", "lower"), BALL, strict=True):
         axis = next(axis for axis in figure.findobj(Axes) if axis.get_title(loc="left") == f"{side} jaw in mN")
         written = {text.get_position(): text.get_text() for text in axis.texts}
@@ -149,7 +153,8 @@ def test_several_places_are_all_named_in_the_result(folders, tmp_path):
 
 
 def test_pictures_reach_over_the_outer_taxels(folders):
-    figure = views_figure(localized(run(folders)), "")
+    result = run(folders)
+    figure = views_figure(result, localized(result))
     front = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("front"))
     mesh = next(part for part in front.collections if isinstance(part, QuadMesh))
     corners = mesh.get_coordinates()

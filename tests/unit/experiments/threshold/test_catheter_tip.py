@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from tactsim.case import load_case
 from tactsim.errors import CaseError
 from tactsim.experiments.threshold.catheter_tip import CatheterTip
-from tactsim.experiments.threshold.figures.catheter_tip import catheter_tip_figure
+from tactsim.experiments.threshold.figures.catheter_tip import CatheterTipFigures
 from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.plotting import figures_for
 from tactsim.results import Status
@@ -113,7 +113,7 @@ def test_a_tip_that_is_not_pressed_enough_has_no_answer():
     result = run(press=0.05e-3)
     assert result.quantities["chance_of_no_answer"].value == 1
     assert "hardest_sensor" not in result.quantities
-    assert "no sensor found" in " ".join(text.get_text() for text in catheter_tip_figure(result).findobj(Text))
+    assert "no sensor found" in " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
 
 
 def test_the_same_seed_gives_the_same_result():
@@ -126,7 +126,7 @@ def test_figure():
     drawings = figures_for(result)
     assert list(drawings) == ["catheter_tip.png"]
     assert drawings["catheter_tip.png"]().startswith(b"\x89PNG")
-    words = " ".join(text.get_text() for text in catheter_tip_figure(result).findobj(Text))
+    words = " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
     for label in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
         assert label in words
     none = run(press=0.05e-3)
