@@ -67,6 +67,16 @@ class Case(FrozenModel):
             result = self.experiment.run(progress, time_limit=time_limit)
         return replace(result, title=self.title, provenance=self.provenance(), warnings=(*result.warnings, *caught.lines()))
 
+    def at_rest(self) -> Result:
+        """What would be computed: the tissue with its mesh and the bodies that press on it, as a result that has a sketch.
+
+        Raises
+        ------
+        InputError
+            If the kind of the experiment has no body with a mesh.
+        """
+        return replace(self.experiment.at_rest(), title=self.title, provenance=self.provenance())
+
     def provenance(self, *, case_file: str = "", overrides: Sequence[str] = ()) -> dict[str, Any]:
         """What a result of this case rests on; see ``results.provenance``."""
         seeds = self.experiment.seeds()

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.errors import InputError
 from tactsim.outside.text import one_line
 
+if TYPE_CHECKING:
+    from tactsim.results import Result
+
 NAME = "show"
-SUMMARY = "print a stored result or data set, save its figure, or open the live page"
+SUMMARY = "print a stored result, a data set or a case, save its figure, or open the live page"
 DESCRIPTION = """\
 Prints the quantities of a stored result, or the counts and variables of a data set, with their units;
---save draws its main figure, in the form that the ending of the file names. --web serves the live page
+--save draws its main figure, in the form that the ending of the file names. Of a case file, or the name
+of a shipped case, it prints what would be computed and what looks wrong in it, and --save draws the tissue
+at rest with its mesh and what presses on it: seconds, for nothing is solved. --web serves the live page
 of a grasp or a data set of grasps on this machine, under an address with a random token, until Ctrl-C.
 --live shows frames as they come, too.
 """
@@ -22,6 +28,7 @@ examples:
   tactsim show results/annulus_icf
   tactsim show results/annulus_icf --save annulus.pdf
   tactsim show lumps.zarr --save taxels.png
+  tactsim show my_annulus.yaml --save sketch.png
   tactsim show results/grasp_lump_icf --web --reference results/grasp_plain
   my_sensor | tactsim show --web --live -
 
@@ -35,14 +42,15 @@ null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_up
 WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
 
+CASE_ENDINGS = (".yaml", ".yml")
 LONGEST_KIND = 60
 """Characters of a foreign kind that a message shows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    words = "folder that tactsim run or sweep wrote; may be left out with --live"
-    parser.add_argument("result", metavar="RESULT_OR_STORE", type=Path, nargs="?", help=words)
+    words = "folder that tactsim run or sweep wrote, or a case; may be left out with --live"
+    parser.add_argument("result", metavar="RESULT_STORE_OR_CASE", type=Path, nargs="?", help=words)
     parser.add_argument("--save", metavar="FILE", type=Path, help="save the main figure as .png, .svg or .pdf")
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
     words = "frames: a file that grows, - for standard input (a named pipe: --live - < PIPE), or tcp://127.0.0.1:PORT"
@@ -75,16 +83,44 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"{', '.join(given)}: for the live page only; add --web")
     if arguments.result is None:
         raise InputError(
-            "RESULT_OR_STORE is missing; name a folder that tactsim run or sweep wrote, or --web --live SOURCE; "
+            "RESULT_STORE_OR_CASE is missing; name a folder that tactsim run or sweep wrote, a case, or --web --live SOURCE; "
             "tactsim show --help says more"
         )
     if (arguments.result / "zarr.json").is_file():
         return _show_data_set(arguments)
+    if (case := _case_of(arguments.result)) is not None:
+        return _show_case(case, arguments.save)
     return _show_result(arguments)
 
 
+def _case_of(named: Path) -> Path | None:
+    """The case file that an argument names, itself or as a shipped case; None if it names something else."""
+    from tactsim.shipped import CASES, case_path
+
+    if named.suffix in CASE_ENDINGS and not named.is_dir():
+        return named
+    return case_path(named) if not named.exists() and (CASES / f"{named}.yaml").is_file() else None
+
+
+def _show_case(path: Path, save: Path | None) -> int:
+    """What a case would compute, in words and as a picture of its bodies at rest."""
+    from tactsim.case.loading import load_case
+    from tactsim.cli.figures.result_figures import form_of
+
+    form, result = None if save is None else form_of(save), load_case(path).at_rest()
+    console.out(one_line(result.title or path.stem))
+    console.out(f"  {result.kind}, {result.reason}")
+    for line in (*result.assumptions, *(f"warning: {warning}" for warning in result.warnings)):
+        console.out(f"  {one_line(line)}")
+    if save is None or form is None:
+        console.out("  --save sketch.png draws the tissue with its mesh and what presses on it")
+    else:
+        _save_main_figure(result, save, form)
+    return 0
+
+
 def _show_result(arguments: argparse.Namespace) -> int:
-    from tactsim.cli.figures.result_figures import form_of, rendered_figures
+    from tactsim.cli.figures.result_figures import form_of
     from tactsim.cli.report import result_report
     from tactsim.results import read_result
 
@@ -97,16 +133,21 @@ def _show_result(arguments: argparse.Namespace) -> int:
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")
     if form is not None:
-        from tactsim.storage.files import replace_file
-
-        figures, warnings = rendered_figures(stored.result, form, main_only=True)
-        for warning in warnings:
-            console.note(f"warning: {one_line(warning)}")
-        if not figures:
-            raise InputError(f"a result of kind {one_line(stored.result.kind, LONGEST_KIND)!r} has no figure that can be drawn")
-        replace_file(arguments.save, next(iter(figures.values())))
-        console.out(f"figure {one_line(arguments.save)}")
+        _save_main_figure(stored.result, arguments.save, form)
     return 0
+
+
+def _save_main_figure(result: Result, save: Path, form: str) -> None:
+    from tactsim.cli.figures.result_figures import rendered_figures
+    from tactsim.storage.files import replace_file
+
+    figures, warnings = rendered_figures(result, form, main_only=True)
+    for warning in warnings:
+        console.note(f"warning: {one_line(warning)}")
+    if not figures:
+        raise InputError(f"a result of kind {one_line(result.kind, LONGEST_KIND)!r} has no figure that can be drawn")
+    replace_file(save, next(iter(figures.values())))
+    console.out(f"figure {one_line(save)}")
 
 
 def _show_data_set(arguments: argparse.Namespace) -> int:

@@ -10,11 +10,11 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, Self, TypeVar, final
 
 from tactsim.deadline import check_time, time_limit
-from tactsim.errors import Collapsed, ConvergenceError, OutOfMemory, OutOfTime, Unfinished
+from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation
 from tactsim.kind import CaseKind
@@ -123,6 +123,28 @@ class Runnable(CaseKind):
         Unfinished
             If it cannot begin: there is nothing to keep yet.
         """
+
+    def unloaded(self) -> Findings:
+        """The body and what will press on it, before the first step: their frame and scene.
+
+        Raises
+        ------
+        InputError
+            If the kind has no body with a mesh, or something that the experiment names cannot be used.
+        """
+        raise InputError(f"{self.kind}: nothing to show at rest; indentations and grasps have a body with a mesh")
+
+    @final
+    def at_rest(self) -> Result:
+        """What would be computed, as the result of a run that ended before its first step; its figure is a sketch of it.
+
+        Raises
+        ------
+        InputError
+            As `unloaded`.
+        """
+        result = _result(self, self.unloaded(), (Status.INTERRUPTED, "at rest; nothing is computed"), {})
+        return replace(result, warnings=(*self.doubts(), *result.warnings))
 
     @final
     def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:

@@ -20,6 +20,8 @@ from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.outside.text import one_line
 from tactsim.results import Result, Status
 
+SKETCH = "sketch.png"
+"""File of the figure of what is at rest."""
 RESOLUTION = 160
 """In dots per inch."""
 
@@ -37,6 +39,8 @@ FAILED_SIZE, LETTERS_PER_INCH, LINES_PER_INCH = 9.5, 9, 72 / (1.2 * 9.5)
 """Of the words across the foot of a failed run; the size in points."""
 BRIGHT, LUMA = 0.5, (0.299, 0.587, 0.114)
 """Brightness of a colour above which words on it are black, and the weights of red, green and blue in it (ITU-R BT.601)."""
+REGION_COLOURS = ("#f2d7c9", "#8fb4d9", "#b7d3a8", "#d9b3d6", "#f0dc9a", "#b0b6bf")
+"""Of tissue and of what lies in or on it, by region; told apart in grey by the outlines and names."""
 PRESSURE_COLOURS = "viridis"
 """The colour map of pressures and forces, the same in every figure and on the page.
 
@@ -114,7 +118,8 @@ def result_figure(
     where: str = "",
     title_size: float = 11,
 ) -> Iterator[Figure]:
-    """The figure of a result: as `titled_figure`, and marked unless the run converged; no figure of a result is made otherwise.
+    """The figure of a result: as `titled_figure`, and marked unless the run converged or is a sketch of one; no figure of a
+    result is made otherwise.
 
     Parameters
     ----------
@@ -127,7 +132,7 @@ def result_figure(
     head = ": ".join(part for part in (result.title or title, remark) if part)
     with titled_figure(*size, head, below, title_size=title_size) as figure:
         yield figure
-    if result.status is not Status.CONVERGED:
+    if result.status is not Status.CONVERGED and not result.at_rest:
         _mark_failure(figure, result, where)
 
 

@@ -126,6 +126,11 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     @property
+    def at_rest(self) -> bool:
+        """Whether it shows what a run would begin with and nothing is computed: it has fields, and no step."""
+        return bool(self.frames) and not self.steps
+
+    @property
     def history(self) -> xarray.Dataset:
         """Every history value over the accepted steps, unit in ``attrs``, with what each step took.
 

@@ -47,6 +47,11 @@ class SolverReport(FrozenModel):
     mesh_adaptations: int = 0
     """How often the mesh was adapted."""
 
+    @property
+    def size_in_words(self) -> str:
+        """Elements and unknowns, as a picture of the mesh names them."""
+        return f"{self.elements} elements, {self.unknowns} unknowns"
+
 
 @dataclass(frozen=True)
 class UnreadableScene:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from tactsim.experiments.grasp.history import UNITS
 from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.mechanics.models.block_source import StructuredSource
 from tactsim.mechanics.paths.loading import DisplacementLoading
+
+if TYPE_CHECKING:
+    from tactsim.experiments.grasp.record import GraspRecord
+    from tactsim.mechanics.paths.history_path import TimedPath
 
 
 class Grasp(GraspSetup, Experiment):
@@ -41,11 +45,20 @@ class Grasp(GraspSetup, Experiment):
 
     def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
+        path, record = self._begun()
+        return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)
+
+    def unloaded(self) -> Findings:
+        """The block between jaws that just touch it."""
+        path, record = self._begun()
+        return record.unloaded(path.start.contact, len(path.start.loads))
+
+    def _begun(self) -> tuple[TimedPath, GraspRecord]:
+        """The path at its start, and what will record it."""
         from tactsim.experiments.grasp.path import grasp_path
         from tactsim.experiments.grasp.record import GraspRecord
 
         sourced = self.sourced()
         model = self.model(sourced)
         path = grasp_path(self, model)
-        record = GraspRecord(self, model, sourced, path)
-        return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)
+        return path, GraspRecord(self, model, sourced, path)

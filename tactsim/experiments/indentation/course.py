@@ -12,7 +12,7 @@ from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, T
 from tactsim.fem.paths.loading import Event, PathFollower
 from tactsim.fem.paths.progress import Headway
 from tactsim.fem.paths.time_steps import TimeEvent
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_body import PressedBody
@@ -47,11 +47,22 @@ Adapted = Callable[[PressedModel, Refinement], None]
 
 def indentation_course(setup: IndentationSetup) -> Course:
     """The run of an indentation in any dimension, with a clock or without."""
-    model, drive = setup.model(), setup.drive()
-    path = HistoryPath(setup, drive, model) if isinstance(drive, Timed) else DisplacementPath(setup, drive, model)
-    record = IndentationRecord(setup, model, path)
+    path, record = _begun(setup)
     steps = (record.accept(state, event=touch) for state, touch in path.states(record.adapted))
     return Course(steps, record.findings, setup_is_timed=True)
+
+
+def unloaded_indentation(setup: IndentationSetup) -> Findings:
+    """The tissue and the body at first touch."""
+    path, record = _begun(setup)
+    return record.unloaded(path.start)
+
+
+def _begun(setup: IndentationSetup) -> tuple[DisplacementPath | HistoryPath, IndentationRecord]:
+    """The path of an indentation at its start, and what will record it."""
+    model, drive = setup.model(), setup.drive()
+    path = HistoryPath(setup, drive, model) if isinstance(drive, Timed) else DisplacementPath(setup, drive, model)
+    return path, IndentationRecord(setup, model, path)
 
 
 def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> ContactEquilibrium:

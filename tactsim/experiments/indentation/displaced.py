@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
 from tactsim.fem.paths.loading import StepControl
 from tactsim.fem.paths.progress import check_steps
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 
@@ -91,6 +91,12 @@ class DisplacedSetup(IndentationSetup):
         from tactsim.experiments.indentation.course import indentation_course
 
         return indentation_course(self)
+
+    def unloaded(self) -> Findings:
+        """The tissue and the body at first touch."""
+        from tactsim.experiments.indentation.course import unloaded_indentation
+
+        return unloaded_indentation(self)
 
     def drive(self) -> Displaced:
         """Load steps to the displacement."""

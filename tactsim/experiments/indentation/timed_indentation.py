@@ -10,7 +10,7 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading
@@ -52,6 +52,12 @@ class TimedIndentation(IndentationSetup, Experiment):
         from tactsim.experiments.indentation.course import indentation_course
 
         return indentation_course(self)
+
+    def unloaded(self) -> Findings:
+        """The tissue and the body at first touch."""
+        from tactsim.experiments.indentation.course import unloaded_indentation
+
+        return unloaded_indentation(self)
 
     @property
     def extent(self) -> tuple[str, float]:

@@ -144,7 +144,7 @@ class TimedState:
 
 
 class TimedPath:
-    """Follows prescribed histories; ``rejected`` counts the steps that were taken back.
+    """Follows prescribed histories from ``start``; ``rejected`` counts the steps that were taken back.
 
     Raises
     ------
@@ -155,7 +155,7 @@ class TimedPath:
     def __init__(
         self, problem: EquilibriumProblem, step_policy: TimeStepPolicy, course: Sequence[TimeInterval], start: TimedState
     ):
-        self._problem, self._step_policy, self._course, self._begin = problem, step_policy, course, start
+        self._problem, self._step_policy, self._course, self.start = problem, step_policy, course, start
         asked = sum(len(step_policy.stops(interval)) + interval.duration / step_policy.largest(interval) for interval in course)
         check_steps(asked, "loading, with the steps and stops that time sets for its pieces,")
         self.rejected = 0
@@ -168,7 +168,7 @@ class TimedPath:
         ConvergenceError
             If the path cannot be followed to its end.
         """
-        state = self._begin
+        state = self.start
         for interval in self._course:
             if interval.sudden:
                 state, happened = self._jumped(state, interval.at(interval.start), event)

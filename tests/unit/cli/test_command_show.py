@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import pytest
@@ -57,3 +58,26 @@ def test_what_is_no_result_is_reported(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["show", str(tmp_path)]) == 5
     assert "holds no result.json" in capsys.readouterr().err
     assert main(["show", str(tmp_path / "missing")]) == 5
+
+
+def test_a_case_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "annulus_icf"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Annular hardness sensor on ICF, stable constants\n  indentation, at rest; nothing is computed\n")
+    assert "specimen of radius 15 mm" in out
+    assert "--save sketch.png" in out
+    assert main(["new", "grasp", str(tmp_path / "mine.yaml")]) == 0
+    assert main(["show", str(tmp_path / "mine.yaml"), "--save", str(tmp_path / "sketch.svg")]) == 0
+    drawn = (tmp_path / "sketch.svg").read_text(encoding="utf-8")
+    assert "at rest" in drawn
+    assert "from above" in drawn
+    assert main(["show", "annulus_icf", "--save", str(tmp_path / "sketch.bmp")]) == 2
+    assert main(["show", "film_lingstat"]) == 2
+    assert "film_test: nothing to show at rest" in capsys.readouterr().err
+
+
+def test_a_folder_of_the_name_of_a_case_comes_first(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with contextlib.chdir(folder.parent):
+        folder.rename("annulus_icf")
+        assert main(["show", "annulus_icf"]) == 0
+    assert capsys.readouterr().out.startswith("A case\nconverged: done\n")

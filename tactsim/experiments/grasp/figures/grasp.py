@@ -7,7 +7,7 @@ from typing import Literal
 from matplotlib.figure import Figure
 
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
-from tactsim.experiments.grasp.figures.maps import draw_maps
+from tactsim.experiments.grasp.figures.maps import draw_maps, draw_plan
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
@@ -15,8 +15,9 @@ from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_volta
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure
 from tactsim.experiments.grasp.figures.viewed import has_views, viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
+from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, result_figure
+from tactsim.plotting.canvas import SKETCH, Plot, result_figure
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1
@@ -29,7 +30,9 @@ class GraspFigures(ResultFigures):
     kind: Literal["grasp"] = "grasp"
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
-        """What the result has fields and steps for; nothing if no step was accepted."""
+        """What the result has fields and steps for; a sketch of what is at rest."""
+        if result.at_rest:
+            return {SKETCH: Plot(lambda: sketch_figure(result))}
         if not result.steps:
             return {}
         moment = shown_moment(result) if result.status is Status.CONVERGED else result
@@ -47,10 +50,20 @@ class GraspFigures(ResultFigures):
         return drawings
 
 
+def sketch_figure(result: Result) -> Figure:
+    """The block at rest between the jaws, cut and from above."""
+    with result_figure(result, (11.0, 5.0), TITLE) as figure:
+        axes = figure.subplots(1, 2, width_ratios=(1.4, 1))
+        draw_section(axes[0], result)
+        draw_plan(axes[1], result)
+        axes[1].set_title(f"from above: {result.scene_as(SimulatedGrasp).solver.size_in_words}", loc="left")
+    return figure
+
+
 def section_figure(result: Result) -> Figure:
     """The section through the deformed block, between the jaws."""
     with result_figure(result, (9.0, 5.2), TITLE, where=WHERE) as figure:
-        draw_section(figure.add_subplot(), result, loaded_taxels(result))
+        draw_section(figure.add_subplot(), result)
     return figure
 
 

@@ -8,21 +8,26 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, PressureScale
+from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, LoadedTaxels, PressureScale
 from tactsim.experiments.grasp.figures.viewed import outline, true_bodies
+from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on
+from tactsim.plotting.plane_cut import OUTER, interfaces
+from tactsim.results import Result
 
 MOST_NAMED = 5
 """Matrices with more rows or columns than this have the first and the last one named."""
 MOST_WRITTEN = 100
 """Matrices with more taxels than this show colours only, without borders, which would cover them."""
+ROUND_OFF = 1e-9
+"""Relative distance from the upper face of a node that lies on it."""
 BESIDE = 0.6
 """Distance in mm of the names of rows and columns from the jaw."""
 
@@ -32,7 +37,7 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     scale, bodies = grasp.pressure_scale, list(true_bodies(grasp.scene))
     for axis, side in zip(axes, JAWS, strict=True):
         _draw_matrix(axis, grasp, side, scale)
-        _draw_surroundings(axis, grasp, side, bodies)
+        _draw_surroundings(axis, grasp.scene, side, bodies)
         total = float(grasp.forces[side].sum())
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
         axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
@@ -48,6 +53,25 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
         f"mean pressure on the taxel in {scale.unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}"
     )
     bar.outline.set_linewidth(0.5)
+
+
+def draw_plan(axis: Axes, result: Result) -> None:
+    """The block at rest from above: the elements of its upper face, the taxels of the upper jaw, and the inclusions."""
+    scene, frame = result.scene_as(GraspScene), result.frames[-1]
+    layout, place, size = scene.matrix, scene.place("upper"), 1e3 * scene.matrix.size
+    _draw_surroundings(axis, scene, "upper", list(true_bodies(scene)))
+    columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
+    squares = [Rectangle((x, y), size, size) for x in columns[:, 0] for y in rows[:, 0]]
+    axis.add_collection(
+        PatchCollection(squares, facecolor=TAXEL_COLOUR, edgecolor="#30363d", linewidth=0.6, alpha=0.45, zorder=2)
+    )
+    faces, between = interfaces(frame)
+    upper = faces[(between[:, 0] == OUTER) & (frame.points[faces, 2] > scene.size[2] * (1 - ROUND_OFF)).all(axis=1)]
+    outlines = 1e3 * frame.points[upper[:, [0, 1, 2, 0]], :2]
+    style: dict[str, Any] = {"colors": "k", "linewidths": 0.3, "alpha": 0.6, "rasterized": True, "zorder": 2.5}
+    axis.add_collection(LineCollection(list(outlines), **style))
+    axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
+    axis.spines[:].set_visible(False)
 
 
 def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScale) -> None:
@@ -79,7 +103,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
         axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
-    right, back = _extent(grasp, side)[1] + BESIDE
+    right, back = _extent(grasp.scene, side)[1] + BESIDE
     for number in _named(layout.rows):
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
     for number in _named(layout.columns):
@@ -91,26 +115,26 @@ def _named(count: int) -> list[int]:
     return list(range(1, count + 1)) if count <= MOST_NAMED else [1, count]
 
 
-def _extent(grasp: LoadedTaxels, side: str) -> tuple[Array, Array]:
+def _extent(scene: GraspScene, side: str) -> tuple[Array, Array]:
     """Lowest and highest x and y in mm of the jaw's face and the block."""
-    half = np.array([grasp.scene.jaws[side].width, grasp.scene.jaws[side].depth]) / 2
-    middle = grasp.scene.place(side)[:2]
-    return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(grasp.scene.size[:2], middle + half)
+    half = np.array([scene.jaws[side].width, scene.jaws[side].depth]) / 2
+    middle = scene.place(side)[:2]
+    return 1e3 * np.minimum(0.0, middle - half), 1e3 * np.maximum(scene.size[:2], middle + half)
 
 
-def _draw_surroundings(axis: Axes, grasp: LoadedTaxels, side: str, bodies: Sequence[Solid]) -> None:
+def _draw_surroundings(axis: Axes, scene: GraspScene, side: str, bodies: Sequence[Solid]) -> None:
     """The jaw's face, the undeformed block and the outlines of the inclusions in it."""
-    jaw, place, size = grasp.scene.jaws[side], 1e3 * grasp.scene.place(side), 1e3 * grasp.scene.size
+    jaw, place, size = scene.jaws[side], 1e3 * scene.place(side), 1e3 * scene.size
     half = 1e3 * np.array([jaw.width, jaw.depth]) / 2
     face = Rectangle(tuple(place[:2] - half), *(2 * half), facecolor="#e6e8eb", edgecolor="#30363d", linewidth=1.0, zorder=1)
     axis.add_patch(face)
     axis.add_patch(Rectangle((0, 0), size[0], size[1], fill=False, edgecolor="#57606a", linewidth=0.8, linestyle=(0, (4, 3))))
-    low, high = _extent(grasp, side)
+    low, high = _extent(scene, side)
     room = 0.11 * (high[0] - low[0])
     axis.set(xlim=(low[0] - 1.0, high[0] + BESIDE + room), ylim=(low[1] - 1.0, high[1] + BESIDE + room / 2))
     axis.set_xticks([tick for tick in axis.get_xticks() if low[0] <= tick <= high[0]])
     axis.set_yticks([tick for tick in axis.get_yticks() if low[1] <= tick <= high[1]])
     for body in bodies:
-        x, y, distance = outline(body, grasp.scene.size, 2)
+        x, y, distance = outline(body, scene.size, 2)
         axis.contour(x, y, distance, levels=[0.0], colors=["w"], linewidths=2.2, zorder=3)
         axis.contour(x, y, distance, levels=[0.0], colors=["k"], linewidths=1.0, linestyles="--", zorder=3)

@@ -22,6 +22,9 @@ LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""
 
 
+TAXEL_COLOUR = "#e69f00"
+
+
 @dataclass(frozen=True)
 class PressureScale:
     """The unit in which the pressures of taxels are shown, the factor from Pa to it, and the ends of their colours in it."""

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, LoadedTaxels, ending, inclusions_of, moment_of
+from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, despined, extension, scale_of, weighted_percentiles
-from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
+from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, scale_of, weighted_percentiles
+from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
 from tactsim.results import FieldFrame, Result
 
 JAW_SHOWN = 2.6
@@ -30,7 +30,7 @@ EVEN = 1e-4
 """Spread of the pressure over its size below which it counts as even."""
 MOST_NAMED = 12
 """Taxels along a cut of which each is named; of more, every so many."""
-TAXEL_COLOUR, INCLUSION_COLOUR = "#e69f00", "#000000"
+INCLUSION_COLOUR = "#000000"
 
 
 @dataclass(frozen=True)
@@ -59,22 +59,27 @@ def cutting_plane(frame: FieldFrame, size: Array) -> CuttingPlane:
     return CuttingPlane(axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number)
 
 
-def draw_section(axis: Axes, result: Result, grasp: LoadedTaxels) -> None:
-    """The cut of the last frame."""
-    frame = result.frames[-1]
-    plane = cutting_plane(frame, grasp.scene.size)
-    pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
-    cut = plane_cut(frame, plane.across, plane.level, np.asarray(pressure))
-    _draw_pressure(axis, cut)
+def draw_section(axis: Axes, result: Result) -> None:
+    """The cut of the last frame with its pressure, or at rest with its regions."""
+    frame, scene = result.frames[-1], result.scene_as(GraspScene)
+    plane = cutting_plane(frame, scene.size)
+    if result.steps:
+        pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
+        cut = plane_cut(frame, plane.across, plane.level, np.asarray(pressure))
+        _draw_pressure(axis, cut)
+    else:
+        cut = plane_cut(frame, plane.across, plane.level, np.repeat(regions_of(frame)[:, None], 4, axis=1).astype(float))
+        _draw_regions(axis, cut)
     _draw_outlines(axis, cut, result)
-    limits = _window(cut, grasp)
+    limits = _window(cut, scene)
     for side in JAWS:
-        _draw_jaw(axis, grasp, side, limits, plane)
+        _draw_jaw(axis, scene, side, limits, plane)
     along = "yx"[plane.across]
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
-    middle = result.scene_as(GraspScene).named_inclusion(plane.inclusion) if plane.inclusion else "the block"
+    middle = scene.named_inclusion(plane.inclusion) if plane.inclusion else "the block"
     place = f"cut at {'xy'[plane.across]} = {1e3 * plane.level:.3g} mm through the middle of {middle}"
-    axis.set_title(place + ("\n" if moment_of(result) else "; ") + ending(result), loc="left")
+    shown = ("\n" if moment_of(result) else "; ") + ending(result) if result.steps else ", at rest"
+    axis.set_title(place + shown, loc="left")
     despined(axis)
 
 
@@ -100,6 +105,14 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     bar.outline.set_linewidth(0.5)
 
 
+def _draw_regions(axis: Axes, cut: PlaneCut) -> None:
+    """Tissue and inclusions, each in its colour."""
+    regions = cut.values.mean(axis=1).round().astype(int)
+    colours = np.array(REGION_COLOURS)[regions % len(REGION_COLOURS)]
+    style: dict[str, Any] = {"facecolors": colours, "edgecolors": "face", "linewidths": 0.2, "rasterized": True}
+    axis.add_collection(PolyCollection(list(1e3 * cut.triangles), **style))
+
+
 def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
     """The outline of the block, and with a white rim that of every inclusion, named."""
     inner = cut.between.max(axis=1) > 0
@@ -123,20 +136,20 @@ def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
         )
 
 
-def _window(cut: PlaneCut, grasp: LoadedTaxels) -> tuple[tuple[float, float], tuple[float, float]]:
+def _window(cut: PlaneCut, scene: GraspScene) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits in mm of the picture."""
     low, high = 1e3 * cut.triangles.min(axis=(0, 1)), 1e3 * cut.triangles.max(axis=(0, 1))
     margin = 0.03 * (high[0] - low[0])
-    top = max(high[1], 1e3 * grasp.scene.place("upper")[2]) + JAW_SHOWN
-    bottom = min(low[1], 1e3 * grasp.scene.place("lower")[2]) - JAW_SHOWN
+    top = max(high[1], 1e3 * scene.place("upper")[2]) + JAW_SHOWN
+    bottom = min(low[1], 1e3 * scene.place("lower")[2]) - JAW_SHOWN
     return (float(low[0] - margin), float(high[0] + margin)), (float(bottom), float(top))
 
 
 def _draw_jaw(
-    axis: Axes, grasp: LoadedTaxels, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: CuttingPlane
+    axis: Axes, scene: GraspScene, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: CuttingPlane
 ) -> None:
     """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes."""
-    jaw, place, across = grasp.scene.jaws[side], grasp.scene.place(side), plane.across
+    jaw, place, across = scene.jaws[side], scene.place(side), plane.across
     middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
     along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
     points = np.empty((3, along.size))
@@ -146,21 +159,21 @@ def _draw_jaw(
         return
     axis.contourf(along, height, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
     axis.contour(along, height, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
-    _draw_taxels(axis, grasp, side, plane)
+    _draw_taxels(axis, scene, side, plane)
     edge = limits[1][1] - 0.3 if side == "upper" else limits[1][0] + 0.3
     where: dict[str, Any] = {"ha": "left", "va": "top" if side == "upper" else "bottom"}
     left = 1e3 * (place[1 - across] - (jaw.depth if across == 0 else jaw.width) / 2)
     axis.text(max(left, limits[0][0]) + 0.6, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
 
 
-def _draw_taxels(axis: Axes, grasp: LoadedTaxels, side: str, plane: CuttingPlane) -> None:
+def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) -> None:
     """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
-    across, jaw, place = plane.across, grasp.scene.jaws[side], grasp.scene.place(side)
+    across, jaw, place = plane.across, scene.jaws[side], scene.place(side)
     fixed = (plane.level - place[across]) / jaw.rotation[across, across]
-    passed = grasp.scene.matrix.borders("xy"[across])
+    passed = scene.matrix.borders("xy"[across])
     hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
     for index in hit:
-        borders = grasp.scene.matrix.borders("yx"[across])
+        borders = scene.matrix.borders("yx"[across])
         every = -(-len(borders) // MOST_NAMED)
         for number, (low, high) in enumerate(borders):
             corners = np.zeros((3, 4))

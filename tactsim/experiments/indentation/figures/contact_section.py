@@ -14,6 +14,7 @@ from tactsim.experiments.indentation.figures.section import (
     draw_body,
     draw_field,
     draw_mesh,
+    draw_regions,
     pressure_bar,
     pressure_scale,
 )
@@ -54,9 +55,12 @@ class PressedSection:
     meshed: tuple[float, ...]
     turn: Array | None = None
 
-    def draw(self, axis: Axes, xlabel: str, title: str) -> None:
-        """Everything, with the pressure in colours."""
-        self._draw_pressure(axis)
+    def draw(self, axis: Axes, xlabel: str, title: str, *, at_rest: bool) -> None:
+        """Everything, with the pressure in colours, or at rest with the regions."""
+        if at_rest:
+            draw_regions(axis, self.section, self.sides)
+        else:
+            self._draw_pressure(axis)
         draw_mesh(axis, self.section, self.sides, self.meshed)
         self._draw_body(axis)
         if self.scene.recess is not None and self.scene.body.contact_shape.hole:
@@ -94,17 +98,24 @@ class PressedSection:
         axis.annotate(words, (x.mean(), z.mean()), (0.0, 3.0), textcoords="offset points", **style)
 
 
-def draw_contact_section(axis: Axes, result: Result, displacement: float) -> None:
+def draw_contact_section(axis: Axes, result: Result, displacement: float = 0.0) -> None:
     """The axisymmetric section of the last frame under the body at a displacement in m, both halves, elements on the left."""
     section, scene = Section(result.frames[-1]), result.scene_as(PressedBodyScene)
     height = 1e3 * (scene.starting_height - displacement)
     half, bottom, top = _window(section, 1e3 * scene.body.contact_shape.reach, height)
-    if scene.recess is not None and scene.body.contact_shape.hole:
-        top = max(top, height + 1e3 * scene.recess + WORDS * half)
+    top = max(top, top_of_words(scene, height, half))
     shown = PressedSection(section, scene, height, ((-half, half), (bottom, top)), sides=(-1.0, 1.0), meshed=(-1.0,))
-    title = f"at a displacement of {format_quantity(displacement, 'm')} (elements shown on the left)"
-    shown.draw(axis, "radius in mm", title)
+    moment = (
+        f"at a displacement of {format_quantity(displacement, 'm')}" if result.steps else f"at rest: {scene.solver.size_in_words}"
+    )
+    shown.draw(axis, "radius in mm", f"{moment} (elements shown on the left)", at_rest=result.at_rest)
     axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
+
+
+def top_of_words(scene: PressedBodyScene, height: float, half: float) -> float:
+    """Height in mm that the words above an inner sensor need in a picture of a half width in mm; the body's if there is none."""
+    sensor = scene.recess is not None and scene.body.contact_shape.hole > 0
+    return height + 1e3 * (scene.recess or 0.0) + WORDS * half if sensor else height
 
 
 def _window(section: Section, radius: float, height: float) -> tuple[float, float, float]:

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
-from tactsim.plotting.canvas import FAILED_COLOUR, SingleFigure, despined, result_figure, scale_of
+from tactsim.interfaces import Drawing
+from tactsim.plotting.canvas import FAILED_COLOUR, SKETCH, Plot, SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 
@@ -24,9 +25,24 @@ class IndentationFigures(SingleFigure):
 
     kind: Literal["indentation"] = "indentation"
 
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``indentation.png``, or a sketch of what is at rest."""
+        return sketched(result, draw_contact_section) if result.at_rest else super().drawings(result)
+
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and force-displacement curve of an indentation."""
         return section_beside(result, draw_curve, f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}")
+
+
+def sketched(result: Result, draw: Callable[[Axes, Result], None]) -> dict[str, Drawing]:
+    """``sketch.png``: the section at rest, as ``draw`` draws it."""
+
+    def figure() -> Figure:
+        with result_figure(result, (8.0, 4.8), f"A rigid {result.scene_as(PressedBodyScene).body.kind} on tissue") as figure:
+            draw(figure.add_subplot(), result)
+        return figure
+
+    return {SKETCH: Plot(figure)}
 
 
 def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:

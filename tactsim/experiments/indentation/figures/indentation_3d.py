@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve
+from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve, sketched
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
 from tactsim.experiments.indentation.scene import Indentation3dScene
+from tactsim.interfaces import Drawing
 from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result
 
@@ -19,6 +20,10 @@ class SpaceIndentationFigures(SingleFigure):
     """The cut, and the curves beside it."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``indentation_3d.png``, or a sketch of what is at rest."""
+        return sketched(result, draw_cut) if result.at_rest else super().drawings(result)
 
     def figure(self, result: Result) -> Figure:
         """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""

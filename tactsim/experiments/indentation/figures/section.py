@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import extension, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import REGION_COLOURS, extension, scale_of, weighted_percentiles
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 
@@ -88,6 +89,21 @@ def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, 
     for side in sides:
         drawn = axis.tripcolor(Triangulation(side * r, z, quarters), values, shading="gouraud", rasterized=True, **style)
     return drawn
+
+
+def draw_regions(axis: Axes, section: Section, sides: tuple[float, ...]) -> None:
+    """The elements in the colour of their region, with a legend if there are several: layers from the top, then the tissue."""
+    regions = np.asarray(section.frame.cell_data.get("region [1]", np.zeros(len(section.elements)))).ravel().round().astype(int)
+    quarters = section.elements[:, QUARTERS].reshape(-1, 3)
+    shades = np.array([REGION_COLOURS[k % len(REGION_COLOURS)] for k in np.roll(range(regions.max() + 1), -1)])
+    for side in sides:
+        corners = (section.places * [side, 1.0])[quarters]
+        colours = np.repeat(shades[regions], len(QUARTERS))
+        axis.add_collection(PolyCollection(list(corners), facecolors=colours, edgecolors="face", linewidths=0.2, rasterized=True))
+    if len(shades) > 1:
+        names = [*(f"layer {k}" for k in range(1, len(shades))), "tissue below"]
+        patches = [Patch(facecolor=shade, label=name) for shade, name in zip(shades, names, strict=True)]
+        axis.legend(handles=patches, loc="lower right", fontsize=7.5, frameon=True)
 
 
 def draw_mesh(axis: Axes, section: Section, sides: tuple[float, ...], meshed: tuple[float, ...]) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
-from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, PressedSection
+from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, PressedSection, top_of_words
 from tactsim.experiments.indentation.figures.section import Section
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.mesh.quadratic import MIRROR
@@ -39,8 +39,12 @@ def draw_cut(axis: Axes, result: Result) -> None:
     section, height = Section(cut(frame)), 1e3 * (scene.starting_height - frame.time)
     sides = (-1.0, 1.0) if scene.symmetry == "quarter" else (1.0,)
     limits = _window(section, 1e3 * scene.body.contact_shape.reach, height, mirrored=len(sides) > 1)
+    limits = limits[0], (limits[1][0], max(limits[1][1], top_of_words(scene, height, limits[0][1])))
     shown = PressedSection(section, scene, height, limits, sides=sides, meshed=sides, turn=scene.body.rotation)
-    shown.draw(axis, "x in mm", f"cut y = 0 at a displacement of {format_quantity(frame.time, 'm')}")
+    moment = (
+        f"at a displacement of {format_quantity(frame.time, 'm')}" if result.steps else f"at rest: {scene.solver.size_in_words}"
+    )
+    shown.draw(axis, "x in mm", f"cut y = 0 {moment}", at_rest=result.at_rest)
 
 
 def _in_plane(points: Array) -> Array:

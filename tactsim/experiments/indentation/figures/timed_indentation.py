@@ -10,7 +10,9 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
+from tactsim.experiments.indentation.figures.indentation import sketched
 from tactsim.experiments.indentation.scene import TimedIndentationScene
+from tactsim.interfaces import Drawing
 from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
 from tactsim.results import Result
 
@@ -24,6 +26,10 @@ class TimedIndentationFigures(SingleFigure):
     """Section beside the histories."""
 
     kind: Literal["timed_indentation"] = "timed_indentation"
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """``timed_indentation.png``, or a sketch of what is at rest."""
+        return sketched(result, draw_contact_section) if result.at_rest else super().drawings(result)
 
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and histories of a timed indentation."""

@@ -1,0 +1,62 @@
+"""What a case would compute, before anything is solved: its mesh, its bodies and a sketch of them."""
+
+from __future__ import annotations
+
+import pytest
+from matplotlib.collections import LineCollection
+
+from tactsim.case.model import Case
+from tactsim.errors import InputError
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.interfaces import Experiment
+from tactsim.mechanics.models.specimen import Layer
+from tactsim.registry import kind_class
+from tactsim.results.result import Status
+
+
+def at_rest(kind: str) -> Case:
+    """The example of a kind as a case."""
+    return Case(schema="tactsim/case/1", title="A design", experiment=kind_class(Experiment, kind).example())
+
+
+@pytest.mark.parametrize("kind", ["indentation", "indentation_3d", "timed_indentation", "grasp"])
+def test_nothing_is_solved_and_the_sketch_is_the_only_figure(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Problem, "solve", lambda *_, **__: pytest.fail("solved"))
+    result = at_rest(kind).at_rest()
+    assert result.at_rest
+    assert result.status is Status.INTERRUPTED
+    assert not result.quantities
+    assert result.title == "A design"
+    assert result.provenance
+    assert len(result.frames) == 1
+    assert not result.frames[0].point_data["displacement [m]"].any()
+    figures = result.plot()
+    assert list(figures) == ["sketch"]
+    figure = figures["sketch"]
+    words = [text.get_text() for axis in figure.axes for text in (axis.title, axis._left_title)]
+    assert any("elements" in title for title in words)
+    assert any("at rest" in title for title in words)
+    assert not any("INTERRUPTED" in text.get_text() for text in figure.texts)
+    assert figure._supxlabel is None
+    assert any(isinstance(drawn, LineCollection) for axis in figure.axes for drawn in axis.collections)
+
+
+def test_layers_are_named_from_the_top() -> None:
+    case = at_rest("indentation")
+    layer = Layer(thickness=0.5e-3, material="lump")
+    specimen = case.experiment.specimen.model_copy(update={"layers": (layer,)})
+    layered = case.experiment.model_copy(update={"specimen": specimen})
+    (legend,) = (axis.get_legend() for axis in layered.at_rest().plot("sketch").axes)
+    assert [text.get_text() for text in legend.get_texts()] == ["layer 1", "tissue below"]
+
+
+def test_doubts_are_told() -> None:
+    case = at_rest("grasp")
+    wide = case.experiment.model_copy(update={"block": case.experiment.block.model_copy(update={"size": (0.02, 0.02, 0.02)})})
+    assert wide.doubts()
+    assert set(wide.doubts()) <= set(wide.at_rest().warnings)
+
+
+def test_a_kind_without_a_mesh_has_nothing_to_show() -> None:
+    with pytest.raises(InputError, match="film_test: nothing to show at rest"):
+        kind_class(Experiment, "film_test").example().at_rest()
