@@ -86,14 +86,18 @@ class RankingReport:
         self._atrium: dict[str, Quantity] = {}
 
     def add(self, finding: ShapeFinding) -> Iterator[StepRecord]:
-        """One step for every elastomer with this shape, numbered from 1; a value that cannot be had is absent."""
+        """One step for every elastomer with this shape, numbered from 1; a value that cannot be had is absent.
+
+        All are kept before the first is told, so that an interruption leaves no half of a shape.
+        """
         self._finished.append(finding)
+        before = len(self._steps)
         for number, elastomer in enumerate(self._elastomers, 1):
             values: dict[str, float | None] = {"shape": float(len(self._finished)), "elastomer": float(number)}
             values |= self._compared(finding, elastomer)
             known = {name: value for name, value in values.items() if value is not None}
-            self._steps.append(StepRecord(len(self._steps) + 1, 0, 0.0, known))
-            yield self._steps[-1]
+            self._steps.append(StepRecord(before + number, 0, 0.0, known))
+        yield from self._steps[before:]
 
     def _compared(self, finding: ShapeFinding, elastomer: Elastomer) -> dict[str, float | None]:
         """What sensor and durometer say of an elastomer, in SI."""

@@ -92,6 +92,12 @@ def test_a_curve_that_was_cut_short_is_reported():
     assert "ended early, it gave up" in findings.warnings[0]
 
 
+def test_an_interruption_leaves_no_half_of_a_shape():
+    begun = RankingReport(TABLE_3_3, SCALE, RADIUS)
+    next(begun.add(finding()))
+    assert len(begun.findings(()).steps) == len(TABLE_3_3)
+
+
 def test_the_atrium():
     made = report(finding())
     made.add_atrium(25.0, (0.01, 1.0), 0)
