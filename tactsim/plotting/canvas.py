@@ -20,6 +20,8 @@ from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.outside.text import one_line
 from tactsim.results import Result, Status
 
+EVEN = 1e-4
+"""Spread of values over their size below which they count as even."""
 SKETCH = "sketch.png"
 """File of the figure of what is at rest."""
 RESOLUTION = 160
@@ -186,6 +188,18 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: t
     order = np.argsort(values)
     share = np.cumsum(weights[order]) / weights.sum()
     return np.interp(np.asarray(percentiles) / 100, share, values[order])
+
+
+def robust_limits(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
+    """The 1st and the 99th percentile of the weight, so that singular edges do not take all the colours.
+
+    Values that differ by round-off only are no pattern: their limits lie apart by the values themselves.
+    """
+    low, high = weighted_percentiles(values, weights, (1, 99)).tolist()
+    if high - low > EVEN * max(abs(low), abs(high)):
+        return low, high
+    spread = 0.5 * (abs(high) or 1.0)
+    return low - spread, high + spread
 
 
 def extension(values: np.ndarray, limits: tuple[float, float]) -> str:

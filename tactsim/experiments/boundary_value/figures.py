@@ -17,8 +17,8 @@ from tactsim.plotting.canvas import (
     despined,
     extension,
     result_figure,
+    robust_limits,
     scale_of,
-    weighted_percentiles,
 )
 from tactsim.plotting.plane_cut import FACES, QUARTERS
 from tactsim.results import FieldFrame, Result
@@ -29,6 +29,8 @@ VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
 MOST_CURVES = 6
 """Curves in the second panel."""
+ALIKE = 5e-3
+"""Curves of a largest magnitude of one that differ by less are drawn as one."""
 LONGEST_LINEAR = 1e3
 """Ratio of the last to the first positive time above which the time is drawn on a logarithmic axis."""
 
@@ -58,10 +60,10 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     stress = np.asarray(frame.cell_data[VON_MISES]).ravel()
     factor, unit = scale_of(float(stress.max()), "Pa")
     values, corners = factor * stress[owners], flat[polygons]
-    low, high = weighted_percentiles(values, np.ones(len(values)), (1, 99))
+    low, high = robust_limits(values, np.ones(len(values)))
     style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "edgecolors": "face", "linewidths": 0.2, "rasterized": True}
     drawn = PolyCollection(list(corners), array=values, **style)
-    drawn.set_clim(low, high if high > low else low + 1.0)
+    drawn.set_clim(low, high)
     axis.add_collection(drawn)
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extension(values, (low, high)), location="bottom", shrink=0.6, aspect=32)
     bar.set_label(f"von Mises stress in {unit}")
@@ -78,19 +80,39 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
 
 
 def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
-    """What was asked for over time, each number over its largest size."""
+    """What was asked for over time, each number over its largest magnitude; of a single time, the numbers themselves."""
     time = np.asarray(result.history_values("time"))
+    if len(time) == 1:
+        _write_numbers(axis, result, scene)
+        return
+    curves: list[tuple[Array, list[str]]] = []
     for name in list(scene.asked)[:MOST_CURVES]:
         values = np.asarray(result.history_values(name))
         most = float(np.abs(values).max())
-        axis.plot(time, values / (most or 1.0), ".-", markersize=3, label=f"{name} / {format_quantity(most, scene.asked[name])}")
+        label, course = f"{name} / {format_quantity(most, scene.asked[name])}", values / (most or 1.0)
+        alike = [labels for other, labels in curves if np.abs(other - course).max() < ALIKE]
+        if alike:
+            alike[0].append(label)
+        else:
+            curves.append((course, [label]))
+    for course, labels in curves:
+        axis.plot(time, course, ".-", markersize=3, label="\n".join(labels))
     positive = time[time > 0]
     if len(positive) and positive[-1] > LONGEST_LINEAR * positive[0]:
         axis.set_xscale("log")
     axis.axhline(0.0, color="k", linewidth=0.5)
-    axis.set(xlabel="time in s", ylabel="asked, over its largest size")
+    axis.set(xlabel="time in s", ylabel="quantity / its largest magnitude")
     axis.legend(fontsize=7)
     despined(axis)
+
+
+def _write_numbers(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
+    """What was asked for at the only time there is, a line each."""
+    last = result.steps[-1].values
+    lines = [f"{name}: {format_quantity(last[name], unit)}" for name, unit in scene.asked.items()]
+    axis.text(0.0, 1.0, "\n".join(lines), transform=axis.transAxes, ha="left", va="top", linespacing=1.7)
+    axis.set_title(f"at {format_quantity(last['time'], 's')}", loc="left")
+    axis.set_axis_off()
 
 
 def _section(frame: FieldFrame) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
 from tactsim.results import FieldFrame, Result
 
@@ -26,8 +26,6 @@ LONGER = 1.2
 """An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
 GRID = 250
 """Points per direction on which a jaw is traced."""
-EVEN = 1e-4
-"""Spread of the pressure over its size below which it counts as even."""
 MOST_NAMED = 12
 """Taxels along a cut of which each is named; of more, every so many."""
 INCLUSION_COLOUR = "#000000"
@@ -84,15 +82,11 @@ def draw_section(axis: Axes, result: Result) -> None:
 
 
 def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
-    """The pressure with robust limits, so that singular edges do not take all the colours."""
+    """The pressure with robust limits."""
     areas = np.repeat(cut.areas(), 3) / 3
-    low, high = weighted_percentiles(cut.values.ravel(), areas, (1, 99))
+    low, high = robust_limits(cut.values.ravel(), areas)
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
-    low, high = factor * low, factor * high
-    if high - low <= EVEN * max(abs(low), abs(high)):  # round-off is no pattern
-        spread = 0.5 * (abs(high) or 1.0)
-        low, high = low - spread, high + spread
-    values = factor * cut.values.ravel()
+    low, high, values = factor * low, factor * high, factor * cut.values.ravel()
     corners = 1e3 * cut.triangles.reshape(-1, 2)
     mesh = Triangulation(corners[:, 0], corners[:, 1], np.arange(len(corners)).reshape(-1, 3))
     style: dict[str, Any] = {"shading": "gouraud", "rasterized": True, "cmap": PRESSURE_COLOURS, "vmin": low, "vmax": high}

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import REGION_COLOURS, extension, scale_of, weighted_percentiles
+from tactsim.plotting.canvas import REGION_COLOURS, extension, robust_limits, scale_of
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 
@@ -62,13 +62,10 @@ class Section:
 
 
 def pressure_scale(section: Section, pressure: Array, seen: Array) -> tuple[tuple[float, float], float, str]:
-    """Limits of the colours of a nodal pressure (n,) in Pa where it is seen, and factor and unit in which it is shown.
-
-    They are the 1st and the 99th percentile of the area, so that singular edges do not take all the colours.
-    """
-    low, high = weighted_percentiles(pressure[seen], section.weights()[seen], (1, 99))
+    """Limits of the colours of a nodal pressure (n,) in Pa where it is seen, and factor and unit in which it is shown."""
+    low, high = robust_limits(pressure[seen], section.weights()[seen])
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
-    return ((factor * low, factor * high) if high > low else (factor * low - 0.5, factor * high + 0.5)), factor, unit
+    return (factor * low, factor * high), factor, unit
 
 
 def pressure_bar(axis: Axes, drawn: Any, pressure: Array, limits: tuple[float, float], unit: str) -> None:
