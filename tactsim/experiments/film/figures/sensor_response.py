@@ -10,10 +10,11 @@ from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 READINGS = (
-    ("unfiltered_force", "line, unfiltered", "#9ecae1", 0.7, 3),
-    ("read_force", "line, low pass", "#1f4e79", 2.2, 2),
-    ("model_force", "inverse of the film", "#b8540a", 1.4, 4),
+    ("unfiltered_force", "by the calibration line,\nunfiltered", "#9ecae1", 0.7, 3, "-"),
+    ("read_force", "by the calibration line,\nlow pass", "#1f4e79", 2.2, 2, "-"),
+    ("model_force", "by the film's equations,\ninverted", "#b8540a", 1.4, 4, "-."),
 )
+"""Column, words, colour, width, order and line of each reading."""
 APPLIED, SATURATED = "#000000", "#b00020"
 
 
@@ -29,9 +30,9 @@ class SensorResponseFigures(SingleFigure):
         with result_figure(result, (10.0, 6.0), "Response of a piezoresistive sensor") as figure:
             above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1))
             above.plot(time, force, "--", color=APPLIED, linewidth=1.0, label="applied", zorder=5)
-            for name, label, colour, width, order in READINGS:
-                above.plot(time, columns[name], color=colour, linewidth=width, label=label, zorder=order)
-                below.plot(time, columns[name] - force, color=colour, linewidth=min(width, 1.4), zorder=5 - order)
+            for name, label, colour, width, order, line in READINGS:
+                above.plot(time, columns[name], line, color=colour, linewidth=width, label=label, zorder=order)
+                below.plot(time, columns[name] - force, line, color=colour, linewidth=min(width, 1.4), zorder=5 - order)
             flagged = columns["saturated"] > 0
             if flagged.any():
                 above.plot(time[flagged], columns["unfiltered_force"][flagged], "x", color=SATURATED, label="saturated")

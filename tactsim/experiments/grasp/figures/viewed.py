@@ -21,9 +21,11 @@ from tactsim.results import Result
 SAMPLES = 40
 """Points along each side of an inclusion's bounds from which its outline in a view is traced."""
 BARE_FORCES = (
-    "Thesis 6.3 on the bare forces: plain tissue, too, is bright",
-    "in the middle, and shows a row of maxima in the top view.",
-    "Beyond the centres of the outer taxels pictures go on as there.",
+    "The images of section 6.3 of the thesis, of the forces as read.",
+    "Plain tissue shows the same bright bands: they are no lump.",
+    "An inclusion shows in what exceeds a reference of plain tissue:",
+    "tactsim new localization. Beyond the centres of the outer taxels",
+    "the images are continued as they are there.",
 )
 
 

@@ -100,5 +100,6 @@ def test_png_by_name_and_nothing_without_steps():
     assert list(drawings) == ["indentation.png"]
     assert drawings["indentation.png"]().startswith(b"\x89PNG")
     assert unmarked_figures(made_up()) == []
-    assert figures_for(replace(made_up(), steps=())) == {}
+    assert figures_for(replace(made_up(), steps=(), frames=())) == {}
+    assert list(figures_for(replace(made_up(), steps=()))) == ["sketch.png"]
     assert figures_for(replace(made_up(), kind="unheard_of")) == {}
