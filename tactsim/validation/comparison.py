@@ -113,7 +113,7 @@ def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
         other = outcome if match[1] == "computed" else computed.get(match[1])
         return match[0] if other is None else figure_text(other, 3)  # one that no row has is a fault of the table
 
-    return FIGURE.sub(figure, outcome.reason) if outcome.computed is not None else outcome.reason
+    return FIGURE.sub(figure, outcome.reason) if outcome.held or outcome.computed is not None else outcome.reason
 
 
 def figure_text(outcome: RowOutcome, digits: int = 5) -> str:
