@@ -20,12 +20,14 @@ TABLES = [(group, table) for group, loaded in GROUPS.items() for table in loaded
 SIZE = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w]|\.\d)")
 """A number that stands alone; ``B1-A`` and ``2.3.1`` are names."""
 NAMES = re.compile(
-    r"\{[^}]*\}|doi:\S+|[ET]\d+(?:, E\d+)*|(?:Tables?|Figs?\.|sections?|eqs?\.|chapter|Appendix) \.?[\d.]+\w?(?:(?:,| and| to| or)"
-    r" \.?\d[\d.]*\w?)*|\([A-Z][\w ]+ \d{4}.*?\)|\bgiven to [\d.]+|\(\d, ?\d\)"
+    r"\{[^}]*\}|doi:\S+|[ET]\d+(?:, E\d+)*|\([A-Z][\w ]+ \d{4}.*?\)|\bgiven to [\d.]+|\(\d, ?\d\)"
+    r"|(?:Tables?|Figs?\.|sections?|eqs?\.|chapter|Appendix) \.?[\d.]+\w?(?:(?:,| and| to| or) \.?\d[\d.]*\w?)*"
 )
 """What holds digits and is no figure: placeholders, errata, places, references, digits of a printed number."""
 BY_HAND = ("by hand", "errata")
 """Words with which a reason gives a figure of somebody who did not use this program."""
+OWN = ("why", "reason", "by")
+"""Keys of an ending that hold what is judged, or an own number."""
 NO_FIGURES = {95.0}
 """The usual confidence of an interval, in per cent."""
 
@@ -37,9 +39,7 @@ def sizes(text: str) -> set[float]:
 
 def given(row: Row, table: Table, loaded: LoadedTables) -> set[float]:
     """Sizes that the source gives or the program is given: of the row, of the table's other rows and of the cases."""
-    ends = row.ends.model_dump(mode="json", exclude={"why": True, "within": {"reason"}} if hasattr(row.ends, "within") else {"why"})
-    ends.pop("by", None)
-    texts = [table.source, *map(str, _leaves(ends))]
+    texts = [table.source, *map(str, _leaves(row.ends.model_dump(mode="json")))]
     for other in table.rows:
         texts += [other.quantity, other.place, *(loaded.manifest.numbers[number] for number in other.numbers)]
         texts += [str(other.expected)] if other.origin != "own" else []
@@ -53,7 +53,7 @@ def given(row: Row, table: Table, loaded: LoadedTables) -> set[float]:
 
 def _leaves(value: object) -> Iterable[object]:
     if isinstance(value, dict):
-        value = list(value.values())
+        value = [each for key, each in value.items() if key not in OWN]
     if isinstance(value, list | tuple):
         for each in value:
             yield from _leaves(each)
