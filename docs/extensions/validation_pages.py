@@ -74,7 +74,7 @@ def _picture(picture: PlacedPicture, rows: dict[str, Any]) -> list[str]:
     names = [row for of_class in picture.rows.values() for row in of_class]
     claims = "; ".join(f"{rows[row]['quantity']}: *{rows[row]['class']}*" for row in names[:MOST_ROWS])
     counts = ", ".join(f"{len(of_class)} {label}" for label, of_class in picture.rows.items())
-    ended = claims if len(names) <= MOST_ROWS else f"Of its {len(names)} rows: {counts}"
+    ended = f"Here: {claims if len(names) <= MOST_ROWS else f'of its {len(names)} rows {counts}'}"
     return [
         f"![{picture.title}](/verification/pictures/{picture.name})",
         "",

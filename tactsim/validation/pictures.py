@@ -28,7 +28,7 @@ class PlacedPicture:
     def caption(self) -> str:
         """Title, claim and how each of its rows ended, as plain text."""
         ended = "; ".join(f"{label}: {', '.join(rows)}" for label, rows in self.rows.items())
-        return f"{self.title}. {self.says}. {ended}."
+        return f"{self.title}. {self.says}. Here: {ended}."
 
 
 def file_name(table: str, figure: str) -> str:

@@ -43,7 +43,7 @@ def test_a_picture_stands_below_the_last_of_its_rows(tmp_path: Path) -> None:
     first, second = placed_pictures(outcome(tmp_path))
     assert (first.below, second.below) == ("known", "supply")
     assert first.rows == {"reproduced": ("stiffness",), "outside": ("known",)}
-    assert first.caption == "Fig. 1: bands. The thesis says that it is soft. reproduced: stiffness; outside: known."
+    assert first.caption == "Fig. 1: bands. The thesis says that it is soft. Here: reproduced: stiffness; outside: known."
     assert parts(["stiffness", "known", "supply"], [first, second]) == [(["stiffness", "known"], [first]), (["supply"], [second])]
     assert parts(["stiffness", "known"], []) == [(["stiffness", "known"], [])]
 
@@ -63,7 +63,7 @@ def test_markdown_has_each_picture_between_rows(tmp_path: Path) -> None:
     text = markdown_report([validated(tmp_path)], {"small": list(FILES["small"])})
     places = [text.index(words) for words in ("| known |", "![Fig. 1: bands](figures/small_beside.png)", "| supply |")]
     assert places == sorted(places)
-    assert "*Fig. 1: bands. The thesis says that it is soft. reproduced: stiffness; outside: known.*" in text
+    assert "*Fig. 1: bands. The thesis says that it is soft. Here: reproduced: stiffness; outside: known.*" in text
 
 
 def test_a_picture_that_was_not_drawn_has_no_place(tmp_path: Path) -> None:
