@@ -22,6 +22,8 @@ LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-"
 POINTS_SHOWN = 40
 MARKERS = ("o", "s", "^", "v", "D")
 LETTERS_OF_TITLE, LETTERS_OF_LEGEND = 11.5, 15.0  # that an inch holds
+LETTERS_BESIDE = 30
+"""In a line beside a panel, which may be one of two."""
 SHOWN_REACH = 2.4
 """Radius up to which a section is shown, in radii of the body: farther out the tissue is at rest."""
 
@@ -133,7 +135,7 @@ def _draw_curves(axis: Axes, panel: dict[str, Any], along: float) -> None:
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
     if panel.get("logarithmic"):
         label_decades(axis)
-    axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
+    axis.set_ylabel(textwrap.fill(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"], LETTERS_BESIDE))
     despined(axis)
 
 

@@ -125,7 +125,7 @@ def film_curves(
         changes = [each / each[0] - 1 for each in resistances]
         parts, unit = (1e6, "ppm") if max(np.abs(change).max() for change in changes) < SMALL else (100, "%")
         curves = [series(f"{force:g} N", x, parts * change) for force, change in zip(forces, changes, strict=True)]
-        panels.append(panel(f"change of R in {unit},\n{FILM_LABELS.get(name, name)}", "", curves))
+        panels.append(panel(f"change of R in {unit}, {FILM_LABELS.get(name, name)}", "", curves))
     return curves_figure(title, "time", "s", panels, even_panels=True)
 
 
