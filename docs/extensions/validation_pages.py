@@ -12,10 +12,14 @@ from markdown_parts import page, table
 
 from tactsim.validation.endings import LABELS
 from tactsim.validation.loading import load_groups
+from tactsim.validation.pictures import PlacedPicture, parts
 from tactsim.validation.report import MEANINGS, short
 
+MOST_ROWS = 4
+"""Rows that the caption of a picture tells one by one."""
 ROOT = Path(__file__).parents[2]
 KEPT = ROOT / "docs" / "verification" / "thesis.json"
+HEADER = ("number", "place", "from", "expected", "computed", "ended as", "why")
 ERRATUM = re.compile(r"\bE\d{1,2}\b")
 ERRATA = re.compile(r"E\d{1,2}(, E\d{1,2})*")
 
@@ -36,13 +40,15 @@ def validation_pages() -> dict[str, str]:
     lines += table(
         ("table", "what it holds", *map(short, LABELS)), [*rows, ("all", "", *(str(whole[label]) for label in LABELS))]
     )
-    lines += ["", f"The rows stand as `tactsim validate` computed them with tactsim {kept['tactsim']}.", ""]
+    lines += ["", f"The rows stand as tactsim {kept['tactsim']} computed them by", "", "```text", *kept["command"], "```", ""]
     if missing := [f"`{name}`" for name in recorded if name not in computed]:
         lines += [f"Recorded but not computed for this page: {', '.join(missing)}.", ""]
     for name, of_table in computed.items():
         lines += [f"(thesis-{name.replace('_', '-')})=", f"## {of_table['title']}", "", f"`{name}`, {of_table['source']}.", ""]
-        header = ("number", "place", "from", "expected", "computed", "ended as", "why")
-        lines += table(header, [_cells(row) for row in of_table["rows"].values()])
+        pictures = [PlacedPicture(**picture) for picture in of_table["pictures"]]
+        for names, below in parts(list(of_table["rows"]), pictures):
+            lines += table(HEADER, [_cells(of_table["rows"][row]) for row in names])
+            lines += [line for picture in below for line in _picture(picture, of_table["rows"])]
     return {"validation.inc": page(lines)}
 
 
@@ -61,6 +67,20 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
         _linked(row["ended"]) + allowed,
         why,
     )
+
+
+def _picture(picture: PlacedPicture, rows: dict[str, Any]) -> list[str]:
+    """A picture with its caption: what the source says, and what became of the rows that it belongs to."""
+    names = [row for of_class in picture.rows.values() for row in of_class]
+    claims = "; ".join(f"{rows[row]['quantity']}: *{rows[row]['class']}*" for row in names[:MOST_ROWS])
+    counts = ", ".join(f"{len(of_class)} {label}" for label, of_class in picture.rows.items())
+    ended = f"Here: {claims if len(names) <= MOST_ROWS else f'of its {len(names)} rows {counts}'}"
+    return [
+        f"![{picture.title}](/verification/pictures/{picture.name})",
+        "",
+        f"**{picture.title}.** {picture.says}. {ended}.",
+        "",
+    ]
 
 
 def _text(value: Any, unit: str) -> str:

@@ -81,7 +81,7 @@ def compare(name: str, table: Table, folder: Path, studies: Mapping[str, tuple[R
 def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
     """One row, evaluated and compared; its reason as the table writes it."""
     if isinstance(row.ends, NotTestable) or row.evaluate is None:
-        return RowOutcome(row, None, True, label_of(row.ends), _reason(row))
+        return RowOutcome(row, None, True, label_of(row.ends), reason_of(row))
     try:
         computed = row.evaluate(inputs)
     except TactsimError as error:
@@ -92,15 +92,16 @@ def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
         return RowOutcome(row, None, False, "LEFT: not a finite number", f"{computed}")
     judgement = row.ends.judge(value, row.expected_si, row.unit)
     words = judgement.ended if judgement.held else f"LEFT: {judgement.ended}"
-    return RowOutcome(row, value, judgement.held, words, _reason(row))
+    return RowOutcome(row, value, judgement.held, words, reason_of(row))
 
 
 def figures_of(row: Row) -> set[str]:
     """What the reason of a row lets the run fill in."""
-    return set(FIGURE.findall(_reason(row)))
+    return set(FIGURE.findall(reason_of(row)))
 
 
-def _reason(row: Row) -> str:
+def reason_of(row: Row) -> str:
+    """The reason of a row as its table writes it."""
     if isinstance(row.ends, Reproduced):
         return row.ends.within.reason
     return f"{row.ends.why}; {row.ends.within.reason}" if isinstance(row.ends, Regression) else row.ends.why
@@ -113,7 +114,7 @@ def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
         other = outcome if match[1] == "computed" else computed.get(match[1])
         return match[0] if other is None else figure_text(other, 3)  # one that no row has is a fault of the table
 
-    return FIGURE.sub(figure, outcome.reason) if outcome.computed is not None else outcome.reason
+    return FIGURE.sub(figure, outcome.reason) if outcome.held or outcome.computed is not None else outcome.reason
 
 
 def figure_text(outcome: RowOutcome, digits: int = 5) -> str:

@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from tactsim.validation.comparison import RowOutcome, TableOutcome
+from tactsim.validation.pictures import PlacedPicture, placed_pictures
 from tactsim.validation.report import (
     CLASSES,
     MEANINGS,
@@ -72,21 +73,24 @@ def _group(validation: Validation, figures: Mapping[str, Mapping[str, bytes]]) -
 
 
 def _table(outcome: TableOutcome, figures: Mapping[str, bytes]) -> dict[str, Any]:
+    drawn = [picture for picture in placed_pictures(outcome) if picture.name in figures]
     return {
         "name": outcome.name,
         "title": outcome.table.title,
         "source": outcome.table.source,
-        "rows": [_row(row) for row in outcome.rows],
-        "figures": [{"name": name, "source": _inline(content)} for name, content in figures.items()],
+        "rows": [_row(row, drawn) for row in outcome.rows],
+        "pictures": {picture.name: _inline(figures[picture.name]) for picture in drawn},
         "studies": [{"name": name, "runs": run_cells(runs)} for name, runs in outcome.inputs.studies.items()],
     }
 
 
-def _row(outcome: RowOutcome) -> dict[str, str]:
+def _row(outcome: RowOutcome, pictures: Sequence[PlacedPicture]) -> dict[str, Any]:
     names = ("id", "origin", "expected", "computed", "ratio", "allowed", "ended")
     shown = dict(zip(names, cells(outcome), strict=True))
     row = outcome.row
-    return {**shown, "quantity": row.quantity, "place": row.place, "label": outcome.label, "why": outcome.reason}
+    words = {"quantity": row.quantity, "place": row.place, "label": outcome.label, "why": outcome.reason}
+    seen_in = [picture.name for picture in pictures if any(row.id in rows for rows in picture.rows.values())]
+    return {**shown, **words, "seen_in": seen_in, "below": [picture for picture in pictures if picture.below == row.id]}
 
 
 def _inline(png: bytes) -> str:

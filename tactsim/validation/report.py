@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, get_args
 
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import LEFT, RowOutcome, TableOutcome, figure_text
 from tactsim.validation.endings import AFTER, LABELS, Bound, Origin, Outside, Regression, Reproduced, Tolerance
 from tactsim.validation.loading import LoadedTables
+from tactsim.validation.pictures import PlacedPicture, parts, placed_pictures
 from tactsim.version import __version__
 
 HEADER = ("row", "from", "expected", "computed", "ratio", "allowed", "ended as")
@@ -139,6 +140,7 @@ def _table_values(outcome: TableOutcome) -> dict[str, Any]:
         "source": outcome.table.source,
         "held": outcome.held,
         "rows": [row_values(row) for row in outcome.rows],
+        "pictures": [asdict(picture) for picture in placed_pictures(outcome)],
         "studies": {name: [run.model_dump(mode="json") for run in runs] for name, runs in outcome.inputs.studies.items()},
     }
 
@@ -185,11 +187,20 @@ def markdown_report(validations: Sequence[Validation], figures: Mapping[str, Seq
 
 def _markdown_section(outcome: TableOutcome, figures: Sequence[str]) -> list[str]:
     lines = ["", f"### {outcome.table.title}", "", f"{outcome.name}, {outcome.table.source}", ""]
-    rows = [(*cells(row)[:1], row.row.quantity, *cells(row)[1:], row.row.place, row.reason) for row in outcome.rows]
-    lines += markdown_table((HEADER[0], "quantity", *HEADER[1:], "place", "reason"), rows)
+    drawn = [picture for picture in placed_pictures(outcome) if picture.name in figures]
+    by_name = {row.row.id: row for row in outcome.rows}
+    for names, pictures in parts(list(by_name), drawn):
+        rows = [by_name[name] for name in names]
+        shown = [(*cells(row)[:1], row.row.quantity, *cells(row)[1:], row.row.place, row.reason) for row in rows]
+        lines += [*markdown_table((HEADER[0], "quantity", *HEADER[1:], "place", "reason"), shown), ""]
+        lines += [line for picture in pictures for line in _markdown_picture(picture)]
     for name, runs in outcome.inputs.studies.items():
-        lines += ["", f"#### Runs of {name}", "", *markdown_table(RUN_HEADER, run_cells(runs))]
-    return lines + [f"\n![{figure}](figures/{figure})" for figure in figures]
+        lines += [f"#### Runs of {name}", "", *markdown_table(RUN_HEADER, run_cells(runs)), ""]
+    return lines
+
+
+def _markdown_picture(picture: PlacedPicture) -> list[str]:
+    return [f"![{picture.title}](figures/{picture.name})", "", f"*{picture.caption}*", ""]
 
 
 RUN_HEADER = ("run", "status", "over the annulus", "over the disc", "displacement", "unstable volume", "end")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fnmatch import fnmatchcase
 from functools import lru_cache
 from typing import Annotated, Any, Literal, Self
 
@@ -12,6 +13,7 @@ from tactsim.registry import MarkedFunction
 from tactsim.units import parse_quantity
 from tactsim.validation.calls import Call, any_call, callable_now
 from tactsim.validation.endings import Bound, Ending, NotTestable, Origin, Regression, RegressionBound, Reproduced, in_si
+from tactsim.validation.inputs import Inputs
 from tactsim.validation.study import Study
 
 
@@ -83,6 +85,36 @@ class Row(FrozenModel):
         return value if self.unit == "1" else value / parse_quantity(f"1 {self.shown_unit}", self.unit)
 
 
+class Picture(FrozenModel):
+    """A figure of a table, and what it belongs to."""
+
+    says: str = Field(min_length=1)
+    """What the source says of it, or what it adds to the rows; a sentence without its full stop."""
+    rows: tuple[str, ...] = Field(min_length=1)
+    """Rows that it belongs to, below the last of which it stands; ``*`` stands for any part of a name."""
+    draw: SerializeAsAny[Call]
+    """How it is drawn."""
+
+    @property
+    def title(self) -> str:
+        """What is drawn."""
+        return str(getattr(self.draw, "title", self.draw.kind))
+
+    def shows(self, row: str) -> bool:
+        """Whether it belongs to the row of this name."""
+        return any(fnmatchcase(row, pattern) for pattern in self.rows)
+
+    def __call__(self, inputs: Inputs) -> Any:
+        """Its plain data.
+
+        Raises
+        ------
+        TactsimError
+            If it cannot be computed.
+        """
+        return self.draw(inputs)
+
+
 class Table(FrozenModel):
     """A table or figure of the thesis."""
 
@@ -98,7 +130,7 @@ class Table(FrozenModel):
     """Simulations that its rows rest on."""
     rows: tuple[Row, ...] = Field(min_length=1)
     """The numbers."""
-    figures: dict[str, SerializeAsAny[Call]] = {}
+    figures: dict[str, Picture] = {}
     """File name without suffix -> figure."""
 
     @model_validator(mode="after")
@@ -107,6 +139,13 @@ class Table(FrozenModel):
             repeated = {name for name in names if names.count(name) > 1}
             if repeated:
                 raise ValueError(f"{what} with the same name: {', '.join(sorted(repeated))}")
+        return self
+
+    @model_validator(mode="after")
+    def _beside_rows(self) -> Self:
+        for name, picture in self.figures.items():
+            if strange := [each for each in picture.rows if not any(fnmatchcase(row.id, each) for row in self.rows)]:
+                raise ValueError(f"the figure {name} belongs to rows that are not there: {', '.join(strange)}")
         return self
 
 
@@ -143,5 +182,6 @@ def table_class() -> type[Table]:
 def _table_of(quantities: tuple[MarkedFunction, ...], drawings: tuple[MarkedFunction, ...]) -> type[Table]:
     row = create_model("Row", __base__=Row, evaluate=(any_call(quantities) | None, None))
     rows: Any = (tuple[row, ...], Field(min_length=1))
-    figures: Any = (dict[str, any_call(drawings)], {})  # type: ignore[misc]
+    picture = create_model("Picture", __base__=Picture, draw=(any_call(drawings), ...))
+    figures: Any = (dict[str, picture], {})
     return create_model("Table", __base__=Table, rows=rows, figures=figures)

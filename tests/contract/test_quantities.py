@@ -59,7 +59,7 @@ def test_the_signature_is_typed_and_every_argument_described(marked: MarkedFunct
 
 def test_every_function_serves_a_shipped_table(tables: list[Table], rows: list[Row]) -> None:
     used = {row.evaluate.marked for row in rows if row.evaluate}
-    used |= {figure.marked for table in tables for figure in table.figures.values()}
+    used |= {figure.draw.marked for table in tables for figure in table.figures.values()}
     assert [marked.name for marked in FUNCTIONS if marked not in used] == []
 
 
@@ -150,7 +150,7 @@ def computed(folder: Path) -> tuple[float | None, bool]:
 
 
 def test_a_function_of_a_temporary_module_takes_part_until_it_is_forgotten(tmp_path: Path, module: Callable[..., Any]) -> None:
-    folder = written(tmp_path, figure="figures:\n  empty: {kind: nothing, title: none}\n")
+    folder = written(tmp_path, figure='figures:\n  empty: {says: none, rows: ["*"], draw: {kind: nothing, title: none}}\n')
     with pytest.raises(CaseError, match="unknown kind 'doubled'"):
         load_tables(folder)
     added = module("added_numbers")

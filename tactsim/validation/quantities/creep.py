@@ -84,6 +84,16 @@ def contact_share(force: Positive[Force], time: NonNegative[Time] = 1.0, composi
     return float(contact / resistance_of(composite, force, time))
 
 
+FILM_LABELS = {
+    "lingstat_literal": "Table 2.1 literally",
+    "lingstat_identified": "identified to the line of 3.1.2",
+    "lingstat_joint": "fitted to line and creep",
+}
+"""What figures call the shipped composites of Lingstat."""
+SMALL = 1e-3
+"""Relative change below which it is drawn in parts per million."""
+
+
 @drawing
 def film_curves(
     title: Title,
@@ -92,7 +102,7 @@ def film_curves(
     forces: tuple[Positive[Force], ...] = (2.0, 5.0, 8.0),
     largest: Positive[float] = 5.0,
 ) -> Data:
-    """Resistance of films 1 s after a force over the force, or relative to its beginning over the time at several forces.
+    """Resistance of films 1 s after a force over the force, or its relative change over the time at several forces.
 
     Parameters
     ----------
@@ -103,14 +113,19 @@ def film_curves(
     """
     if over == "force":
         x = np.linspace(FIRST_FORCE, largest, POINTS)
-        curves = [series(name, x, np.asarray(resistance_of(named_composite(name), x, 1.0))) for name in composites]
+        curves = [
+            series(FILM_LABELS.get(name, name), x, np.asarray(resistance_of(named_composite(name), x, 1.0)))
+            for name in composites
+        ]
         return curves_figure(title, "force", "N", [panel("resistance after 1 s", "ohm", curves, logarithmic=True)])
     x = np.linspace(0.0, largest, POINTS)
     panels = []
     for name in composites:
         resistances = [np.asarray(resistance_of(named_composite(name), force, x)) for force in forces]
-        curves = [series(f"{force:g} N", x, each / each[0]) for force, each in zip(forces, resistances, strict=True)]
-        panels.append(panel(f"R over its first value, {name.removeprefix('lingstat_')}", "", curves))
+        changes = [each / each[0] - 1 for each in resistances]
+        parts, unit = (1e6, "ppm") if max(np.abs(change).max() for change in changes) < SMALL else (100, "%")
+        curves = [series(f"{force:g} N", x, parts * change) for force, change in zip(forces, changes, strict=True)]
+        panels.append(panel(f"change of R in {unit}, {FILM_LABELS.get(name, name)}", "", curves))
     return curves_figure(title, "time", "s", panels, even_panels=True)
 
 
@@ -132,7 +147,7 @@ def film_surface(
     force, time = np.linspace(FIRST_FORCE, largest_force, POINTS), np.linspace(0.0, duration, POINTS)
     panels = [
         {
-            "title": name.removeprefix("lingstat_"),
+            "title": FILM_LABELS.get(name, name),
             "z": [np.asarray(resistance_of(named_composite(name), each, time)).tolist() for each in force],
         }
         for name in composites

@@ -17,6 +17,8 @@ from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 AREA, HEIGHT, MEAN_LOAD, AMPLITUDE = 100e-6, 5e-3, 5e-3, 2.5e-3
 """Specimen and loads, in SI, which the thesis does not print; they cancel in a modulus."""
 SHOWN_CYCLES = 3.0
+PAUSE = 0.3
+"""Between two tests as they are drawn, over the duration of the first."""
 
 Cycles = Annotated[float, Field(ge=1, le=1000, description="Recorded cycles, whole or not.")]
 NoisePart = Annotated[float, Field(ge=0, le=0.5, description="Noise of each sample over the amplitude of its oscillation.")]
@@ -72,16 +74,37 @@ def dma_signal_lag(frequency: Positive[Frequency], *, cycles: Cycles = 20.0, noi
 
 
 @drawing
-def dma_signals_over_time(title: Title, frequency: Positive[Frequency], *, noise: NoisePart = 0.02, hold: Hold = None) -> Data:
-    """Load in N and displacement in m over the first cycles of a test, as in Fig. 4.8 and 4.9.
+def dma_successive_tests(
+    title: Title, frequencies: Annotated[tuple[Positive[Frequency], ...], Field(min_length=2)], *, noise: NoisePart = 0.02
+) -> Data:
+    """Load in N and displacement in m over the first cycles of tests one after the other, as in Fig. 4.8.
+
+    Parameters
+    ----------
+    frequencies : of the tests
+    """
+    loads, displacements, begin = [], [], 0.0
+    for frequency in frequencies:
+        signals = _signals(frequency, SHOWN_CYCLES, noise, None, 1)
+        time = begin + signals.time - signals.time[0]
+        loads.append(series(f"{frequency:g} Hz", time, signals.load))
+        displacements.append(series(f"{frequency:g} Hz", time, signals.displacement))
+        begin = time[-1] + PAUSE * SHOWN_CYCLES / frequencies[0]
+    panels = [panel("load", "N", loads), panel("displacement", "m", displacements)]
+    return curves_figure(title, "time", "s", panels, even_panels=True)
+
+
+@drawing
+def dma_phase(title: Title, frequency: Positive[Frequency], *, noise: NoisePart = 0.02) -> Data:
+    """Load and displacement over their own amplitude, about their means, which shows the angle between them, as in Fig. 4.9.
 
     Parameters
     ----------
     frequency : of the test
     """
-    signals = _signals(frequency, SHOWN_CYCLES, noise, hold, 1)
-    panels = [
-        panel("load", "N", [series("load", signals.time, signals.load)]),
-        panel("displacement", "m", [series("displacement", signals.time, signals.displacement)]),
-    ]
-    return curves_figure(title, "time", "s", panels, even_panels=True)
+    signals = _signals(frequency, SHOWN_CYCLES, noise, None, 1)
+    curves = []
+    for name, values in (("load", signals.load), ("displacement", signals.displacement)):
+        about = values - values.mean()
+        curves.append(series(name, signals.time, about / (np.sqrt(2) * about.std())))
+    return curves_figure(title, "time", "s", [panel("over its amplitude", "", curves)])

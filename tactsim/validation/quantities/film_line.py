@@ -111,9 +111,13 @@ def film_line_and_drift(
     ends: tuple[Literal["most"], Literal["least"]] = ("most", "least")
     x = np.array(exponents, dtype=float)
     errors = [
-        series("largest" if end == "most" else "smallest", x, np.array([100 * film_line_error(end, fit) for fit in fits]))
+        series(
+            "largest error" if end == "most" else "least error", x, np.array([100 * film_line_error(end, fit) for fit in fits])
+        )
         for end in ends
     ]
-    drifts = [series(f"{force:g} N", x, np.array([100 * film_drift(fit, force) for fit in fits])) for force in (1.0, 5.0)]
+    drifts = [
+        series(f"growth at {force:g} N", x, np.array([100 * film_drift(fit, force) for fit in fits])) for force in (1.0, 5.0)
+    ]
     panels = [panel("error of the reading, % of 5 N", "", errors), panel("growth of C in a minute, %", "", drifts)]
     return curves_figure(title, "gamma s0", "", panels, even_panels=True)

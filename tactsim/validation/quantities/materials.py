@@ -281,6 +281,6 @@ def uniaxial_fits(title: Title, material: SetName, forms: tuple[str, ...]) -> Da
         model = uniaxial_nominal_stress(fit.material, stretch)
         label = f"{form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
         stresses.append(series(label, stretch, model))
-        errors.append(series(form, stretch, 100 * (model / stress - 1)))
+        errors.append(series(label, stretch, 100 * (model / stress - 1)))
     panels = [panel("nominal stress", "Pa", stresses), panel("relative error in %", "", errors)]
     return curves_figure(title, "stretch", "", panels)

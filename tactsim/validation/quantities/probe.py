@@ -116,6 +116,7 @@ class ProbeRun(FrozenModel):
 Tissues = Annotated[int, Field(ge=2, le=20, description="Number of tissues of both runs.")]
 Rates = Annotated[tuple[Positive[Speed], ...], Field(min_length=1, description="Rates that are compared.")]
 Depths = Annotated[tuple[Positive[Length], ...], Field(min_length=1, description="Depths that are compared.")]
+TissueNumber = Annotated[int, Field(ge=1, description="Number of the tissue in the case, from 1.")]
 EACH_MM = (1e-3, 2e-3, 3e-3, 4e-3, 5e-3)
 
 
@@ -185,7 +186,7 @@ def probe_rank(inputs: Inputs, run: ProbeRun, press: Press, *, tissues: Tissues,
 def probe_tissues_by_rate(
     inputs: Inputs, title: Title, runs: Annotated[dict[str, ProbeRun], Field(min_length=1)], *, tissues: Tissues, rates: Rates
 ) -> Data:
-    """Force in N over depth in m of every tissue, one panel per rate, by one or several models: thesis Fig. 5.8.
+    """Force in N over depth in m of every tissue, one panel per rate, by one or two models: thesis Fig. 5.8.
 
     Parameters
     ----------
@@ -204,8 +205,38 @@ def probe_tissues_by_rate(
             depths = np.array(EACH_MM) if style == "points" else np.linspace(0.1e-3, EACH_MM[-1], 50)
             forces = _forces(inputs, which, tissues, (rate,), tuple(depths.tolist()))
             curves += [series(f"tissue {k + 1}, {name}", depths, forces[k, 0], style) for k in range(tissues)]
-        panels.append(panel(f"force at {format_quantity(rate, 'm/s')}", "N", curves))
+        panels.append(panel(f"force at {_speed(rate)}", "N", curves))
     return curves_figure(title, "depth", "m", panels, even_panels=True)
+
+
+@drawing
+def probe_rates_of_tissue(inputs: Inputs, title: Title, run: ProbeRun, rates: Rates, tissue: TissueNumber = 1) -> Data:
+    """Force in N over depth in m of one tissue at several rates: thesis Fig. 5.7.
+
+    Parameters
+    ----------
+    run : run of the probe
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge, or has no touch of the tissue at a rate.
+    """
+    outcome, depths = inputs.converged(run.study, run.run), np.linspace(0.1e-3, EACH_MM[-1], 50)
+    curves = [
+        series(
+            _speed(rate),
+            depths,
+            np.array([_force_at(depth, Press(tissue=tissue, rate=rate), outcome, run.study) for depth in depths]),
+        )
+        for rate in rates
+    ]
+    return curves_figure(title, "depth", "m", [panel("force", "N", curves)])
+
+
+def _speed(rate: float) -> str:
+    """A rate of indentation as the thesis writes it."""
+    return f"{1e3 * rate:g} mm/s"
 
 
 def _forces(inputs: Inputs, which: ProbeRun, tissues: int, rates: tuple[float, ...], depths: tuple[float, ...]) -> Array:

@@ -135,4 +135,8 @@ def test_numbers_for_the_tables():
     assert quantities.dma_signal_error("difference_over_error", 6.0, **noisy) < 3
     assert quantities.dma_signal_error("difference", 1.0, hold=5.0) > 1e-3
     assert quantities.dma_signal_lag(1.0) == pytest.approx(np.angle(true_moduli((1.0,))[0]), rel=1e-11)
-    assert len(quantities.dma_signals_over_time("Signals", 6.0)["panels"]) == 2
+    load, displacement = quantities.dma_successive_tests("Tests", (6.0, 11.0))["panels"]
+    (first, second), _ = load["curves"], displacement["curves"]
+    assert first["x"][-1] < second["x"][0], "one after the other"
+    force, way = (np.array(curve["y"]) for curve in quantities.dma_phase("Signals", 6.0, noise=0.0)["panels"][0]["curves"])
+    assert np.mean(force * way) * 2 == pytest.approx(np.cos(np.angle(true_moduli((6.0,))[0])), abs=0.01)  # whole cycles, sampled

@@ -17,6 +17,7 @@ from tactsim.validation.quantities.probe import (
     probe_model_difference,
     probe_order_kept,
     probe_rank,
+    probe_rates_of_tissue,
     probe_tissues_by_rate,
 )
 from tactsim.validation.study import RunOutcome
@@ -70,6 +71,9 @@ def test_ranks_and_the_figure():
     drawn = probe_tissues_by_rate(given, "t", {"finite elements": FEM, "fast": FAST}, **BOTH)
     assert [len(part["curves"]) for part in drawn["panels"]] == [6, 6, 6]
     assert {curve["style"] for curve in drawn["panels"][0]["curves"]} == {"line", "points"}
+    (part,) = probe_rates_of_tissue(given, "t", FEM, RATES, 2)["panels"]
+    assert [curve["label"] for curve in part["curves"]] == ["1 mm/s", "0.5 mm/s", "3 mm/s"]
+    assert part["curves"][1]["y"][-1] == pytest.approx(3.9 * 5e-3), "tissue 2 at the second rate, 5 mm deep"
 
 
 @pytest.mark.slow

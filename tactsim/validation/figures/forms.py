@@ -1,15 +1,14 @@
-"""Figures of the validation report from plain data: brackets of runs beside printed numbers, and curves."""
+"""The forms of figures from plain data: brackets of runs beside printed numbers, curves, maps, pictures, surfaces, sections."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tactsim.errors import UnknownName
@@ -25,15 +24,16 @@ from tactsim.plotting.canvas import (
     weighted_percentiles,
 )
 from tactsim.units import format_quantity
-from tactsim.validation.comparison import RowOutcome
 
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
 POINTS_SHOWN = 40
+MARKERS = ("o", "s", "^", "v", "D")
+LETTERS_OF_TITLE, LETTERS_OF_LEGEND = 11.5, 15.0  # that an inch holds
+LETTERS_BESIDE = 30
+"""In a line beside a panel, which may be one of two."""
 SHOWN_REACH = 2.4
 """Radius up to which a section is shown, in radii of the body: farther out the tissue is at rest."""
-WIDTH_OF_CHAPTER = 0.8
-"""Part of the distance of two chapters that the points of one take."""
 
 
 def validation_figure(data: dict[str, Any]) -> bytes:
@@ -58,59 +58,6 @@ def validation_figure(data: dict[str, Any]) -> bytes:
         return png(forms[data["form"]](data))
 
 
-def overview(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> bytes:
-    """PNG with every row as a point: computed over expected by chapter, coloured by class; below, rows without such a ratio.
-
-    ``chapters`` holds the chapter of each row.
-    """
-    with styled():
-        return png(overview_figure(rows, chapters, colours))
-
-
-def overview_figure(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> Figure:
-    """The figure of `overview`."""
-    names, places = list(dict.fromkeys(chapters)), _places(chapters)
-    figure = new_figure(9.5, 5.2)
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3.2, 1.0))
-    labels = [label for label in colours if any(row.label == label for row in rows)]
-    for height, label in enumerate(labels):
-        for axis, with_ratio in ((upper, True), (lower, False)):
-            chosen = [k for k, row in enumerate(rows) if row.label == label and _has_ratio(row) == with_ratio]
-            x = [places[k] for k in chosen]
-            y = [rows[k].ratio if with_ratio else len(labels) - height for k in chosen]
-            axis.plot(x, y, "o", markersize=4.5, markeredgewidth=0.4, markeredgecolor="white", color=colours[label])
-    upper.set_yscale("log")
-    upper.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
-    _label_decades(upper)
-    upper.set_ylabel("computed over expected")
-    lower.set_ylabel("no ratio")
-    lower.set_yticks([])
-    lower.set_xticks(range(len(names)), [f"chapter {name}" if name.isdigit() else name for name in names])
-    counts = {label: sum(row.label == label for row in rows) for label in labels}
-    handles = [
-        Line2D([], [], marker="o", linestyle="", color=colours[label], label=f"{label} ({counts[label]})") for label in labels
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=8, frameon=False)
-    for axis in (upper, lower):
-        despined(axis)
-    entitle(figure, f"{len(rows)} rows: what is computed over what is expected")
-    return figure
-
-
-def _has_ratio(row: RowOutcome) -> bool:
-    return row.ratio is not None and row.ratio > 0
-
-
-def _places(chapters: Sequence[str]) -> list[float]:
-    """Place of each point along the axis: chapter by chapter, the rows of a chapter side by side in their order."""
-    counts, seen = Counter(chapters), Counter[str]()
-    names, places = list(counts), []
-    for chapter in chapters:
-        places.append(names.index(chapter) + WIDTH_OF_CHAPTER * ((seen[chapter] + 0.5) / counts[chapter] - 0.5))
-        seen[chapter] += 1
-    return places
-
-
 def ranges_figure(data: dict[str, Any]) -> Figure:
     """One panel per study: a bar from the smallest to the largest value of each run, printed numbers as lines."""
     panels = data["panels"]
@@ -121,7 +68,7 @@ def ranges_figure(data: dict[str, Any]) -> Figure:
         _draw_ranges(axis, panel, data["unit"])
         axis.set_xlabel(data["axis"])
         axis.tick_params(axis="y", labelleft=place == 0 or not alike)
-    entitle(figure, data["title"])
+    write_title(figure, data["title"])
     return figure
 
 
@@ -158,31 +105,45 @@ def curves_figure(data: dict[str, Any]) -> Figure:
     figure = new_figure(7.0, 4.2 if len(panels) == 1 else 6.0)
     ratios = [1.0 if data.get("even_panels") else 2.2, *[1.0] * (len(panels) - 1)]
     axes = figure.subplots(len(panels), 1, squeeze=False, sharex=True, height_ratios=ratios)[:, 0]
-    for axis, panel in zip(axes, panels, strict=True):
-        _draw_curves(axis, panel)
+    factor, unit = _scale_along(panels, data["x_unit"])
+    for place, (axis, panel) in enumerate(zip(axes, panels, strict=True)):
+        _draw_curves(axis, panel, factor)
+        labels = [curve["label"] for curve in panel["curves"]]
+        if place == 0 or not set(labels) <= {curve["label"] for curve in panels[0]["curves"]}:
+            columns = max(1, min(len(labels), int(LETTERS_OF_LEGEND * figure.get_figwidth() / (max(map(len, labels)) + 8))))
+            axis.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns)  # above: over no curve
     if data.get("x_logarithmic"):
         axes[-1].set_xscale("log")
         axes[-1].xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes[0].legend(fontsize=8)
-    axes[-1].set_xlabel(" in ".join(part for part in (data["x_axis"], data["x_unit"]) if part))
-    entitle(figure, data["title"])
+    axes[-1].set_xlabel(" in ".join(part for part in (data["x_axis"], unit) if part))
+    write_title(figure, data["title"])
     return figure
 
 
-def _draw_curves(axis: Axes, panel: dict[str, Any]) -> None:
+def _scale_along(panels: Sequence[dict[str, Any]], unit: str) -> tuple[float, str]:
+    """Factor and unit of the horizontal axis: a prefix where everything is small, such as mm."""
+    largest = max(float(np.abs(curve["x"]).max()) for panel in panels for curve in panel["curves"])
+    return scale_of(largest, unit) if unit and largest < 1 else (1.0, unit)
+
+
+def _draw_curves(axis: Axes, panel: dict[str, Any], along: float) -> None:
     largest = max(float(np.abs(curve["y"]).max()) for curve in panel["curves"])
     factor, unit = scale_of(largest, panel["unit"]) if panel["unit"] else (1.0, "")
     styles = iter(LINE_STYLES * len(panel["curves"]))
+    count = sum(curve["style"] == "points" for curve in panel["curves"])
+    points = iter([(MARKERS[k % len(MARKERS)], f"C{k}" if count > 1 else "0.6") for k in range(count)])
     for curve in panel["curves"]:
-        x, y = np.array(curve["x"]), factor * np.array(curve["y"])
+        x, y = along * np.array(curve["x"]), factor * np.array(curve["y"])
         if curve["style"] == "points":
-            axis.plot(x, y, "o", color="0.6", markersize=4, markevery=max(1, x.size // POINTS_SHOWN), label=curve["label"])
+            marker, colour = next(points)  # the colours of the lines, in the same order
+            every = max(1, x.size // POINTS_SHOWN)
+            axis.plot(x, y, marker, color=colour, markersize=4, markevery=every, label=curve["label"])
         else:
             axis.plot(x, y, next(styles), label=curve["label"])
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
     if panel.get("logarithmic"):
-        _label_decades(axis)
-    axis.set_ylabel(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"])
+        label_decades(axis)
+    axis.set_ylabel(textwrap.fill(f"{panel['y_axis']} in {unit}" if unit else panel["y_axis"], LETTERS_BESIDE))
     despined(axis)
 
 
@@ -207,7 +168,7 @@ def maps_figure(data: dict[str, Any]) -> Figure:
         axes[0, place].set_title(column["title"], fontsize=9)
     for axis, side in zip(axes[:, 0], JAWS, strict=True):
         axis.set_ylabel(f"{side} jaw, row")
-    entitle(figure, f"{data['title']} in {data['unit']}")
+    write_title(figure, f"{data['title']} in {data['unit']}")
     return figure
 
 
@@ -225,7 +186,7 @@ def images_figure(data: dict[str, Any]) -> Figure:
         axis.set_yticks([])
         axis.set_title(panel["title"], fontsize=9, loc="left")
     axes[-1].set_xlabel(data["axis"])
-    entitle(figure, data["title"])
+    write_title(figure, data["title"])
     return figure
 
 
@@ -240,7 +201,7 @@ def surfaces_figure(data: dict[str, Any]) -> Figure:
         factor, unit = scale_of(float(np.abs(z).max()), data["unit"])
         axis.plot_surface(x, y, factor * z, cmap=PRESSURE_COLOURS, linewidth=0, rcount=len(x), ccount=len(x))
         axis.set(xlabel=data["x_axis"], ylabel=data["y_axis"], zlabel=f"{data['z_axis']} in {unit}", title=panel["title"])
-    entitle(figure, data["title"])
+    write_title(figure, data["title"])
     return figure
 
 
@@ -268,13 +229,20 @@ def sections_figure(data: dict[str, Any]) -> Figure:
         label = f"{data['label']} in {unit}\n(colours: 1st to 99th percentile of the area)"
         figure.colorbar(drawn, ax=axis, location="bottom", extend="both", label=label)
         despined(axis)
-    entitle(figure, data["title"])
+    write_title(figure, data["title"])
     return figure
 
 
-def _label_decades(axis: Axes) -> None:
-    """Plain numbers along a logarithmic vertical axis, between the decades too where there is less than one."""
+def write_title(figure: Figure, title: str) -> None:
+    """Writes the title above a figure, in two lines if one is too short."""
+    first, *rest = textwrap.wrap(title, int(LETTERS_OF_TITLE * figure.get_figwidth()))
+    entitle(figure, first, " ".join(rest))
+
+
+def label_decades(axis: Axes) -> None:
+    """Plain numbers along a logarithmic vertical axis, between the decades too where there are less than two."""
     plain = FuncFormatter(lambda value, _: f"{value:g}")
+    some = FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else "")
     low, high = axis.get_ylim()
     axis.yaxis.set_major_formatter(plain)
-    axis.yaxis.set_minor_formatter(plain if high < 10 * low else NullFormatter())
+    axis.yaxis.set_minor_formatter(plain if high < 10 * low else some if high < 100 * low else NullFormatter())
