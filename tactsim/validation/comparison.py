@@ -15,8 +15,9 @@ from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Row, Table
 
 LEFT = "left"
-FIGURE = re.compile(r"\{([a-z0-9_.]+)\}")
-"""A figure of a reason that the run fills in: ``{computed}`` and ``{ratio}`` of the row itself, ``{ID}`` of another one."""
+FIGURE = re.compile(r"\{([a-z0-9_.]+)(?::([1-9]))?\}")
+"""A figure of a reason that the run fills in, to three digits: ``{computed}`` and ``{ratio}`` of the row itself, ``{ID}`` of
+another one, ``{ID:5}`` to five."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
 
 def figures_of(row: Row) -> set[str]:
     """What the reason of a row lets the run fill in."""
-    return set(FIGURE.findall(reason_of(row)))
+    return {match[1] for match in FIGURE.finditer(reason_of(row))}
 
 
 def reason_of(row: Row) -> str:
@@ -109,10 +110,11 @@ def reason_of(row: Row) -> str:
 
 def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
     def figure(match: re.Match[str]) -> str:
+        digits = int(match[2] or 3)
         if match[1] == "ratio":
-            return "?" if outcome.ratio is None else f"{outcome.ratio:.3g}"
+            return "?" if outcome.ratio is None else f"{outcome.ratio:.{digits}g}"
         other = outcome if match[1] == "computed" else computed.get(match[1])
-        return match[0] if other is None else figure_text(other, 3)  # one that no row has is a fault of the table
+        return match[0] if other is None else figure_text(other, digits)  # one that no row has is a fault of the table
 
     return FIGURE.sub(figure, outcome.reason) if outcome.held or outcome.computed is not None else outcome.reason
 

@@ -57,7 +57,7 @@ def test_kept_rows_are_those_of_the_table(name: str) -> None:
 def is_kept(row: Row, kept: dict[str, Any]) -> bool:
     """Whether the words of a row are those of the table, whatever figures the run filled in."""
     pattern = re.escape(reason_of(row))
-    for placeholder in {f"{{{each}}}" for each in FIGURE.findall(reason_of(row))}:
+    for placeholder in {match[0] for match in FIGURE.finditer(reason_of(row))}:
         pattern = pattern.replace(re.escape(placeholder), ".+")
     words = {"quantity": row.quantity, "place": row.place, "from": row.origin, "class": label_of(row.ends)}
     return all(kept[key] == value for key, value in words.items()) and re.fullmatch(pattern, kept["why"]) is not None

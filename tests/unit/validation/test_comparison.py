@@ -58,7 +58,7 @@ rows:
     expected: EXPECTED
     from: thesis
     evaluate: {kind: bracket, studies: [icf], quantity: threshold_pressure}
-    ends: {kind: outside, by: 30.0, within: 0.1, why: 'known: {computed}, {ratio} times, {runs} runs'}
+    ends: {kind: outside, by: 30.0, within: 0.1, why: 'known: {computed:1}, {ratio} times, {runs} runs'}
   - id: runs
     quantity: runs
     place: line 2
@@ -117,7 +117,7 @@ def test_an_interval_is_computed_without_what_it_is_compared_with(tmp_path: Path
 def test_the_run_fills_in_the_figures_of_a_reason(tmp_path: Path) -> None:
     table = load_tables(write_tables(tmp_path, BRACKET.replace("EXPECTED", "500 Pa"))).tables["small"]
     (row, *_) = compare("small", table, tmp_path, {"icf": (run("a", 20e3), run("b", 40e3))}).rows
-    assert row.reason == "known: 1.5e+04 to 4e+04 Pa, 30 times, 2 runs"
+    assert row.reason == "known: 2e+04 to 4e+04 Pa, 30 times, 2 runs"
 
 
 def test_a_figure_that_no_row_has_is_a_fault(tmp_path: Path) -> None:
