@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.errors import ConvergenceError, InputError, InvalidQuantity, shown
 from tactsim.identification.certainty import COVERED, DRAWS, SEED, intervals, noise_of
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_least_squares import PRIOR_DEVIATION
@@ -143,6 +143,8 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
 
     Raises
     ------
+    InputError
+        If it is neither a `RelaxationCurve` nor a path.
     StorageError
         If the file cannot be read.
     InvalidQuantity
@@ -153,6 +155,8 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
     Source: Boltzmann's superposition, as in Tschoegl 1989, chapter 2; the spectrum, Lawson & Hanson 1974, chapter 23, and Jakes
     1995, doi:10.1135/cccc19951815.
     """
+    if not isinstance(curve, RelaxationCurve | str | Path):
+        raise InputError(f"fit_relaxation: {shown(curve)} is not a curve; expected the path of a CSV file, or a RelaxationCurve")
     measured = curve if isinstance(curve, RelaxationCurve) else read_relaxation_curve(curve)
     if not (np.isfinite(rise) and rise >= 0):
         raise InvalidQuantity(f"rise is {rise:g} s; allowed: 0 or more")

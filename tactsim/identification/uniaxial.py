@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
+from tactsim.errors import ConvergenceError, InputError, InvalidQuantity, UnknownName, shown
 from tactsim.identification.uniaxial_certainty import (
     BARELY_STRETCHED,
     UniaxialCertainty,
@@ -124,6 +124,8 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
 
     Raises
     ------
+    InputError
+        If it is not a `UniaxialCurve`.
     UnknownName
         If there is no such form.
     InvalidQuantity
@@ -131,6 +133,10 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
     ConvergenceError
         If no strongly elliptic material was found.
     """
+    if not isinstance(curve, UniaxialCurve):
+        raise InputError(
+            f"fit_uniaxial: {shown(curve)} is not a curve; expected what read_uniaxial_curve returns, or a UniaxialCurve"
+        )
     if form not in FORMS:
         raise UnknownName("form of the energy", form, FORMS)
     names = FORMS[form].coefficients

@@ -106,7 +106,7 @@ def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:
 def _range(ends: tuple[float, float]) -> str:
     """Both ends in one unit, three digits each."""
     if not np.isfinite(ends).all():
-        return "anything"
+        return "not determined"
     largest = max(map(abs, ends))
     unit, factor = _unit(largest)
     low, high = (f"{(0.0 if abs(end) < ROUND_OFF * largest else end) * factor:.3g}" for end in ends)

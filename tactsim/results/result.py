@@ -78,8 +78,8 @@ class Result:
     kind : that of the experiment
     units : unit of every history value
     title : that of the case, empty without one
-    scene : what later stages read beside quantities and history; see `scene_as`
-    experiment : what was run; None of a result that was read
+    scene : further data for later stages; see `scene_as`
+    experiment : what was run; None if the result was loaded from disk
     provenance : the case with its id, versions, seeds and the identity of the code, where known
     """
 
