@@ -43,6 +43,11 @@ Overrides = Sequence[str] | Mapping[str, Any]
 def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
     """The validated case in a file, the shipped case of a name such as ``annulus_icf``, or the case that a mapping describes.
 
+    >>> import tactsim as ts
+    >>> case = ts.load_case("annulus_icf", {"experiment.recess": "0.4 mm"})
+    >>> case.experiment.recess  # m
+    0.0004
+
     Parameters
     ----------
     path : of the file, which comes before a shipped case; or what such a file holds, ``{"schema": ..., "experiment": ...}``

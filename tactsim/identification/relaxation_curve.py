@@ -134,6 +134,14 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
     sample, where it has one minimum with few units, then over their times too. What relaxes faster than the first sample or
     slower than the last one cannot be told from the response at once and from the equilibrium.
 
+    >>> import tactsim as ts
+    >>> import numpy as np
+    >>> from tactsim.identification.relaxation_curve import RelaxationCurve
+    >>> time = np.geomspace(0.01, 60, 60)
+    >>> curve = RelaxationCurve(time, 0.5 + 0.3 * np.exp(-time / 0.1) + 0.2 * np.exp(-time / 2))
+    >>> ts.fit_relaxation(curve).case_line
+    'relaxation: {fractions: [0.3, 0.2], times: [0.1 s, 2 s]}'
+
     Parameters
     ----------
     curve

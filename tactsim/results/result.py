@@ -73,6 +73,13 @@ class FieldFrame:
 class Result:
     """What a run computed.
 
+    >>> import tactsim as ts
+    >>> result = ts.load_case("annulus_dynamic_load", {"experiment.points": 20}).run()
+    >>> str(result.status), f"{result['largest_force'].to('mN'):.0f}"
+    ('converged', '450 mN')
+    >>> result.history["force"].attrs["units"]
+    'N'
+
     Attributes
     ----------
     kind : that of the experiment

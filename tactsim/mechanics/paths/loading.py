@@ -205,11 +205,8 @@ def close(to: Any, duration: Any, *, hold: Any = None) -> DisplacementLoading:
     """A ramp to a displacement within a duration, held for another one if that is given.
 
     >>> import tactsim as ts
-    >>> loading = ts.close("1 mm", "1 s", hold="4 s")
-    >>> loading.duration
+    >>> ts.close(to="1 mm", duration="1 s", hold="4 s").duration  # s
     5.0
-    >>> loading.history()([0.5, 3.0]).tolist()  # m, at two times in s
-    [0.0005, 0.001]
 
     Raises
     ------
