@@ -59,6 +59,12 @@ def test_an_empty_path_is_bad_input(arguments: list[str], name: str, capsys: pyt
     assert error.startswith(f"error: argument {name}: {arguments[-1]!r} is no path; name a file or folder, . is the working")
 
 
+@pytest.mark.parametrize("arguments", [["schema"], ["sweep", "sweep_closed_form"]])
+def test_a_place_without_a_name_cannot_be_written(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*arguments, "--out", "."]) == 5
+    assert capsys.readouterr().err.startswith("error: cannot write .: it is a folder without a name of its own")
+
+
 def test_the_package_is_the_command() -> None:
     done = subprocess.run([sys.executable, "-m", "tactsim", "--version"], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, f"tactsim {__version__}\n")
