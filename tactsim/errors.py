@@ -33,13 +33,29 @@ INTERRUPTED = 130
 
 
 class TactsimError(Exception):
-    """Base class; ``exit_code`` is what the command line returns."""
+    """Base class; ``exit_code`` is what the command line returns.
+
+    >>> import tactsim as ts
+    >>> try:
+    ...     ts.load_result("no_such_folder")
+    ... except ts.TactsimError as error:
+    ...     print(error.exit_code)
+    5
+    """
 
     exit_code: ClassVar[int] = 1
 
 
 class InputError(TactsimError):
-    """What the user wrote cannot be used."""
+    """What the user wrote cannot be used.
+
+    >>> import tactsim as ts
+    >>> try:
+    ...     ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius="4 kPa")
+    ... except ts.InputError as error:
+    ...     print(error)
+    Sphere: radius: '4 kPa' has the wrong dimension; expected a length with its unit, such as '1 mm'
+    """
 
     exit_code = 2
 

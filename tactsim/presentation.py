@@ -29,6 +29,11 @@ LONGEST_TABLE = 12
 def load_result(directory: str | Path) -> Result:
     """The result in a folder that `Result.save` or ``tactsim run`` wrote, fields included.
 
+    >>> import tactsim as ts
+    >>> result = ts.ClosedForm.example().run()
+    >>> ts.load_result(result.save("pressed")) == result
+    True
+
     Raises
     ------
     StorageError

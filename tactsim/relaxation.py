@@ -25,6 +25,12 @@ class Relaxation(FrozenModel):
     with :math:`S_e` the isochoric second Piola-Kirchhoff stress of the energy. The constants of the energy are those at once
     (:math:`g(0) = 1`) or those after infinite time (:math:`g(\infty) = 1`).
 
+    >>> import tactsim as ts
+    >>> memory = ts.Relaxation(fractions=(0.3, 0.2), times=("0.1 s", "2 s"))
+    >>> tissue = ts.NeoHookean(c10="3 kPa", relaxation=memory)
+    >>> tissue.relaxation.times
+    (0.1, 2.0)
+
     Source: Simo 1987, doi:10.1016/0045-7825(87)90107-1; Holzapfel 2000, Nonlinear Solid Mechanics, section 6.10.
     """
 

@@ -30,6 +30,8 @@ PREFIXES = (
     "ronna- = 1e27 = R-",
     "quetta- = 1e30 = Q-",
 )
+RARE_PREFIXES = ("quecto", "ronto", "yocto", "zepto", "atto", "femto", "tera", "peta", "exa", "zetta", "yotta", "ronna", "quetta")
+"""Those that are read but in which no number is shown: an exponent reads better."""
 PREFIXED = (
     "meter = [length] = m = metre",
     "second = [time] = s = sec",
@@ -85,3 +87,23 @@ UNPREFIXED = (
     "percent = 0.01 = %",
 )
 """Their names stand alone: a ``ct`` is a carat, not a hundredth of a tonne."""
+DIMENSIONS = {
+    "m": ("a length", "1 mm"),
+    "Pa": ("a pressure", "1 kPa"),
+    "N": ("a force", "1 N"),
+    "s": ("a time", "1 s"),
+    "Hz": ("a frequency", "1 Hz"),
+    "m/s": ("a speed", "1 mm/s"),
+    "rad": ("an angle", "1 deg"),
+    "m^2": ("an area", "1 mm^2"),
+    "m^3": ("a volume", "1 mm^3"),
+    "ohm": ("a resistance", "1 kohm"),
+    "S": ("a conductance", "1 mS"),
+    "F": ("a capacitance", "1 pF"),
+    "V": ("a voltage", "1 V"),
+    "Pa*s": ("a viscosity", "1 kPa*s"),
+    "J": ("an energy", "1 J"),
+    "kg": ("a mass", "1 g"),
+    "kg/m^3": ("a density", "1 g/cm^3"),
+}
+"""SI unit of a dimension -> its name, and an example."""

@@ -24,7 +24,7 @@ from pydantic import (
 )
 
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.unit_definitions import PREFIXED, PREFIXES, UNPREFIXED
+from tactsim.unit_definitions import DIMENSIONS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED
 
 _QUANTITY = re.compile(
     r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",
@@ -109,6 +109,22 @@ def is_unit(text: str) -> bool:
         return False
 
 
+@lru_cache(maxsize=1024)
+def _asked(unit: str) -> str:
+    """What a message asks for where a quantity of the dimension of ``unit`` belongs."""
+    import pint
+
+    if unit in ("", "1", "%"):
+        return "a number with its unit, such as '1 %'"
+    for known, words in DIMENSIONS.items():
+        try:
+            _factor_to(known, unit)
+        except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+            continue
+        return f"{words[0]} with its unit, such as {words[1]!r}"
+    return f"a number with its unit, such as '1 {unit}'"
+
+
 def parse_quantity(text: str, unit: str) -> float:
     """The value of ``text`` ("0.8 mm") in ``unit`` ("m").
 
@@ -119,7 +135,7 @@ def parse_quantity(text: str, unit: str) -> float:
     """
     import pint
 
-    expected = f"expected a number with a unit of the dimension of {unit}, like '1 {unit}'"
+    expected = f"expected {_asked(unit)}"
     parts = _QUANTITY.fullmatch(text.strip())
     if parts is None or (parts["unit"] or "").startswith(","):
         point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected
@@ -168,7 +184,14 @@ def compact_unit(value: float, unit: str) -> str:
     """The unit with the SI prefix in which a value in SI reads well, such as ``kPa``."""
     if unit in ("", "1", "rad") or not value or not math.isfinite(value):
         return unit
-    return f"{_registry().Quantity(value, unit).to_compact().units:~C}".replace("**", "^")
+    return f"{_compact(value, unit).units:~C}".replace("**", "^")
+
+
+def _compact(value: float, unit: str) -> Any:
+    """The quantity with the SI prefix in which it reads well, from p to G, else as it is."""
+    quantity = _registry().Quantity(value, unit)
+    compact = quantity.to_compact()
+    return quantity if any(word.startswith(RARE_PREFIXES) for word, _ in compact.unit_items()) else compact
 
 
 def format_quantity(value: float, unit: str) -> str:
@@ -179,7 +202,7 @@ def format_quantity(value: float, unit: str) -> str:
         return f"{value:g} {unit}"
     if unit == "rad":
         return f"{math.degrees(value):.5g}°"
-    quantity = _registry().Quantity(value, unit).to_compact()
+    quantity = _compact(value, unit)
     return f"{quantity.magnitude:.5g} {quantity.units:~P}"
 
 
@@ -216,7 +239,7 @@ def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
 def written_quantity(value: float, unit: str) -> str:
     """``value`` in SI as a file writes it, exact to 15 digits: ``0.04, "m"`` gives ``"40 mm"``."""
     if value and math.isfinite(value) and unit != "rad":
-        compact = _registry().Quantity(value, unit).to_compact()
+        compact = _compact(value, unit)
         text = f"{compact.magnitude:.15g} {compact.units:~C}".replace("**", "^")
         if parse_quantity(text, unit) == float(f"{value:.15g}"):
             return text

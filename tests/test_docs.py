@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import tomllib
 from itertools import groupby
 from pathlib import Path
 
@@ -37,6 +38,27 @@ def test_every_block_is_executed_or_shown():
     languages = {language for path in pages() for language, _ in blocks_of(path.read_text(encoding="utf-8"))}
     assert languages <= EXECUTED | SHOWN, "a block is run, or it is marked `text`"
     assert len(PAGES) >= 5
+
+
+COMMANDS_OR_CASE = re.compile(r"^\s*(?:(?:tactsim|pytest|python|pip|scripts/\w+|\.) |scripts/\w+$|\w+: )", re.M)
+"""A line of what a reader might run: a command, or a key of a case."""
+
+
+def test_what_could_be_run_and_is_not_says_why():
+    block = re.compile(r"^(<!-- not run: \S[^\n]* -->\n)?```text\n(.*?)^```", re.M | re.S)
+    texts = {path: block.findall(path.read_text(encoding="utf-8")) for path in pages()}
+    assert sum(bool(why) for found in texts.values() for why, _ in found) >= 6
+    silent = [path.name for path, found in texts.items() for why, text in found if COMMANDS_OR_CASE.search(text) and not why]
+    assert silent == []
+
+
+def test_the_page_of_installation_lists_every_extra_with_its_packages():
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    table = dict(re.findall(r"^\| `(\w+)` \| ([^|]+) \|", (DOCS / "start" / "index.md").read_text(encoding="utf-8"), re.M))
+    assert set(table) == set(declared)
+    for extra, needed in declared.items():
+        if extra not in ("all", "docs", "dev"):
+            assert table[extra] == ", ".join(re.match(r"[\w.-]+", package)[0] for package in needed)
 
 
 def test_a_block_that_needs_an_absent_package_is_left_out():

@@ -235,13 +235,58 @@ def test_lengths_may_be_text_pint_or_si() -> None:
         (lambda: ts.Sphere((0, 0, 0), radius="4 mm", colour=1), r"Sphere: colour: unknown key; allowed: kind, center, radius"),
         (lambda: ts.Specimen(material="lump", thickness="2 furlong"), r"'furlong', which is not a unit that is read"),
         (lambda: ts.Indentation(specimen=ts.Specimen(material="lump"), body={"kind": "anulus"}, displacement=1e-3), "'annulus'"),
-        (lambda: ts.load_case("annulus_icf", {"experiment.recess": "4 kPa"}), r"--set experiment.recess: '4 kPa' has the wrong"),
+        (
+            lambda: ts.load_case("annulus_icf", {"experiment.recess": "4 kPa"}),
+            r"^override experiment.recess: '4 kPa' has the wrong dim",
+        ),
+        (lambda: ts.close(to="1 s", duration="1 s"), r"^close: to: '1 s' has the wrong dimension; expected a length"),
+        (lambda: ts.close("1 mm", 0), r"^close: duration: 0 is out of range; must be greater than 0 s$"),
+        (lambda: ts.close("1 mm", "1 s", hold="x"), r"^close: hold: 'x' is not a quantity; expected a time with its unit"),
         (lambda: ts.load_case("annulus_ifc"), r"unknown case 'annulus_ifc' \(did you mean 'annulus_icf'\?\)"),
     ],
 )
 def test_what_is_wrong_is_refused_in_the_words_of_a_file(make, words: str) -> None:
     with pytest.raises((CaseError, UnknownName), match=words):
         make()
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (
+            lambda: ts.fit_relaxation([1, 2, 3]),
+            r"\[1, 2, 3\] is not a curve; expected the path of a CSV file, or a RelaxationCurve",
+        ),
+        (lambda: ts.fit_uniaxial([1, 2], "stable"), r"\[1, 2\] is not a curve; expected what read_uniaxial_curve returns"),
+        (lambda: ts.choice([]), r"choice: \[\] is one option; give the options one by one"),
+        (lambda: ts.choice(), "choice: no option is given"),
+        (lambda: ts.choice("2 mm", "4 mm", weights=(1,)), "choice: weights"),
+        (lambda: ts.normal("2 mm", "-1 mm"), "normal: .*the latter must be positive"),
+        (lambda: ts.normal("2 mm", "1 mm", low="1 mm"), "give both bounds or neither"),
+        (lambda: ts.uniform("2 mm", "6 kg"), r"^uniform: '6 kg' has the wrong dimension; expected a length"),
+        (lambda: ts.uniform("4 mm", "2 mm"), "uniform: .* must increase"),
+        (lambda: ts.log_uniform(0, 1), "log_uniform: .* must be positive"),
+    ],
+)
+def test_arguments_of_functions_are_refused_at_once(make, words: str) -> None:
+    with pytest.raises(ts.InputError, match=words):
+        make()
+
+
+def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
+    radius = ts.uniform("2 mm", "6 mm")
+    shape = ts.choice(ts.Sphere((0.02, 0.02, 0.01), "4 mm"), ts.Ellipsoid.example())
+    for place in ("inclusions.0.shape.radius", "loading.pieces.0.to", "block.tissue.c10", "readout.seed", "upper.width"):
+        assert grasp.vary({place: radius}).places == {place: radius}
+    assert grasp.vary({"inclusions.0.shape": shape, "inclusions.0.shape.semi_axes.0": radius})
+    for place, words in {
+        "inclusions.0.shape.raduis": r"^vary: inclusions.0.shape: unknown key 'raduis' \(did you mean 'radius'\?\); allowed:",
+        "inclusions.1.shape.radius": "^vary: inclusions: a list without an entry '1'; entries: 0$",
+        "blok.tissue": r"^vary: unknown key 'blok' \(did you mean 'block'",
+        "block.size.0.x": r"^vary: block.size.0: 0.04 has no entry 'x'$",
+    }.items():
+        with pytest.raises(CaseError, match=words):
+            grasp.vary({place: radius})
 
 
 def test_more_values_than_fields_are_refused() -> None:
@@ -270,7 +315,9 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
     with pytest.raises(ts.InputError, match="outer_radus"):
         ts.sweep(ts.ClosedForm.example().vary({"outer_radus": ts.uniform("2 mm", "4 mm")}), samples=2, out=tmp_path / "b.zarr")
     with pytest.raises(ts.InputError, match="uniform"):
-        ts.sweep(ts.ClosedForm.example().vary({"outer_radius": ts.uniform("4 mm", "2 mm")}), samples=2, out=tmp_path / "c.zarr")
+        ts.sweep(
+            ts.ClosedForm.example().vary({"outer_radius": {"uniform": ["4 mm", "2 mm"]}}), samples=2, out=tmp_path / "c.zarr"
+        )
     assert not (tmp_path / "b.zarr").exists()
 
 

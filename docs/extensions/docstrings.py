@@ -84,7 +84,7 @@ def _first_of_annotated(text: str) -> str:
 
 def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
     """Makes a docstring what napoleon and docutils read in it: sections that end, entries with descriptions, plain signs."""
-    section, in_math, prepared = "", False, []
+    section, in_math, in_example, prepared = "", False, False, []
     for number, line in enumerate(lines):
         follows = lines[number + 1] if number + 1 < len(lines) else ""
         if follows.startswith("---") and set(follows) == {"-"}:
@@ -92,6 +92,7 @@ def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
         elif section and line and not line.startswith((" ", "---")) and not ENTRY.match(line) and not NAMES.match(line):
             prepared.append("")  # two blank lines end a section
             section = ""
+        in_example = bool(line.strip()) and (in_example or line.startswith(">>> "))
         if line.strip():
             in_math = line.strip().startswith((".. math::", "::")) or (in_math and line.startswith(" "))
         entry = ENTRY.match(line) if section in SECTIONS else None
@@ -99,7 +100,7 @@ def _prepare(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: l
             prepared += [entry["names"], f"    {entry['text']}"]
         else:
             prepared.append(line)
-        if not in_math:
+        if not (in_math or in_example):
             prepared[-1] = _plain_signs(prepared[-1])
     lines[:] = prepared
 

@@ -10,6 +10,7 @@ from typing import Any
 from case_pages import case_pages
 from command_pages import command_pages
 from module_pages import module_pages
+from name_pages import name_pages
 from point_pages import point_pages
 from rule_pages import rule_pages
 from sphinx.application import Sphinx
@@ -23,6 +24,7 @@ SOURCES: tuple[Callable[[], Pages], ...] = (
     case_pages,
     command_pages,
     module_pages,
+    name_pages,
     point_pages,
     rule_pages,
     validation_pages,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -13,13 +14,18 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
+EXAMPLE = re.compile(r"\n\n>>> .*?(?=\n\n|\Z)", re.S)
+"""Of the use from Python, which a file cannot follow."""
+
 
 class SchemaWithDescriptions(GenerateJsonSchema):
     """Describes every field by the docstring below it; read here only, for it costs as much time as a run has to answer in."""
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
-        """The schema of a model, its fields described."""
+        """The schema of a model, its fields described, without the example of its docstring."""
         fragment = super().model_schema(schema)
+        if "description" in fragment:
+            fragment["description"] = EXAMPLE.sub("", fragment["description"])
         described = field_descriptions(schema["cls"])
         for name, field in schema["cls"].model_fields.items():
             entry = fragment.get("properties", {}).get(field.alias or name)

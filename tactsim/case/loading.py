@@ -43,6 +43,11 @@ Overrides = Sequence[str] | Mapping[str, Any]
 def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
     """The validated case in a file, the shipped case of a name such as ``annulus_icf``, or the case that a mapping describes.
 
+    >>> import tactsim as ts
+    >>> case = ts.load_case("annulus_icf", {"experiment.recess": "0.4 mm"})
+    >>> case.experiment.recess  # m
+    0.0004
+
     Parameters
     ----------
     path : of the file, which comes before a shipped case; or what such a file holds, ``{"schema": ..., "experiment": ...}``
@@ -75,6 +80,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
     overrides = [overrides] if isinstance(overrides, str) else overrides
+    option = "override" if isinstance(overrides, Mapping) else "--set"
     named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     for override, value in named:
         try:
@@ -83,8 +89,8 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
             else:
                 key_path = apply_override(document, override)
         except YamlProblems as error:
-            raise case_error(error.problems, lambda _, text=override: f"--set {text}") from None  # type: ignore[misc]
-        overridden[key_path] = override.partition("=")[0].strip()
+            raise case_error(error.problems, lambda _, text=override: f"{option} {text}") from None  # type: ignore[misc]
+        overridden[key_path] = f"{option} {override.partition('=')[0].strip()}"
     return document, _place_in(path, overridden)
 
 
@@ -210,12 +216,12 @@ def _choices() -> str:
 
 
 def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
-    """Names the place of a problem: the option that set the value, or file and line."""
+    """Names the place of a problem: the override that set the value, such as ``--set experiment.recess``, or file and line."""
 
     def place(problem: Problem) -> str:
         for length in range(len(problem.path), 0, -1):
             if problem.path[:length] in overridden:
-                return f"--set {overridden[problem.path[:length]]}"
+                return overridden[problem.path[:length]]
         return f"{one_line(path)}:{problem.line}" if problem.line else one_line(path)
 
     return place
@@ -224,7 +230,7 @@ def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
 def in_words(problem: Problem, place: Place) -> str:
     """A problem after its place and its key path."""
     where, key = place(problem), one_line(".".join(map(str, problem.path)))
-    return ": ".join(part for part in (where, "" if where == f"--set {key}" else key, problem.message) if part)
+    return ": ".join(part for part in (where, "" if where.rpartition(" ")[2] == key else key, problem.message) if part)
 
 
 def case_error(problems: Sequence[Problem], place: Place) -> CaseError:

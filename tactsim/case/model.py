@@ -30,7 +30,15 @@ class Output(FrozenModel):
 
 
 class Case(FrozenModel):
-    """A validated case: every value in SI, every default filled in."""
+    """A validated case: every value in SI, every default filled in.
+
+    >>> import tactsim as ts
+    >>> case = ts.load_case("annulus_dynamic_load", {"experiment.points": 20})
+    >>> case.experiment.kind
+    'closed_form'
+    >>> f"{case.run()['largest_displacement'].to('um'):.1f}"
+    '938.3 um'
+    """
 
     schema_version: Literal["tactsim/case/1"] = Field(alias="schema")
     """Version of the case format."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from pydantic import BaseModel
-
 from tactsim.case.field_docstrings import field_descriptions
 from tactsim.case.model import SCHEMA, experiment_class
 from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
@@ -28,7 +26,6 @@ def template(kind: str) -> str:
     lines = [
         "# yaml-language-server: $schema=case.schema.json",
         *_comment(about, ""),
-        *_needed(example),
         f"schema: {SCHEMA}",
         f"title: {kind.replace('_', ' ').capitalize()}",
         "experiment:",
@@ -44,19 +41,6 @@ def template(kind: str) -> str:
     for name in left:
         lines += ["", *_comment(described.get(name, ""), "  "), *(f"  #{line[2:]}" for line in _entry(name, every[name]))]
     return "\n".join(lines) + "\n"
-
-
-def _needed(example: BaseModel) -> list[str]:
-    """How to make the stored results that the example names."""
-    folders = sorted({text for text in _texts(example.model_dump(mode="json")) if text.startswith("results/")})
-    commands = [f"tactsim run {folder.removeprefix('results/')}" for folder in folders]
-    return _comment(f"It reads stored results; make them first with: {'; '.join(commands)}", "") if commands else []
-
-
-def _texts(value: Any) -> list[str]:
-    if isinstance(value, dict | list):
-        return [text for item in (value.values() if isinstance(value, dict) else value) for text in _texts(item)]
-    return [value] if isinstance(value, str) else []
 
 
 def _comment(text: str, indent: str) -> list[str]:

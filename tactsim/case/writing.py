@@ -23,6 +23,11 @@ LONGEST_LINE = 100
 def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False) -> Path:
     """Writes a case file and returns its path; reading it gives a case of the same ``case_id``.
 
+    >>> import tactsim as ts
+    >>> press = ts.ClosedForm.example()
+    >>> ts.load_case(ts.save_case(press, "press.yaml")).experiment == press
+    True
+
     Parameters
     ----------
     case : a case, or an experiment, which becomes a case without a title

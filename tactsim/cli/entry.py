@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from tactsim.cli import (
     command_compare,
@@ -57,7 +57,11 @@ exit codes:
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser whose refusals are errors like all others."""
+    """An argument parser whose refusals are errors like all others, an empty path among them."""
+
+    def __init__(self, **options: Any):
+        super().__init__(**options)
+        self.register("type", Path, _path)
 
     def error(self, message: str) -> NoReturn:
         """Refuses the arguments.
@@ -68,6 +72,19 @@ class _Parser(argparse.ArgumentParser):
             Always.
         """
         raise InputError(f"{message}\nsee: {self.prog} --help")
+
+
+def _path(text: str) -> Path:
+    """The path that an option or argument names; an empty one, which would be the working folder, is refused.
+
+    Raises
+    ------
+    ArgumentTypeError
+        If it is empty.
+    """
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"{text!r} is no path; name a file or folder, . is the working folder")
+    return Path(text)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

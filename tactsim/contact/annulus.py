@@ -17,6 +17,11 @@ from tactsim.units import Length, format_quantity
 class Annulus(Revolved):
     """A rigid ring ``inner_radius <= r <= outer_radius`` whose face lies at z = 0 and whose walls rise along z > 0.
 
+    >>> import tactsim as ts
+    >>> ring = ts.Annulus(inner_radius="1.5 mm", outer_radius="3 mm")
+    >>> f"{1e6 * ring.area:.1f} mm^2"
+    '21.2 mm^2'
+
     Source: thesis, Fig. 3.1 and 3.7, p. 3.1.1; the fillet is not printed and is a declared assumption.
     """
 

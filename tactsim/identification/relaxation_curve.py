@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InvalidQuantity
+from tactsim.errors import ConvergenceError, InputError, InvalidQuantity, shown
 from tactsim.identification.certainty import COVERED, DRAWS, SEED, intervals, noise_of
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_least_squares import PRIOR_DEVIATION
@@ -134,6 +134,14 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
     sample, where it has one minimum with few units, then over their times too. What relaxes faster than the first sample or
     slower than the last one cannot be told from the response at once and from the equilibrium.
 
+    >>> import tactsim as ts
+    >>> import numpy as np
+    >>> from tactsim.identification.relaxation_curve import RelaxationCurve
+    >>> time = np.geomspace(0.01, 60, 60)
+    >>> curve = RelaxationCurve(time, 0.5 + 0.3 * np.exp(-time / 0.1) + 0.2 * np.exp(-time / 2))
+    >>> ts.fit_relaxation(curve).case_line
+    'relaxation: {fractions: [0.3, 0.2], times: [0.1 s, 2 s]}'
+
     Parameters
     ----------
     curve
@@ -143,6 +151,8 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
 
     Raises
     ------
+    InputError
+        If it is neither a `RelaxationCurve` nor a path.
     StorageError
         If the file cannot be read.
     InvalidQuantity
@@ -153,6 +163,8 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
     Source: Boltzmann's superposition, as in Tschoegl 1989, chapter 2; the spectrum, Lawson & Hanson 1974, chapter 23, and Jakes
     1995, doi:10.1135/cccc19951815.
     """
+    if not isinstance(curve, RelaxationCurve | str | Path):
+        raise InputError(f"fit_relaxation: {shown(curve)} is not a curve; expected the path of a CSV file, or a RelaxationCurve")
     measured = curve if isinstance(curve, RelaxationCurve) else read_relaxation_curve(curve)
     if not (np.isfinite(rise) and rise >= 0):
         raise InvalidQuantity(f"rise is {rise:g} s; allowed: 0 or more")

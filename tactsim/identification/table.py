@@ -22,8 +22,10 @@ LINE_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 """Characters at which text is cut into lines."""
 SEPARATORS = (",", ";", "\t")
 """Of columns, the first that stands in the first line; where it is no comma, a comma is that of a decimal fraction."""
-NOT_SHOWN = "(not shown, as the file is no table beside the case or in the working folder)"
+HIDDEN = "(contents hidden: shown only for table files beside the case or in the working folder)"
 """What a message says instead of the content of another file."""
+NO_TABLE = "(contents hidden: no row of the file holds numbers alone, as every table has one)"
+"""The same of a file that is no table, wherever it stands."""
 LONGEST_CELL = 80
 """Characters of a cell or a line that a message shows."""
 
@@ -70,11 +72,11 @@ class Table:
 
     def quoted(self, text: str) -> str:
         """A cell of a row as a message shows it, once the header is known to be that of a table."""
-        return f"'{one_line(text, LONGEST_CELL)}'" if self.quotable else NOT_SHOWN
+        return f"'{one_line(text, LONGEST_CELL)}'" if self.quotable else HIDDEN
 
     def quoted_header(self, text: str) -> str:
         """What stands in the first line as a message shows it."""
-        return self.quoted(text) if self.numeric else NOT_SHOWN
+        return self.quoted(text) if self.numeric or not self.quotable else NO_TABLE
 
     def numbers(self, names: Sequence[str] = ()) -> list[list[float]]:
         """The finite numbers of every row below the header, as many as it has columns, which messages call by ``names``.

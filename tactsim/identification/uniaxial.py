@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
+from tactsim.errors import ConvergenceError, InputError, InvalidQuantity, UnknownName, shown
 from tactsim.identification.uniaxial_certainty import (
     BARELY_STRETCHED,
     UniaxialCertainty,
@@ -122,8 +122,18 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
     with :math:`\epsilon` = ``STRESS_FLOOR``, so that a point near rest, all noise, does not rule the fit. With ``relative`` false
     :math:`w_k = 1 / \max_j |P_j|`. The errors of the result are relative, by the first form of :math:`w_k`.
 
+    >>> import tactsim as ts
+    >>> import numpy as np
+    >>> from tactsim.identification.uniaxial_data import UniaxialCurve
+    >>> stretch = np.linspace(0.7, 1.3, 13)
+    >>> curve = UniaxialCurve(stretch, 2 * (stretch - stretch**-2) * (3e3 + 2e3 / stretch), "made up")
+    >>> ts.fit_uniaxial(curve, "2-parameter").case_line
+    '{kind: mooney_rivlin_2, c10: 3 kPa, c01: 2 kPa}'
+
     Raises
     ------
+    InputError
+        If it is not a `UniaxialCurve`.
     UnknownName
         If there is no such form.
     InvalidQuantity
@@ -131,6 +141,10 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
     ConvergenceError
         If no strongly elliptic material was found.
     """
+    if not isinstance(curve, UniaxialCurve):
+        raise InputError(
+            f"fit_uniaxial: {shown(curve)} is not a curve; expected what read_uniaxial_curve returns, or a UniaxialCurve"
+        )
     if form not in FORMS:
         raise UnknownName("form of the energy", form, FORMS)
     names = FORMS[form].coefficients

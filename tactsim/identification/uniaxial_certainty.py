@@ -38,10 +38,10 @@ class UniaxialCertainty:
         """What cannot be relied on, in words."""
         warnings = []
         if self.undetermined:
-            modulus = _range(self.shear_modulus)
+            modulus = f" and the shear modulus at rest, {_range(self.shear_modulus)}" if _finite(self.shear_modulus) else ""
             warnings.append(
                 f"the curve does not determine {' and '.join(self.undetermined)} one by one, only the stress where it was "
-                f"measured and the shear modulus at rest, {modulus}: use a form of fewer constants or measure another deformation"
+                f"measured{modulus}: use a form of fewer constants or measure another deformation"
             )
         if self.noise.in_runs:
             warnings.append(
@@ -52,9 +52,9 @@ class UniaxialCertainty:
 
     def __str__(self) -> str:
         """The intervals in a line."""
-        ranges = ", ".join(f"{name} {_range(ends)}" for name, ends in self.intervals.items())
+        ranges = ", ".join(_named_range(name, ends) for name, ends in self.intervals.items())
         open_ends = f"; not determined one by one: {', '.join(self.undetermined)}" if self.undetermined else ""
-        return f"{COVERED:.0%} intervals: {ranges}, shear modulus at rest {_range(self.shear_modulus)}{open_ends}"
+        return f"{COVERED:.0%} intervals: {ranges}, {_named_range('shear modulus at rest', self.shear_modulus)}{open_ends}"
 
 
 def certainty(squares: LeastSquares, design: Array, target: Array, names: tuple[str, ...]) -> UniaxialCertainty:
@@ -103,10 +103,17 @@ def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:
     return ()
 
 
+def _finite(ends: tuple[float, float]) -> bool:
+    return bool(np.isfinite(ends).all())
+
+
+def _named_range(name: str, ends: tuple[float, float]) -> str:
+    """A name with its interval, or that it has none."""
+    return f"{name} {_range(ends)}" if _finite(ends) else f"{name}: not determined"
+
+
 def _range(ends: tuple[float, float]) -> str:
     """Both ends in one unit, three digits each."""
-    if not np.isfinite(ends).all():
-        return "anything"
     largest = max(map(abs, ends))
     unit, factor = _unit(largest)
     low, high = (f"{(0.0 if abs(end) < ROUND_OFF * largest else end) * factor:.3g}" for end in ends)

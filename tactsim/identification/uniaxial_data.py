@@ -75,7 +75,7 @@ class UniaxialCurve:
 
 
 def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
-    """The curve in a CSV file: a header such as ``strain [%], nominal stress [kPa]``, rows in any order, ``#`` before comments.
+    r"""The curve in a CSV file: a header such as ``strain [%], nominal stress [kPa]``, rows in any order, ``#`` before comments.
 
     What a testing machine writes above the header is passed over. Where a file holds true values beside nominal ones, the nominal
     ones are read.
@@ -84,6 +84,12 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     ``nominal stress``, ``engineering stress``, ``true stress`` or ``cauchy stress``, with its unit in brackets or after ``_``.
     Capitals do not matter, nor whether ``_`` or a blank stands between words. A stress that is not called true is nominal; a true
     stress is divided by the stretch, as the material keeps its volume.
+
+    >>> import tactsim as ts
+    >>> from pathlib import Path
+    >>> _ = Path("pulled.csv").write_text("strain [%], nominal stress [kPa]\n-10, -2.6\n10, 2.2\n20, 4.0\n")
+    >>> ts.read_uniaxial_curve("pulled.csv").stretch
+    array([0.9, 1.1, 1.2])
 
     Raises
     ------

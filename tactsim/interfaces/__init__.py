@@ -3,17 +3,16 @@
 To add a kind, subclass its point with a literal ``kind`` that has a default, in a new module of the point's ``package`` or
 anywhere else, such as a notebook. It is registered as it is defined; no list names it. `registry.kinds` lists the kinds of a
 point, `registry.forget` removes one, and two classes with one ``kind`` are an error that names both. A number or a figure of a
-thesis table is a function that `quantity` or `drawing` marks.
+thesis table is a function that `quantity` or `drawing` marks. `Recorder` and these two stand in modules beside this one.
 """
 
 from __future__ import annotations
 
 import hashlib
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
@@ -22,12 +21,11 @@ from tactsim.interfaces.contact_shape import ContactShape
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.recording import Recording, Values
+from tactsim.interfaces.recorder import Recorder as Recorder
 from tactsim.interfaces.run import Runnable
 from tactsim.interfaces.solid import Measures, Solid, check_bounds
 from tactsim.interfaces.table_functions import drawing as drawing
 from tactsim.interfaces.table_functions import quantity as quantity
-from tactsim.interfaces.variable import Variable
 from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
@@ -43,6 +41,11 @@ class Material(CaseKind):
     Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
     ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
     A body uses the stress and tangent given here; one without a compiled form is assembled by numpy, several times slower.
+
+    >>> import tactsim as ts
+    >>> tissue = ts.material("icf_stable")
+    >>> isinstance(tissue, ts.Material), f"{tissue.shear_modulus:.1f} Pa"
+    (True, '3553.6 Pa')
     """
 
     package: ClassVar[str] = "tactsim.materials"
@@ -80,6 +83,13 @@ class RigidBody(CaseKind):
     """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates.
 
     A case file names it as ``body``.
+
+    >>> import tactsim as ts
+    >>> import numpy as np
+    >>> ball = ts.kinds("body")["sphere"](radius="5 mm")
+    >>> distance, normal, _ = ball.signed_distance(np.array([[0.0], [0.0], [-0.002]]))  # 2 mm below it
+    >>> distance.round(6).tolist(), normal.ravel().tolist()
+    ([0.002], [0.0, 0.0, -1.0])
     """
 
     package: ClassVar[str] = "tactsim.contact"
@@ -114,7 +124,13 @@ class ContactLaw(CaseKind):
 
 
 class Inclusion(CaseKind):
-    """A body in the block, or a hollow one; a case file names it as ``shape`` among the ``inclusions``."""
+    """A body in the block, or a hollow one; a case file names it as ``shape`` among the ``inclusions``.
+
+    >>> import tactsim as ts
+    >>> ball = ts.kinds("inclusion")["sphere"](center=("20 mm", "20 mm", "12 mm"), radius="4 mm")
+    >>> ball.measures((0.04, 0.04, 0.02)).top  # m, in a block of this size
+    0.016
+    """
 
     package: ClassVar[str] = "tactsim.mesh.inclusions"
     data_set_number: ClassVar[int | None] = None
@@ -152,6 +168,12 @@ class SensorFilm(CaseKind):
 
     Methods that take samples raise InvalidQuantity if times do not increase, or a value is negative, not finite or beyond what
     the film can bear or give. Forces and signals are arrays (n, ...) at times (n,) in s.
+
+    >>> import tactsim as ts
+    >>> film = ts.kinds("film")["film"].example()
+    >>> conductance = film.read([0.0, 1.0], [0.0, 1.0])  # S, at times in s under forces in N
+    >>> film.force([0.0, 1.0], conductance).round(6).tolist()
+    [0.0, 1.0]
     """
 
     package: ClassVar[str] = "tactsim.sensors"
@@ -206,14 +228,30 @@ class SensorFilm(CaseKind):
 
 
 class Experiment(Runnable):
-    """What a case can ask for, as ``experiment``: a kind gives `begin`; `Runnable` times, limits and ends its run."""
+    """What a case can ask for, as ``experiment``: a kind gives `begin`; `Runnable` times, limits and ends its run.
+
+    >>> import tactsim as ts
+    >>> result = ts.kinds("experiment")["film_test"].example().run()
+    >>> str(result.status)
+    'converged'
+    """
 
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.(?!figures$|recorder$|scene$)\w+"
 
 
 class Estimator(CaseKind):
-    """Finds inclusions from readings; a case file names it as ``estimator``, the page and the ranking offer its variants."""
+    """Finds inclusions from readings; a case file names it as ``estimator``, the page and the ranking offer its variants.
+
+    >>> import tactsim as ts
+    >>> import numpy as np
+    >>> from tactsim.interfaces.readings import Readings
+    >>> forces = np.full((2, 3, 3), 0.2)  # N on the taxels of both jaws
+    >>> forces[:, 1, 2] = 0.5
+    >>> readings = Readings(forces, ts.TaxelLayout(), (0.04, 0.04, 0.02))
+    >>> ts.kinds("estimator")["thesis"]().estimate(readings).present
+    True
+    """
 
     package: ClassVar[str] = "tactsim.localization.estimators"
     needs_response: ClassVar[bool] = False
@@ -245,46 +283,6 @@ class Estimator(CaseKind):
         InputError
             If the readings lack what this estimator needs, such as a reference.
         """
-
-
-class Recorder(Kind):
-    """The labels and readings that a data set keeps of a kind of experiment: its ``kind`` is that of the experiment."""
-
-    package: ClassVar[str] = "tactsim.experiments"
-    modules: ClassVar[str] = r"\w+\.recorder"
-    settings: Recording
-    most_inclusions: int = 0
-    """Largest number of inclusions that the sweep can draw."""
-    quantities: ClassVar[Mapping[str, tuple[str, str]]] = {}
-    """Name of a number of the result -> unit and description; stored as they are."""
-    optional: ClassVar[tuple[str, ...]] = ()
-    """Those of them that a result may lack."""
-    noise_seed: ClassVar[tuple[str, ...]] = ()
-    """Where such an experiment keeps the seed of its noise; one that keeps none is read with noise of the sweep's own."""
-    histories: ClassVar[bool] = False
-    """Whether `readings` are stored at several times."""
-    reads_force: ClassVar[bool] = False
-    """Whether a force is read through the sensor of the sweep."""
-
-    def labels_of(self, experiment: Any) -> list[Variable]:
-        """What is known before the experiment is run; sizes as those of this experiment."""
-        return []
-
-    def readings_of(self, experiment: Any) -> list[Variable]:
-        """What its result holds beside ``quantities``; sizes as those of this experiment."""
-        return []
-
-    def labels(self, experiment: Any) -> Values:
-        """Values of `labels_of`."""
-        return {}
-
-    def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
-        """Values of `readings_of`; the generator makes noise."""
-        return {}
-
-    @abstractmethod
-    def describe(self) -> str:
-        """What is simulated, for the card of the data set."""
 
 
 class ResultFigures(Kind):

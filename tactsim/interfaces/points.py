@@ -22,6 +22,12 @@ POINTS = {
 def kinds(point: str | None = None) -> dict[str, Any]:
     """Kind -> class of everything known for an extension point, such as ``kinds("experiment")["film_test"]``.
 
+    >>> import tactsim as ts
+    >>> sorted(ts.kinds("estimator"))
+    ['hypotheses', 'learned', 'model_based', 'thesis']
+    >>> ts.kinds("body")["annulus"] is ts.Annulus
+    True
+
     Parameters
     ----------
     point : experiment, material, body, contact, inclusion, film or estimator; without one, point -> kind -> class of all

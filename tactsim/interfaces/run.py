@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Literal, Self, TypeVar, final
 from tactsim.deadline import check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
 from tactsim.interfaces.seeds import seeds_in
-from tactsim.interfaces.variation import Variation
+from tactsim.interfaces.variation import Variation, check_places
 from tactsim.kind import CaseKind
 from tactsim.progress import quiet, step_bar
 from tactsim.results.quantity import Quantity
@@ -91,7 +91,14 @@ class Runnable(CaseKind):
         return []
 
     def vary(self, places: Mapping[str, Any]) -> Variation:
-        """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``."""
+        """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``.
+
+        Raises
+        ------
+        CaseError
+            If it has no such place.
+        """
+        check_places(self, places)
         return Variation(self, dict(places))
 
     def seeds(self) -> dict[str, int]:

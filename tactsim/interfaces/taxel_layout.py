@@ -24,6 +24,11 @@ class TaxelLayout(FrozenModel):
 
     Row 1 is nearest the front (smallest y), column 1 has the smallest x.
 
+    >>> import tactsim as ts
+    >>> layout = ts.TaxelLayout(rows=3, columns=3, pitch="10 mm", size="9 mm")
+    >>> f"{1e3 * layout.extent()[0]:.0f} mm"  # from border to border
+    '29 mm'
+
     Source: thesis, section 6.3 and Fig. 6.3: 3 x 3 elements per jaw; pitch and size are not printed, they are assumptions.
     """
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tactsim.errors import CaseError, InvalidQuantity, shown, suggestion
 from tactsim.model import FrozenModel
 from tactsim.units import written
 
@@ -19,24 +20,116 @@ class Variation:
 
 
 def uniform(low: Any, high: Any) -> dict[str, Any]:
-    """Evenly distributed between two numbers or quantities such as ``"2 mm"``."""
-    return {"uniform": written([low, high])}
+    """Evenly distributed between two numbers or quantities such as ``"2 mm"``.
+
+    >>> import tactsim as ts
+    >>> ts.uniform("2 mm", "6 mm")
+    {'uniform': ['2 mm', '6 mm']}
+
+    Raises
+    ------
+    InvalidQuantity
+        If the two do not increase, or are not of one dimension.
+    """
+    return _checked({"uniform": written([low, high])})
 
 
 def log_uniform(low: Any, high: Any) -> dict[str, Any]:
-    """Evenly distributed in the logarithm between two positive numbers or quantities."""
-    return {"log_uniform": written([low, high])}
+    """Evenly distributed in the logarithm between two positive numbers or quantities.
+
+    >>> import tactsim as ts
+    >>> ts.log_uniform("6 kPa", "100 kPa")
+    {'log_uniform': ['6 kPa', '100 kPa']}
+
+    Raises
+    ------
+    InvalidQuantity
+        If the two do not increase, are not positive, or are not of one dimension.
+    """
+    return _checked({"log_uniform": written([low, high])})
 
 
 def normal(mean: Any, deviation: Any, *, low: Any = None, high: Any = None) -> dict[str, Any]:
-    """Normal with a mean and a standard deviation, cut off below ``low`` and above ``high``, which go together."""
-    return {"normal": written([mean, deviation])} | ({} if low is None and high is None else {"within": written([low, high])})
+    """Normal with a mean and a standard deviation, cut off below ``low`` and above ``high``: give both bounds or neither.
+
+    >>> import tactsim as ts
+    >>> ts.normal("4 mm", "1 mm", low="2 mm", high="6 mm")
+    {'normal': ['4 mm', '1 mm'], 'within': ['2 mm', '6 mm']}
+
+    Raises
+    ------
+    InvalidQuantity
+        If the deviation is not positive, one bound is missing, or the values are not of one dimension.
+    """
+    if (low is None) != (high is None):
+        raise InvalidQuantity(f"normal: low is {shown(low)} and high is {shown(high)}; give both bounds or neither")
+    return _checked({"normal": written([mean, deviation])} | ({} if low is None else {"within": written([low, high])}))
 
 
 def choice(*options: Any, weights: tuple[float, ...] | None = None) -> dict[str, Any]:
-    """One of the options, numbers, quantities, names, or models such as materials; equally probable without weights."""
+    """One of the options, numbers, quantities, names, or models such as materials; equally probable without weights.
+
+    >>> import tactsim as ts
+    >>> ts.choice("icf_stable", "b1a_stable", weights=(3, 1))
+    {'choice': ['icf_stable', 'b1a_stable'], 'weights': [3, 1]}
+
+    Raises
+    ------
+    InvalidQuantity
+        If there is no option, the options stand in a list, or the weights do not fit them.
+    """
+    if not options or (len(options) == 1 and isinstance(options[0], list | tuple)):
+        given = f"{shown(options[0])} is one option" if options else "no option is given"
+        raise InvalidQuantity(f"choice: {given}; give the options one by one, such as choice('2 mm', '4 mm')")
     listed = [
         one.model_dump(mode="json", context={"units": "written"}) if isinstance(one, FrozenModel) else written(one)
         for one in options
     ]
-    return {"choice": listed} | ({} if weights is None else {"weights": list(weights)})
+    return _checked({"choice": listed} | ({} if weights is None else {"weights": list(weights)}))
+
+
+def check_places(experiment: FrozenModel, places: Mapping[str, Any]) -> None:
+    """Check that an experiment has the places that vary; what lies in a part that itself varies is left to the sweep.
+
+    Raises
+    ------
+    CaseError
+        With the key path, the key that is unknown, and those that are known.
+    """
+    for place in places:
+        keys = place.split(".")
+        outer = {".".join(keys[:length]) for length in range(1, len(keys))}
+        if not places.keys() & (outer | {f"{part}.kind" for part in outer}):
+            _check_place(experiment, keys)
+
+
+def _check_place(value: Any, keys: list[str]) -> None:
+    for number, key in enumerate(keys):
+        where = ".".join(("vary", *keys[:number])).replace("vary.", "vary: ", 1)
+        if isinstance(value, FrozenModel):
+            entries = {field.alias or name: getattr(value, name) for name, field in type(value).model_fields.items()}
+            if key not in entries:
+                raise CaseError(f"{where}: unknown key {key!r}{suggestion(key, entries)}; allowed: {', '.join(entries)}")
+            value = entries[key]
+        elif isinstance(value, list | tuple):
+            if key not in (allowed := [str(index) for index in range(len(value))]):
+                raise CaseError(f"{where}: a list without an entry {key!r}; entries: {', '.join(allowed) or 'none'}")
+            value = value[int(key)]
+        elif isinstance(value, dict) and key in value:
+            value = value[key]
+        elif value is None or isinstance(value, dict):
+            return  # what a sweep makes there is checked with its first sample
+        else:
+            raise CaseError(f"{where}: {shown(value)} has no entry {key!r}")
+
+
+def _checked(distribution: dict[str, Any]) -> dict[str, Any]:
+    """The distribution, refused if a sweep would refuse it."""
+    from tactsim.interfaces.distributions import distribution as read  # loads scipy
+
+    name = next(iter(distribution))
+    try:
+        read(distribution)
+    except InvalidQuantity as error:
+        raise InvalidQuantity(f"{name}: {str(error).removeprefix(f'{name}: ')}") from None
+    return distribution

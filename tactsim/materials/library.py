@@ -63,6 +63,10 @@ def named_material(name: str) -> MaterialSet:
 def material(name: str) -> InvariantPolynomial:
     """The shipped material of this name, such as ``icf_stable``.
 
+    >>> import tactsim as ts
+    >>> ts.material("lump").kind
+    'neo_hookean'
+
     Raises
     ------
     UnknownName

@@ -11,6 +11,10 @@ from tactsim.units import Pressure
 class MooneyRivlin3(InvariantPolynomial):
     r"""W = c10 (I1 - 3) + c01 (I2 - 3) + c11 (I1 - 3)(I2 - 3); G = 2 (c10 + c01).
 
+    >>> import tactsim as ts
+    >>> ts.MooneyRivlin3(c10="1.2 kPa", c01="0.4 kPa", c11="0.1 kPa").shear_modulus  # Pa
+    3200.0
+
     Source: thesis 3.1.7.
     """
 

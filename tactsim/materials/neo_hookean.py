@@ -11,6 +11,10 @@ from tactsim.units import Pressure
 class NeoHookean(InvariantPolynomial):
     r"""W = c10 (I1 - 3); G = 2 c10.
 
+    >>> import tactsim as ts
+    >>> ts.NeoHookean(c10="36 kPa").shear_modulus  # Pa
+    72000.0
+
     Source: Treloar 1943, doi:10.1039/tf9433900036 (statistical theory); verification in the thesis's chapter 6 materials.
     """
 

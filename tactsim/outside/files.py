@@ -19,8 +19,8 @@ from tactsim.shipped import PROGRAM
 
 Place = Literal["beside the case", "in the working folder", "with the program", "elsewhere"]
 """Where a file or folder was found; ``elsewhere`` is outside of all the others, links followed."""
-SHIPPED = "meshes"
-"""Folder of the program whose files a case may name from anywhere."""
+SHIPPED, STORED = "meshes", "cases/stored"
+"""Folders of the program, of meshes and of stored results, whose files a case may name from anywhere."""
 MEBIBYTE = 2**20
 LIMITS = {
     "case file": 1 * MEBIBYTE,
@@ -215,14 +215,16 @@ def _folders(path: Path, beside: Path | None) -> list[Path]:
     if path.is_absolute():
         return [Path()]
     first = [] if beside is None or os.path.realpath(beside) == os.path.realpath(".") else [beside]
-    return [*first, Path(), *([PROGRAM] if path.parts[:1] == (SHIPPED,) and ".." not in path.parts else [])]
+    shipped = ".." not in path.parts and any(path.is_relative_to(folder) for folder in (SHIPPED, STORED))
+    return [*first, Path(), *([PROGRAM] if shipped else [])]
 
 
 def _place(path: Path, beside: Path | None) -> Place:
     """Where a path leads once its links are followed."""
     real = Path(os.path.realpath(path))
     roots: list[tuple[Place, Path]] = [("beside the case", beside)] if beside is not None else []
-    roots += [("in the working folder", Path(".")), ("with the program", PROGRAM / SHIPPED)]
+    shipped: list[tuple[Place, Path]] = [("with the program", PROGRAM / folder) for folder in (SHIPPED, STORED)]
+    roots += [("in the working folder", Path(".")), *shipped]
     for place, root in roots:
         if real.is_relative_to(os.path.realpath(root)):
             return place

@@ -29,6 +29,13 @@ class Coordinate:
 class Quantity:
     """A number or an array with its unit; in SI where tactsim made it.
 
+    >>> import tactsim as ts
+    >>> forces = ts.Quantity([0.2, 0.3], "N", "forces of two taxels")
+    >>> forces.to("mN").value
+    [200.0, 300.0]
+    >>> forces.array.attrs["units"]
+    'N'
+
     Attributes
     ----------
     value : number, or nested lists of numbers

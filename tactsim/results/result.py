@@ -73,13 +73,20 @@ class FieldFrame:
 class Result:
     """What a run computed.
 
+    >>> import tactsim as ts
+    >>> result = ts.load_case("annulus_dynamic_load", {"experiment.points": 20}).run()
+    >>> str(result.status), f"{result['largest_force'].to('mN'):.0f}"
+    ('converged', '450 mN')
+    >>> result.history["force"].attrs["units"]
+    'N'
+
     Attributes
     ----------
     kind : that of the experiment
     units : unit of every history value
     title : that of the case, empty without one
-    scene : what later stages read beside quantities and history; see `scene_as`
-    experiment : what was run; None of a result that was read
+    scene : further data for later stages; see `scene_as`
+    experiment : what was run; None if the result was loaded from disk
     provenance : the case with its id, versions, seeds and the identity of the code, where known
     """
 

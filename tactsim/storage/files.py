@@ -30,7 +30,17 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
 
 
 def beside(path: Path, ending: str) -> Path:
-    """A hidden name beside a place."""
+    """A hidden name beside a place.
+
+    Raises
+    ------
+    StorageError
+        If the place has no name, as ``.`` and ``/``.
+    """
+    if not path.name:
+        raise StorageError(
+            f"cannot write {one_line(path)}: it is a folder without a name of its own; name a file or folder in it"
+        )
     return path.with_name(f".{path.name}.{ending}")
 
 

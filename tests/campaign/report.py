@@ -20,7 +20,7 @@ LONGEST_REASON = 300
 INTRODUCTION = """\
 # Random cases
 
-Whether a case converges must not depend on who wrote it. These cases were drawn at random within what a user could sensibly
+Convergence should not depend on experience with this program. These cases were drawn at random within what a user could sensibly
 write: indentations by an annulus, a ball or a flat punch of shipped and other tissues, and grasps of blocks with up to two lumps;
 `tests/campaign/random_cases.py` holds the ranges. A case is a function of its seed and number, so that each can be made again.
 At least {wanted:.0%} of the sensible cases shall be answered, none may hang, and none may lie.
@@ -63,7 +63,7 @@ def page(record: Sequence[Ended], *, asked: int | None, limit: float, patience: 
     ran = ", ".join(f"{sum(one.kind == kind for one in first)}{of} of the kind `{kind}`" for kind in kinds)
     texts = [
         INTRODUCTION.format(patience=patience, wanted=WANTED).replace("99%", "99 %"),
-        f"```text\n{command} {' '.join(kinds)}\n```\n",
+        f"<!-- not run: takes hours -->\n```text\n{command} {' '.join(kinds)}\n```\n",
         f"Run so far: {ran}, with a limit of {limit:g} s and one thread each. {_times(first)}\n",
         "## First run\n",
         table_text(first),

@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import InvalidQuantity
 from tactsim.unit_definitions import PREFIXED, UNPREFIXED
-from tactsim.units import Length, _factor_to, format_quantity, parse_quantity
+from tactsim.units import Length, _factor_to, compact_unit, format_quantity, parse_quantity, written_quantity
 
 
 @pytest.mark.parametrize(
@@ -95,3 +95,28 @@ def test_customary_units_are_those_of_pint() -> None:
 def test_a_prefix_does_not_make_a_unit_out_of_another() -> None:
     with pytest.raises(InvalidQuantity, match="'ct', which is not a unit that is read"):  # a carat; not a hundredth of a tonne
         parse_quantity("5 ct", "kg")
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [
+        ("m", "expected a length with its unit, such as '1 mm'"),
+        ("kPa", "expected a pressure with its unit, such as '1 kPa'"),
+        ("rad", "expected an angle with its unit, such as '1 deg'"),
+        ("", "expected a number with its unit, such as '1 %'"),
+        ("S/N", "expected a number with its unit, such as '1 S/N'"),
+    ],
+)
+def test_a_message_names_the_dimension(unit: str, words: str) -> None:
+    with pytest.raises(InvalidQuantity, match=f"{words}$"):
+        parse_quantity("3", unit)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [(2e-11, "F", "20 pF"), (1e-30, "m", "1e-30 m"), (1e300, "Hz", "1e+300 Hz"), (1e13, "Pa", "1e+13 Pa"), (2e9, "Pa", "2 GPa")],
+)
+def test_a_number_has_a_customary_prefix_or_an_exponent(value: float, unit: str, text: str) -> None:
+    assert format_quantity(value, unit) == text
+    assert compact_unit(value, unit) == text.split()[1]
+    assert parse_quantity(written_quantity(value, unit), unit) == value

@@ -42,6 +42,13 @@ def sweep(
 ) -> xarray.Dataset:
     """Compute a data set from an experiment in which some places vary, and open it.
 
+    >>> import tactsim as ts
+    >>> varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    >>> parts = {"train": 0.5, "validation": 0.5}
+    >>> data = ts.sweep(varied, samples=8, out="annuli.zarr", workers=1, splits=parts)
+    >>> data.sizes["sample"], data["varied_outer_radius"].attrs["units"]
+    (8, 'm')
+
     Parameters
     ----------
     variation : of `Experiment.vary`

@@ -9,9 +9,9 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from tactsim.case.json_schema import DRAFT, case_json_schema, described
-from tactsim.dataset.sampling.distributions import MOST_OPTIONS
 from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
 from tactsim.dataset.sampling.sweep import SECTION
+from tactsim.interfaces.distributions import MOST_OPTIONS
 from tactsim.units import Length
 
 Fragment = dict[str, Any]

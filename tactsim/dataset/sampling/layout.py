@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from tactsim.case.model import Case, experiment_kinds
-from tactsim.dataset.sampling.distributions import Listed
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
 from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.sweep import SECTION, Sweep, is_distribution
@@ -18,6 +17,7 @@ from tactsim.errors import CaseError, suggestion
 from tactsim.experiments.recording import recorder_for
 from tactsim.experiments.recording import variables as variables_of
 from tactsim.interfaces import Recorder
+from tactsim.interfaces.distributions import Listed
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.code_identity import code_identity, installed_versions
-from tactsim.dataset.sampling.distributions import Listed
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.sweep import Place, Sweep, sweep_of_text
 from tactsim.dataset.store.arrays import META, parsed_json
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError
+from tactsim.interfaces.distributions import Listed
 from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 from tactsim.results.provenance import PACKAGES

@@ -19,10 +19,10 @@ from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
-from tactsim.dataset.sampling.distributions import READERS, Distribution, Listed, distribution
 from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
+from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
 from tactsim.refusals import as_written
 
 SECTION = "sweep"

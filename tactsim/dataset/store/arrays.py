@@ -274,7 +274,7 @@ def earlier_words(names: Iterable[str]) -> str:
     """What is reported of a store that never had some arrays."""
     return (
         f"an earlier version of tactsim began this data set, which did not store {', '.join(names)}; it can be read, and the "
-        "long_name of each of its arrays says what that holds, but it can neither be gone on with nor checked by this version"
+        "long_name of each of its arrays says what that holds, but this version can neither resume nor check it"
     )
 
 

@@ -229,8 +229,9 @@ def _folder(path: str | Path) -> Path:
     try:
         return opened_folder(path, "data set")[0]
     except Unreadable as error:
-        reason = error.reason if os.path.lexists(path) else "there is nothing; name a folder that tactsim sweep wrote"
-        raise StorageError(f"{one_line(path)} is not a data set of tactsim: {reason}") from error
+        if not os.path.lexists(path):
+            raise StorageError(f"no such folder: {one_line(path)}; name one that tactsim sweep wrote") from error
+        raise StorageError(f"{one_line(path)} is not a data set of tactsim: {error.reason}") from error
 
 
 def _group(folder: Path) -> dict[str, Any]:

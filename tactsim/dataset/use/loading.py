@@ -29,6 +29,11 @@ def load(
 ) -> xarray.Dataset:
     """The samples of a data set, opened lazily.
 
+    >>> import tactsim as ts
+    >>> train = ts.load_data("annuli.zarr", split="train")  # of the example of `sweep`
+    >>> train["varied_outer_radius"].attrs["units"]
+    'm'
+
     Parameters
     ----------
     store : folder that ``tactsim sweep`` wrote

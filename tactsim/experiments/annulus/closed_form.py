@@ -49,6 +49,12 @@ class ClosedForm(Experiment):
 
     The contact is bilateral: where the force becomes negative a real contact opens, and the result says so.
 
+    >>> import tactsim as ts
+    >>> ramp = {"kind": "ramp", "to": "50 mN", "duration": "1 s"}
+    >>> press = ts.ClosedForm(material="icf_stable", loading={"control": "force", "pieces": [ramp]})
+    >>> f"{press.run()['displacement'].to('mm'):.3f}"
+    '0.598 mm'
+
     Source: thesis, 4.6.1 to 4.6.4 and section 4.7.
     """
 

@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 class Grasp(GraspSetup, Experiment):
     """A block of tissue between two jaws with matrices of taxels.
 
+    >>> import tactsim as ts
+    >>> ball = ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius="4 mm")
+    >>> grasp = ts.Grasp(
+    ...     block=ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable"),
+    ...     inclusions=[ts.Embedded(shape=ball, material="lump")],
+    ...     loading=ts.close(to="1 mm", duration="1 s"),
+    ... )
+    >>> grasp.extent  # of grasp.run(), which takes some seconds
+    ('time', 1.0)
+
     Source: thesis, sections 6.3 and 6.5.
     """
 

@@ -34,8 +34,8 @@ class MatrixReadoutRun(Experiment):
 
     @classmethod
     def example(cls) -> Self:
-        """The main grasp, wherever it was written."""
-        return cls(grasp="results/grasp_lump_icf")
+        """The grasp of a lump whose result is shipped."""
+        return cls(grasp="cases/stored/grasp_lump")
 
     def begin(self) -> Course:
         """Read the stored forces; one step for every sample.

@@ -51,7 +51,13 @@ SWITCH_LENGTH = 1e-3
 
 
 class Block(FrozenModel):
-    """The block of tissue, from (0, 0, 0) on the lower jaw, x along the columns of the taxels, y along their rows."""
+    """The block of tissue, from (0, 0, 0) on the lower jaw, x along the columns of the taxels, y along their rows.
+
+    >>> import tactsim as ts
+    >>> block = ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable")
+    >>> block.size, block.tissue.kind
+    ((0.04, 0.04, 0.02), 'mooney_rivlin_3')
+    """
 
     size: tuple[Positive, Positive, Positive] = (40e-3, 40e-3, 20e-3)
     """Along x, y and z; the thesis prints none."""
@@ -60,7 +66,13 @@ class Block(FrozenModel):
 
 
 class Embedded(FrozenModel):
-    """A body in the block."""
+    """A body in the block.
+
+    >>> import tactsim as ts
+    >>> ball = ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius="4 mm")
+    >>> ts.Embedded(shape=ball, material="lump").material.kind
+    'neo_hookean'
+    """
 
     shape: AnyInclusion
     """Its shape and place."""

@@ -11,7 +11,14 @@ from tactsim.mechanics.models.specimen import Specimen
 
 
 class Indentation(DisplacedSetup, Experiment):
-    """A rigid body pressed into a cylindrical specimen along its axis."""
+    """A rigid body pressed into a cylindrical specimen along its axis.
+
+    >>> import tactsim as ts
+    >>> specimen = ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm")
+    >>> press = ts.Indentation(specimen=specimen, recess="0.4 mm", displacement="2 mm")
+    >>> press.extent  # of press.run(), which takes some seconds
+    ('displacement', 0.002)
+    """
 
     kind: Literal["indentation"] = "indentation"
 

@@ -22,7 +22,14 @@ LOAD_STEPS = 20
 
 
 class TimedIndentation(IndentationSetup, Experiment):
-    """A rigid body pressed into a cylindrical specimen by a prescribed history."""
+    """A rigid body pressed into a cylindrical specimen by a prescribed history.
+
+    >>> import tactsim as ts
+    >>> specimen = ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm")
+    >>> press = ts.TimedIndentation(specimen=specimen, loading=ts.close("0.5 mm", "1 s", hold="4 s"))
+    >>> press.extent  # of press.run(), which takes some seconds
+    ('time', 5.0)
+    """
 
     kind: Literal["timed_indentation"] = "timed_indentation"
     loading: AnyLoading

@@ -21,6 +21,7 @@ from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.run import Course, Findings
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
+from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.outside.input_path import InputPath
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
@@ -56,8 +57,9 @@ class Confusion(Experiment):
 
     @classmethod
     def example(cls) -> Self:
-        """One lump and two, wherever they were written."""
-        return cls(grasps=("results/grasp_lump_icf", "results/grasp_two_lumps"), reference="results/grasp_plain")
+        """The shipped results of a grasp with and without a lump, by the estimator that needs no model of the tissue."""
+        plain, estimator = "cases/stored/grasp_plain", ThesisEstimator(background="reference")
+        return cls(grasps=(plain, "cases/stored/grasp_lump"), reference=plain, noise=1e-3, estimator=estimator)
 
     def begin(self) -> Course:
         """One step per grasp, with the share of its draws whose class was estimated right."""

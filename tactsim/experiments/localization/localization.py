@@ -75,8 +75,9 @@ class Localization(Experiment):
 
     @classmethod
     def example(cls) -> Self:
-        """The main grasp, wherever it was written."""
-        return cls(grasp="results/grasp_lump_icf")
+        """The lump of the shipped result of a grasp, by what it differs from that of plain tissue."""
+        estimator = ThesisEstimator(background="reference")
+        return cls(grasp="cases/stored/grasp_lump", reference="cases/stored/grasp_plain", noise=1e-3, estimator=estimator)
 
     def begin(self) -> Course:
         """One step: the last of the grasp."""

@@ -26,7 +26,7 @@ DIGITS = 3
 """Decimals in mm of an outline."""
 
 
-BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference takes that off"
+BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference removes this effect"
 """Said of an estimate without a reference."""
 
 

@@ -110,7 +110,7 @@ class HypothesesEstimator(Estimator):
         values, priors = readings.difference.ravel(), self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
             return Estimate(
-                False, (), "nothing there: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
+                False, (), "no inclusion: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
             )
         balls = ball_candidates(readings.response, readings.block_size, radius_steps(self.radii), gap=self.gap).signals
         fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
@@ -124,7 +124,7 @@ class HypothesesEstimator(Estimator):
         probability, best = float(np.clip(1 - probabilities["none"], 0.0, 1.0)), int(np.argmax(densities[likeliest]))
         if likeliest == "none":
             factor = fits[best].bare_factor
-            reason = f"nothing there with a probability of {probabilities['none']:.3g}{factor_words(factor)}"
+            reason = f"no inclusion (probability {probabilities['none']:.3g}){factor_words(factor)}"
             return Estimate(False, (), reason, probability, probabilities, factor)
         cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), fits[best].factor
         inclusions = likely_bodies(*explained[likeliest][best][1:], cell)

@@ -76,7 +76,7 @@ class LearnedEstimator(Estimator):
         features = inputs(readings.difference[None], np.asarray(readings.reference)[None], readings.noise)[0]
         probability = learned.probability(features)
         if probability < 0.5:
-            return Estimate(False, (), f"nothing there with a probability of {1 - probability:.3g}", probability)
+            return Estimate(False, (), f"no inclusion (probability {1 - probability:.3g})", probability)
         apart = ThesisEstimator(background="reference").estimate(readings)
         if len(apart.inclusions) > 1:
             return replace(apart, probability=probability)

@@ -121,12 +121,12 @@ class ModelBasedEstimator(Estimator):
         candidates = self._candidates(readings.response, readings.block_size)
         priors = self._errors(plain, readings.noise)
         if any(without_error(change, errors) for errors in priors):
-            return Estimate(False, (), "nothing there: the readings are those of the reference", 0.0)
+            return Estimate(False, (), "no inclusion: the readings are those of the reference", 0.0)
         fits = [fitted(candidates.signals, change, errors, self.contrast_spread) for errors in priors]
         fit = max(fits, key=lambda one: one.likelihood)
         probability = self._probability(fits)
         if probability < 0.5:
-            reason = f"nothing there with a probability of {1 - probability:.3g}"
+            reason = f"no inclusion (probability {1 - probability:.3g})"
             return Estimate(False, (), reason + factor_words(fit.bare_factor), probability, factor=fit.bare_factor)
         mean, covariance = _moments(
             np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor]),

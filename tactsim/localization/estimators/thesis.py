@@ -76,7 +76,7 @@ class ThesisEstimator(Estimator):
         words = f"the strongest place reads {format_quantity(strength, 'N')} {over}"
         limit = f"{self.threshold:g} standard deviations of the noise, {format_quantity(least, 'N')}"
         if strength <= least:
-            return Estimate(False, (), f"nothing there: {words}, within {limit}")
+            return Estimate(False, (), f"no inclusion: {words}, within {limit}")
         peaks = [peak for peak in separate_peaks(total, max(least, PROMINENCE * strength)) if total[peak] - base > least]
         if len(peaks) > 1:
             words = f"{len(peaks)} places explain the readings better than one, as the sums fall between them; {words}"

@@ -29,7 +29,12 @@ class Layer(FrozenModel):
 
 
 class Specimen(FrozenModel):
-    """A cylinder of tissue on a rigid base; its axis is the axis of the body pressed into it."""
+    """A cylinder of tissue on a rigid base; its axis is the axis of the body pressed into it.
+
+    >>> import tactsim as ts
+    >>> ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm").thickness  # m
+    0.006
+    """
 
     material: AnyMaterial
     """Material below the layers."""

@@ -8,11 +8,13 @@ import math
 import operator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, ValidationError, create_model, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
+from tactsim.errors import Refused
 from tactsim.model import FrozenModel
-from tactsim.units import Force, Frequency, Length, Time, format_quantity
+from tactsim.refusals import refusals_of
+from tactsim.units import Force, Frequency, Length, Time, format_quantity, written
 
 MOST_PERIODS = 10_000
 """Periods of a wave: with the fewest steps of a period, four, nearly as many steps as a path may have (``fem.progress``)."""
@@ -200,6 +202,27 @@ AnyLoading = Annotated[ForceLoading | DisplacementLoading, Field(discriminator="
 
 
 def close(to: Any, duration: Any, *, hold: Any = None) -> DisplacementLoading:
-    """A ramp to a displacement within a duration, held for another one if that is given: ``close("1 mm", "1 s")``."""
+    """A ramp to a displacement within a duration, held for another one if that is given.
+
+    >>> import tactsim as ts
+    >>> ts.close(to="1 mm", duration="1 s", hold="4 s").duration  # s
+    5.0
+
+    Raises
+    ------
+    CaseError
+        If a value is not a length or a time, or a duration is not positive; the message names the argument.
+    """
     pieces = [{"kind": "ramp", "to": to, "duration": duration}, *([] if hold is None else [{"kind": "hold", "duration": hold}])]
-    return DisplacementLoading.model_validate({"control": "displacement", "pieces": pieces})
+    value = {"control": "displacement", "pieces": pieces}
+    try:
+        return DisplacementLoading.model_validate(value)
+    except ValidationError as error:
+        refusals = refusals_of(error, written(value), DisplacementLoading)
+        lines = [f"close: {_argument(path)}: {message}" for path, message in refusals.items()]
+        raise Refused("\n".join(lines), error) from None
+
+
+def _argument(path: tuple[str | int, ...]) -> str:
+    """The argument of ``close`` that a key path within the loading comes from."""
+    return "hold" if path[1:2] == (1,) else str(path[-1])

@@ -20,7 +20,13 @@ EQUILATERAL = np.sqrt(3) / 4
 
 
 class Ellipsoid(Inclusion):
-    """An ellipsoid wholly inside the block."""
+    """An ellipsoid wholly inside the block.
+
+    >>> import tactsim as ts
+    >>> lump = ts.Ellipsoid(center=("20 mm", "20 mm", "10 mm"), semi_axes=("6 mm", "5 mm", "4 mm"))
+    >>> lump.semi_axes
+    (0.006, 0.005, 0.004)
+    """
 
     kind: Literal["ellipsoid"] = "ellipsoid"
     data_set_number: ClassVar[int | None] = 2

@@ -13,7 +13,12 @@ from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
 
 
 class Sphere(Inclusion):
-    """A sphere wholly inside the block."""
+    """A sphere wholly inside the block.
+
+    >>> import tactsim as ts
+    >>> ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius="4 mm")
+    Sphere(kind='sphere', center=(0.02, 0.02, 0.012), radius=0.004)
+    """
 
     kind: Literal["sphere"] = "sphere"
     data_set_number: ClassVar[int | None] = 1

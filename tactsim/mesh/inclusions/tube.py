@@ -33,6 +33,11 @@ class Tube(Inclusion):
 
     An end whose point lies on or outside a face of the block leaves through that face and is cut by it. An end inside the block
     is cut flat, and the empty space ends with it.
+
+    >>> import tactsim as ts
+    >>> line = [("0 mm", "20 mm", "10 mm"), ("40 mm", "20 mm", "10 mm")]
+    >>> ts.Tube(centre_line=line, inner_radius="2 mm", wall="0.5 mm").outer_radius  # m
+    0.0025
     """
 
     kind: Literal["tube"] = "tube"

@@ -49,7 +49,7 @@ def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -
         "case.yaml:7: experiment.specimen.raduis: unknown key (did you mean 'radius'?); allowed: radius, layers, hole",
         "case.yaml:9: experiment.specimen.layers.0.thickness: '-1 mm' is out of range; must be greater than 0 m",
         "case.yaml:10: experiment.specimen.layers.0.material.modulus: '3 mm' has the wrong dimension; "
-        "expected a number with a unit of the dimension of Pa, like '1 Pa'",
+        "expected a pressure with its unit, such as '1 kPa'",
         "case.yaml:13: experiment.specimen.layers.1.material.kind: unknown kind 'stif' (did you mean 'stiff'?); "
         "choices: soft, stiff",
         "case.yaml:15: experiment.friction: 3 is out of range; must be at most 2.0",
@@ -174,5 +174,7 @@ def test_a_mapping_is_a_case_and_refused_in_the_words_of_a_file(pretended: None)
     assert load_case(value) == load_case(read_yaml(CASE_TEXT).value)
     with pytest.raises(CaseError, match=r"^case: titel: unknown key \(did you mean 'title'\?\)"):
         load_case(value | {"titel": "A"})
-    with pytest.raises(CaseError, match=r"^--set experiment.steps: 'x' is not allowed"):
+    with pytest.raises(CaseError, match=r"^override experiment.steps: 'x' is not allowed"):
         load_case(value, {"experiment.steps": "x"})
+    with pytest.raises(CaseError, match=r"^override experiment.steps.0.x: experiment.steps is"):
+        load_case(value, {"experiment.steps": 7, "experiment.steps.0.x": 1})

@@ -27,6 +27,18 @@ def test_the_written_case_is_the_example_and_every_comment_a_default(kind: str, 
     assert load_case(place).case_id == case.case_id
 
 
+@pytest.mark.parametrize("kind", ["confusion", "localization", "matrix_readout"])
+def test_a_case_that_reads_a_result_runs_as_it_is_written(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In an empty folder, from what comes with tactsim; the other kinds run their examples in the contract tests."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", kind]) == 0
+    assert main(["run", f"{kind}.yaml", "--figures", "none"]) == 0, capsys.readouterr().err
+    assert "warning" not in capsys.readouterr().out
+    assert (tmp_path / "results" / kind / "result.json").is_file()
+
+
 def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["new", "film_test"]) == 0

@@ -42,6 +42,34 @@ def test_a_wrong_command_line_is_bad_input(arguments: list[str], capsys: pytest.
     assert "--help" in error
 
 
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (["run", "annulus_icf", "--out", ""], "--out"),
+        (["run", ""], "CASE"),
+        (["schema", "--out", ""], "--out"),
+        (["sweep", "sweep_closed_form", "--out", " "], "--out"),
+        (["data", "export", "store", "--to", ""], "--to"),
+        (["material", "--fit", ""], "--fit"),
+    ],
+)
+def test_an_empty_path_is_bad_input(arguments: list[str], name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: argument {name}: {arguments[-1]!r} is no path; name a file or folder, . is the working")
+
+
+@pytest.mark.parametrize("arguments", [["schema"], ["sweep", "sweep_closed_form"]])
+def test_a_place_without_a_name_cannot_be_written(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*arguments, "--out", "."]) == 5
+    assert capsys.readouterr().err.startswith("error: cannot write .: it is a folder without a name of its own")
+
+
+def test_the_package_is_the_command() -> None:
+    done = subprocess.run([sys.executable, "-m", "tactsim", "--version"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, f"tactsim {__version__}\n")
+
+
 def test_an_unknown_option_leads_to_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "a", "--sett", "x=1"]) == 2
     assert capsys.readouterr().err == "error: unrecognized arguments: --sett x=1\nsee: tactsim run --help\n"

@@ -50,7 +50,7 @@ def format_two(place: Path) -> None:
 
 
 SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
-    "missing": (shutil.rmtree, "there is nothing; name a folder that tactsim sweep wrote"),
+    "missing": (shutil.rmtree, "no such folder: "),
     "foreign": (foreign, "Zarr of another origin, without the schema 'tactsim/dataset/1'"),
     "array": (bare_array, "Zarr of another origin"),
     "format 2": (format_two, "it is of Zarr format 2"),

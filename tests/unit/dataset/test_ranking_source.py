@@ -106,7 +106,7 @@ def test_another_reference_is_refused(store: Path, tmp_path: Path, changes: dict
 def test_stores_that_cannot_be_judged_are_refused(store: Path, plain: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no readout"):
         judged_samples(store, [plain], source="read_force")
-    with pytest.raises(StorageError, match="is not a data set"):
+    with pytest.raises(StorageError, match=r"no such folder: .*nowhere; name one that tactsim sweep wrote"):
         judged_samples(tmp_path / "nowhere", [plain], source="taxel_force")
     with pytest.raises(InputError, match="no sample that is done"):
         judged_samples(made_store(tmp_path, response(), done=False), [plain], source="taxel_force")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import re
 from pathlib import Path
 
 import pytest
 
+import tactsim as ts
 from tactsim.cli.entry import COMMANDS
 from tactsim.interfaces import Experiment
 from tactsim.registry import kinds
@@ -41,6 +43,22 @@ def test_every_room_has_a_page(made):
     rooms = {path.stem for path in inside if path.is_dir() or path.suffix == ".py"}
     assert set(module_pages.rooms_upwards()) == rooms
     assert module_pages.rooms_upwards()[-1] == "cli"
+
+
+def test_every_public_name_has_its_line_and_its_docstring_in_one_group(made):
+    pages = made("name_pages")
+    text = pages.name_pages()["python.rst"]
+    for name in ts.__all__:
+        assert len(re.findall(rf"^   \* - :ref:`{name} <\w+-{name}>`$", text, re.M)) == 1
+        assert len(re.findall(rf"^\.\. auto(?:class|exception|function):: tactsim\.{name}$", text, re.M)) == 1
+        assert f"\n{name}\n{'~' * len(name)}\n" in text
+    of_groups = {
+        "load_data": "Data sets",
+        "Grasp": "Experiments",
+        "Block": "Parts of an experiment",
+        "kinds": "Kinds of your own",
+    }
+    assert {name: pages.group_of(name) for name in of_groups} == of_groups
 
 
 def test_every_row_of_a_thesis_table_is_on_its_page(made):

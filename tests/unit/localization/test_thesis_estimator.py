@@ -72,7 +72,7 @@ def test_nothing_there_is_an_answer():
         estimate = REFERENCE.estimate(readings(forces))
         assert estimate.present is there
         assert bool(estimate.inclusions) is there
-        assert ("nothing there" in estimate.reason) is not there
+        assert ("no inclusion" in estimate.reason) is not there
 
 
 def test_false_alarms_of_noise_are_as_rare_as_the_threshold_says():

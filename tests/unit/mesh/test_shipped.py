@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tactsim.mesh.shipped import shipped_folders
-from tactsim.outside.files import PROGRAM, Unreadable, opened
+from tactsim.outside.files import PROGRAM, Unreadable, opened, opened_folder
 
 LUMP = "meshes/lump.stl"
 
@@ -23,8 +23,20 @@ def test_the_working_folder_comes_first(monkeypatch: pytest.MonkeyPatch, tmp_pat
     assert (own.path, own.place) == (Path(LUMP), "in the working folder")
 
 
+def test_stored_results_come_with_the_program_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert opened_folder("cases/stored/grasp_lump", "result") == (PROGRAM / "cases/stored/grasp_lump", "with the program")
+
+
 def test_only_shipped_files_are_looked_for_elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    for path in ("README.md", "cases/grasp_stl.yaml", "meshes/../README.md", "meshes/none.stl", str(tmp_path / "none.stl")):
+    for path in (
+        "README.md",
+        "cases/grasp_stl.yaml",
+        "cases/stored/../grasp_stl.yaml",
+        "meshes/../README.md",
+        "meshes/none.stl",
+        str(tmp_path / "none.stl"),
+    ):
         with pytest.raises(Unreadable, match="No such file"):
             opened(path, "surface")

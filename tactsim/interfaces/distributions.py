@@ -1,4 +1,4 @@
-"""Distributions that a sweep writes where a case has one value: each turns a number in [0, 1) into a value of the case."""
+"""Distributions that a sweep has where a case has one value: each turns a number in [0, 1) into a value of the case."""
 
 from __future__ import annotations
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactsim.dataset.sampling.distributions import distribution
 from tactsim.dataset.sampling.sweep import filled, places_of
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.distributions import distribution
 
 SHARES = (np.arange(2000) + 0.5) / 2000
 
