@@ -188,8 +188,10 @@ def compact_unit(value: float, unit: str) -> str:
 
 
 def _compact(value: float, unit: str) -> Any:
-    """The quantity with the SI prefix in which it reads well, from p to G, else as it is."""
+    """The quantity with the SI prefix in which it reads well, from p to G, else as it is; nobody speaks of megaseconds."""
     quantity = _registry().Quantity(value, unit)
+    if unit == "s" and abs(value) >= 1:
+        return quantity
     compact = quantity.to_compact()
     return quantity if any(word.startswith(RARE_PREFIXES) for word, _ in compact.unit_items()) else compact
 

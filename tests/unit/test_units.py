@@ -69,6 +69,8 @@ def test_a_bare_number_is_si_in_python_and_refused_in_a_file() -> None:
 
 def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(0.0008, "m") == "800 µm"
+    assert format_quantity(1e7, "s") == "1e+07 s"
+    assert format_quantity(0.02, "s") == "20 ms"
     assert format_quantity(0.25, "1") == "0.25"
     assert format_quantity(math.radians(30), "rad") == "30°"
     assert format_quantity(0.0, "Pa") == "0 Pa"
