@@ -35,6 +35,10 @@ null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_up
 WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
 
+NOISE_WORDS = (
+    "standard deviation of what a taxel reads, such as '2 mN'; by default that of a stored localization, 0.6 %% of the largest "
+    "force for forces of a simulation (what its mesh leaves), and 28.868 mN for any others (resolution of 0.1 N, as in the thesis)"
+)
 LONGEST_KIND = 60
 """Characters of a foreign kind that a message shows."""
 
@@ -49,9 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--live", metavar="SOURCE", help=words)
     words = "result of the same grasp without a lump, which most estimators need; several for several closings"
     parser.add_argument("--reference", metavar="FOLDER", action="append", default=[], help=words)
-    parser.add_argument(
-        "--noise", metavar="FORCE", help="of a reading, such as '2 mN' (default: that of the result, or rounding)"
-    )
+    parser.add_argument("--noise", metavar="FORCE", help=NOISE_WORDS)
     parser.add_argument("--learned", metavar="WEIGHTS.npz", help="offer the learned estimator: the file of tactsim data train")
     parser.add_argument("--port", metavar="N", type=int, help="port of the page; by default any that is free")
     parser.add_argument("--host", metavar="ADDRESS", help="serve on another address than that of this machine alone")
