@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +12,26 @@ from tactsim.units import format_quantity
 
 
 def result_report(result: Result, title: str = "") -> str:
-    """Title, status, quantities with units, warnings and the number of assumptions."""
+    """Title, status, quantities with units, warnings and assumptions: what names a quantity beside it, of the others the number."""
     width = max((len(one_line(name)) for name in result.quantities), default=0)
     lines = [one_line(title)] if title else []
     lines.append(_ending(result))
-    lines += [
-        f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip()
-        for name, q in result.quantities.items()
-    ]
+    for name, q in result.quantities.items():
+        lines.append(f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip())
+        lines += [f"  {'':<{width}}  assumption: {one_line(words)}" for words in assumptions_about(name, result.assumptions)]
     lines += [f"  warning: {one_line(warning)}" for warning in result.warnings]
     counted = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
     lines.append(f"  {', '.join(counted)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
     return "\n".join(lines)
+
+
+def assumptions_about(name: str, assumptions: Iterable[str]) -> list[str]:
+    """Those that name a quantity, such as "threshold pressure": they say what its number owes to them.
+
+    A name of a single word, such as ``time``, is a word of any sentence.
+    """
+    words = name.replace("_", " ")
+    return [assumption for assumption in assumptions if words in assumption] if " " in words else []
 
 
 def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
