@@ -11,6 +11,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
@@ -136,7 +137,7 @@ def parse_quantity(text: str, unit: str) -> float:
             f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
         )
     try:
-        converted = value * _factor_to(unit, given_unit)
+        converted = _converted(parts["number"], _factor_to(unit, given_unit))
     except pint.DimensionalityError:
         raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected}") from None
     except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
@@ -145,7 +146,25 @@ def parse_quantity(text: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
     if converted == 0 and re.search("[1-9]", re.split("[eE]", parts["number"])[0]):
         raise InvalidQuantity(f"{shown(text)} is too small to be told from 0; {expected}")
-    return float(f"{converted:.15g}")  # so that "0.8 mm" and "800 um" are the same float
+    return converted
+
+
+def _converted(number: str, factor: float) -> float:
+    """A number as it is written times a factor, such that "0.8 mm" and "800 um" are the same float.
+
+    The factor of a prefix moves the decimal point, and no digit is lost; the product with any other is taken to 15 digits.
+    """
+    value, power = float(number), _power_of_ten(factor)
+    if power is None or value == 0:
+        return float(f"{value * factor:.15g}")
+    digits, _, exponent = number.lower().partition("e")
+    return float(f"{digits}e{int(exponent or 0) + power}")
+
+
+def _power_of_ten(factor: float) -> int | None:
+    """The exponent of a factor that is a power of ten but for the round-off of its computation, None of any other."""
+    power = round(math.log10(factor)) if factor > 0 else 0
+    return power if math.isclose(factor, float(f"1e{power}"), rel_tol=1e-14) else None
 
 
 def conversion(given_unit: str, unit: str) -> float:
@@ -214,13 +233,22 @@ def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
 
 
 def written_quantity(value: float, unit: str) -> str:
-    """``value`` in SI as a file writes it, exact to 15 digits: ``0.04, "m"`` gives ``"40 mm"``."""
+    """``value`` in SI as a file writes it, which is read as the same float: ``0.04, "m"`` gives ``"40 mm"``."""
+    if unit == "rad" and parse_quantity(degrees := f"{math.degrees(value):.15g} deg", unit) == value:
+        return degrees
     if value and math.isfinite(value) and unit != "rad":
         compact = _registry().Quantity(value, unit).to_compact()
-        text = f"{compact.magnitude:.15g} {compact.units:~C}".replace("**", "^")
-        if parse_quantity(text, unit) == float(f"{value:.15g}"):
+        given_unit = f"{compact.units:~C}".replace("**", "^")
+        power = _power_of_ten(_factor_to(unit, given_unit))
+        number = f"{compact.magnitude:.15g}" if power is None else _shifted(value, -power)
+        if parse_quantity(text := f"{number} {given_unit}", unit) == value:
             return text
-    return f"{value:.17g} {unit}"
+    return f"{_shifted(value, 0)} {unit}"
+
+
+def _shifted(value: float, power: int) -> str:
+    """The fewest digits that tell the float apart, with the decimal point moved."""
+    return f"{Decimal(repr(value)).scaleb(power).normalize():f}"
 
 
 def _writer(unit: str) -> Callable[[float, SerializationInfo], Any]:

@@ -217,6 +217,22 @@ def test_a_case_built_in_python_is_saved_and_read_as_the_same(grasp: ts.Grasp, t
         ts.save_case(grasp, place)
 
 
+def test_a_saved_design_keeps_what_was_given_though_it_is_the_default_and_every_bit(tmp_path: Path) -> None:
+    default = ts.Annulus().outer_radius
+    fitted = ts.MooneyRivlin3(c10=7838.8393223224548, c01=1234.5678901234567, c11=-2000.1234567890123)
+    specimen = {"material": fitted, "thickness": "10 mm"}
+    options = {"specimen": specimen, "recess": "0.8 mm", "displacement": 0.7 * 1e-3}
+    design = ts.Indentation(body=ts.Annulus(outer_radius=default), **options)
+    text = ts.save_case(design, tmp_path / "design.yaml").read_text()
+    assert "outer_radius: 3 mm" in text
+    assert "inner_radius" not in text, "nobody gave it"
+    assert "      c10: 7.838839322322455 kPa\n      c01: 1.2345678901234567 kPa\n" in text
+    again = ts.load_case(tmp_path / "design.yaml")
+    assert (again.experiment.specimen.material, again.experiment.displacement) == (fitted, 0.7 * 1e-3)
+    unwritten = ts.save_case(ts.Indentation(**options), tmp_path / "unwritten.yaml")
+    assert ts.load_case(unwritten).case_id == again.case_id, "a default that is written out is the same case"
+
+
 def test_lengths_may_be_text_pint_or_si() -> None:
     units = pint.UnitRegistry()
     assert ts.Sphere((20 * units.mm, "2 cm", 0.02), 4e3 * units.um) == ts.Sphere((0.02, 0.02, 0.02), 4e-3)

@@ -37,7 +37,7 @@ WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_brow
 
 NOISE_WORDS = (
     "standard deviation of what a taxel reads, such as '2 mN'; by default that of a stored localization, 0.6 %% of the largest "
-    "force for forces of a simulation (what its mesh leaves), and 28.868 mN for any others (resolution of 0.1 N, as in the thesis)"
+    "force for forces of a simulation (what its mesh leaves), and 28.868 mN for any others (a resolution of 0.1 N, the thesis's)"
 )
 LONGEST_KIND = 60
 """Characters of a foreign kind that a message shows."""

@@ -12,7 +12,7 @@ from tactsim.units import format_quantity
 
 
 def result_report(result: Result, title: str = "") -> str:
-    """Title, status, quantities with units, warnings and assumptions: what names a quantity beside it, of the others the number."""
+    """Title, status, quantities with units, each with assumptions that name it, warnings, and the number of assumptions."""
     width = max((len(one_line(name)) for name in result.quantities), default=0)
     lines = [one_line(title)] if title else []
     lines.append(_ending(result))

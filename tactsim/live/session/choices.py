@@ -22,7 +22,6 @@ from tactsim.outside.text import one_line
 from tactsim.results.quantity import Quantity
 from tactsim.results.reading import read_result
 
-
 STORED = "stored"
 """Name of the choice of a stored estimate, which rests on the readings of its own time."""
 

@@ -305,11 +305,13 @@ def test_a_small_loss_over_a_soft_lump_is_found_and_the_estimate_says_on_which_n
     plain = grasp_folder(tmp_path / "plain", taxel_forces(1), lump=False)
     soft = taxel_forces(1)
     soft[0, :, 1, 1] -= 0.027  # as ``grasp_lump_icf`` against ``grasp_plain``: 54 mN of both jaws
-    scene, frame = (recording := result_recordings(grasp_folder(tmp_path / "soft", soft))["taxel_force"]).scene, recording.frame(0)
+    recording = result_recordings(grasp_folder(tmp_path / "soft", soft))["taxel_force"]
+    scene, frame = recording.scene, recording.frame(0)
     choice, reference = BY_NAME["thesis with reference"], Reference.open([str(plain)])
     stated = estimated(scene, frame_readings(scene, frame, choice, reference), choice, reference)
     assert stated["present"]
     assert any("0.6% of the largest force" in words and "--noise FORCE" in words for words in stated["words"])
     given = estimated(scene, frame_readings(scene, frame, choice, reference, 29e-3), choice, reference)
     assert not given["present"]
-    assert "With noise of 29 mN on each taxel (one standard deviation): as given by --noise; --noise FORCE takes another" in given["words"]
+    noise = "With noise of 29 mN on each taxel (one standard deviation): as given by --noise; --noise FORCE takes another"
+    assert noise in given["words"]
