@@ -158,7 +158,7 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     assert again.scene == result.scene
     changed = result.quantities | {"force": ts.Quantity(np.nextafter(result["force"].value, 1), "N", result["force"].description)}
     assert ts.Result(**{**vars(result), "quantities": changed}) != result
-    with pytest.raises(StorageError, match="first"):
+    with pytest.raises(StorageError, match=r"first exists; use --force \(in Python: force=True\) to replace it"):
         result.save(tmp_path / "first")
     assert again.save(tmp_path / "first", force=True).is_dir()
 
@@ -280,6 +280,8 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
     with pytest.warns(UserWarning, match="no sample that is done; take more samples"):  # of four, each split has none or one
         data = ts.sweep(varied, samples=4, out=tmp_path / "annuli.zarr", workers=1, title="Annuli")
     assert data.sizes["sample"] == 4
+    with pytest.raises(StorageError, match=r"go on with it by --resume \(in Python: resume=True\), or choose another folder"):
+        ts.sweep(varied, samples=4, out=tmp_path / "annuli.zarr", workers=1, title="Annuli")
     radii = data["varied_outer_radius"].values
     assert ((radii > 2e-3) & (radii < 4e-3)).all()
     assert len(set(radii)) == 4

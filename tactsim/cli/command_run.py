@@ -91,7 +91,9 @@ def run(arguments: argparse.Namespace) -> int:
     if repeated := [name for name in names if names.count(name) > 1]:
         raise InputError(f"two cases are called {one_line(repeated[0])}; their results would have one folder")
     root, codes = arguments.out or Path("results"), []
-    for path in arguments.cases:
+    for number, path in enumerate(arguments.cases):
+        if number and not arguments.quiet:
+            console.out()
         codes.append(_run(path, root / path.stem, arguments))
         if codes[-1] == INTERRUPTED:
             return INTERRUPTED
@@ -175,7 +177,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
     figures, warnings = ({}, []) if arguments.figures == "none" else rendered_figures(result, arguments.figures)
     frames = {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]
     result = replace(result, warnings=(*result.warnings, *warnings), frames=frames)
-    report = result_report(result, case.title)
+    report = result_report(result, _heading(result, len(arguments.cases) > 1))
     try:
         kept = _write(result, case, folder, figures, arguments)
     except StorageError:
@@ -188,6 +190,12 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
             console.out(f"  the earlier result, which converged, is kept in {kept}")
         console.out(last_line(result, folder.path, figures))
     return INTERRUPTED if interruption.requested else result.status.exit_code
+
+
+def _heading(result: Result, several: bool) -> str:
+    """Whose report it is: the title of the case or the name of its file, of one among several both."""
+    name = Path(result.provenance["case_file"]).stem
+    return f"{name}: {result.title}" if several and result.title else result.title or name
 
 
 def _write(

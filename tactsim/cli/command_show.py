@@ -94,7 +94,8 @@ def _show_result(arguments: argparse.Namespace) -> int:
     folder = arguments.result.parent if arguments.result.name == "result.json" else arguments.result
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
-    console.out(result_report(stored.result, str(case.get("title", "")) if isinstance(case, dict) else ""))
+    title = str(case.get("title") or "") if isinstance(case, dict) else ""
+    console.out(result_report(stored.result, title or folder.resolve().name))
     console.out(f"  case {one_line(stored.case_id)}")
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")

@@ -44,7 +44,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
             "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
         )
     case = stored.provenance.get("case")
-    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or result.kind)
+    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or Path(folder).resolve().name)
     incomplete = f"{one_line(folder)}/result.json is not a complete result of a grasp"
     try:
         grasp = result.scene_as(GraspScene)

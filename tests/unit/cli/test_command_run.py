@@ -37,6 +37,20 @@ def test_a_run_reports_quantities_and_ends_with_the_threshold(capsys: pytest.Cap
     assert err == ""
 
 
+def test_a_report_says_whose_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    text = Path("case.yaml").read_text(encoding="utf-8")
+    Path("untitled.yaml").write_text(
+        "\n".join(line for line in text.splitlines() if not line.startswith("title")), encoding="utf-8"
+    )
+    assert main(["run", "untitled.yaml", "--figures", "none"]) == 0
+    assert capsys.readouterr().out.startswith("untitled\nconverged")
+    assert main(["show", "results/untitled"]) == 0
+    assert capsys.readouterr().out.startswith("untitled\nconverged")
+    assert main(["run", "case.yaml", "untitled.yaml", "--figures", "none"]) == 0
+    reports = capsys.readouterr().out.split("\n\n")
+    assert [report.splitlines()[0] for report in reports[:2]] == ["case: A pretended case", "untitled"]
+
+
 def test_provenance_holds_the_resolved_case_and_the_overrides() -> None:
     assert main(["run", "case.yaml", "--set", "experiment.steps=1", "--quiet"]) == 0
     stored = read_result("results/case")

@@ -36,6 +36,10 @@ def test_frames_between_the_steps_are_linear_and_the_jaws_follow(tmp_path: Path)
     np.testing.assert_allclose(recording.at(-5.0).forces, taxel_forces()[0])
 
 
+def test_a_result_without_a_title_goes_by_its_folder(tmp_path: Path) -> None:
+    assert result_recordings(grasp_folder(tmp_path / "left_hand", title=""))["taxel_force"].scene.title == "left_hand"
+
+
 def test_a_taxel_that_is_null_in_the_result_is_dead(tmp_path: Path) -> None:
     forces = taxel_forces(1)
     forces[0, 1, 2, 0] = np.nan
