@@ -116,6 +116,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
     from tactsim.outside.library_warnings import collected_warnings
+    from tactsim.progress import noted_by
     from tactsim.results.folder import claimed
 
     seconds = _time_limit(arguments.time_limit)
@@ -130,7 +131,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             if progress is not None:
                 for doubt in case.experiment.doubts():
                     console.note(f"warning: {doubt}")
-            with collected_warnings() as raised:
+            with collected_warnings() as raised, noted_by(progress and console.note):
                 result = case.experiment.run(progress, time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
             result = replace(result, provenance=case.provenance(case_file=path.name, overrides=arguments.set))
@@ -161,11 +162,17 @@ def _time_limit(text: str | None) -> float | None:
 
 def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None] | None:
     from tactsim.cli.report import step_line
+    from tactsim.progress import COMPILATION
 
     if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
         return None
-    begin, units, extent = time.monotonic(), case.experiment.history_units, case.experiment.extent
-    return lambda record: console.note(step_line(record, units, extent, time.monotonic() - begin))
+    units, extent = case.experiment.history_units, case.experiment.extent
+
+    def computing() -> float:
+        return time.monotonic() - COMPILATION.seconds
+
+    begin = computing()
+    return lambda record: console.note(step_line(record, units, extent, computing() - begin))
 
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:
