@@ -87,7 +87,7 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, f
     ----------
     record, units : the step, and the unit of each of its values
     extent : the value that grows during the run and its last value, of which the step has reached so many per cent
-    elapsed : time in s since the run began, without compiling; from a second on the time left is told, as if the rest took as long
+    elapsed : time in s since the run began, without compiling; from a second on the time left is given, as if all took as long
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
     values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
