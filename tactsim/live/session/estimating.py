@@ -82,19 +82,22 @@ def estimated(
     misfit = plain_parts_warning(readings, estimate)
     of_these = choice.name != STORED
     bare = [BARE] if readings.difference is None and estimate.inclusions and of_these else []
-    noise = [noise_words(readings)] if of_these else []
+    noise = noise_words(readings) if of_these else ""
     return {
         "present": estimate.present,
-        "words": [*_words(estimate), *bare, *noise, *([] if misfit is None else [f"Warning: {misfit}"])],
+        "words": [*_words(estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
         "errors": _errors(scene, estimate),
+        "noise": noise,
         "inclusions": [_drawn(one) for one in estimate.inclusions],
     }
 
 
 def noise_words(readings: Readings) -> str:
     """Which noise of a taxel the estimate rests on, where it comes from, and how another is given."""
-    size = format_quantity(readings.noise, "N")
-    return f"With noise of {size} on each taxel (one standard deviation): {readings.noise_origin}; --noise FORCE takes another"
+    size = format_quantity(float(f"{readings.noise:.3g}"), "N")
+    return (
+        f"Noise of {size} on each taxel (one standard deviation): {readings.noise_origin}; start with --noise FORCE for another"
+    )
 
 
 def _drawn(one: EstimatedInclusion) -> dict[str, Any]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces.readings import RESOLUTION, ROUNDING_NOISE
-from tactsim.units import format_quantity
 
 MESH_SHARE = 0.006
 """Error of a taxel over the largest force that a mesh leaves: by that much does ``cases/grasp_lump_icf.yaml`` differ from finer
@@ -23,9 +22,7 @@ class ReadingNoise:
     origin: str
 
 
-RESOLVED = ReadingNoise(
-    ROUNDING_NOISE, f"what rounding to {format_quantity(RESOLUTION, 'N')} does, the resolution of the sensors of the thesis"
-)
+RESOLVED = ReadingNoise(ROUNDING_NOISE, f"that of rounding to {RESOLUTION:g} N, the resolution of the sensors of the thesis")
 """Of readings of which no more is known."""
 
 
@@ -39,5 +36,5 @@ def solution_noise(forces: Array) -> ReadingNoise:
     largest = float(np.abs(np.where(np.isfinite(forces), forces, 0.0)).max(initial=0.0))
     if largest == 0:
         return RESOLVED
-    words = f"{MESH_SHARE:.1%} of the largest force, what the mesh of a simulation leaves; it holds no noise of sensors"
+    words = f"{MESH_SHARE:.1%} of the largest force, the error of the mesh of a simulation, which no sensor has read"
     return ReadingNoise(MESH_SHARE * largest, words)

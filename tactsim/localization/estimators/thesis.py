@@ -110,7 +110,8 @@ class ThesisEstimator(Estimator):
     def _limit_words(self, readings: Readings) -> str:
         """The least change that counts, and how it follows from the noise of a taxel."""
         deviation = self._deviation(readings)
-        least, one, each = (format_quantity(force, "N") for force in (self.threshold * deviation, deviation, readings.noise))
+        forces = (self.threshold * deviation, deviation, readings.noise)
+        least, one, each = (format_quantity(float(f"{force:.3g}"), "N") for force in forces)
         return f"{least} ({self.threshold:g} standard deviations of {one}, from noise of {each} on each taxel)"
 
     def _weights(self, total: Array, base: float) -> Array:

@@ -314,8 +314,8 @@ def test_a_small_loss_over_a_soft_lump_is_found_and_the_estimate_says_on_which_n
     choice, reference = BY_NAME["thesis with reference"], Reference.open([str(plain)])
     stated = estimated(scene, frame_readings(scene, frame, choice, reference), choice, reference)
     assert stated["present"]
-    assert any("0.6% of the largest force" in words and "--noise FORCE" in words for words in stated["words"])
+    assert "0.6% of the largest force" in stated["noise"]
     given = estimated(scene, frame_readings(scene, frame, choice, reference, 29e-3), choice, reference)
     assert not given["present"]
-    noise = "With noise of 29 mN on each taxel (one standard deviation): as given by --noise; --noise FORCE takes another"
-    assert noise in given["words"]
+    noise = "Noise of 29 mN on each taxel (one standard deviation): as given by --noise; start with --noise FORCE for another"
+    assert given["noise"] == noise
