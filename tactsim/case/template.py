@@ -10,6 +10,10 @@ from pydantic import BaseModel
 from tactsim.case.field_docstrings import field_descriptions
 from tactsim.case.model import SCHEMA, experiment_class
 from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
+from tactsim.materials.library import LIBRARY
+
+MATERIALS = " Names of materials: tactsim list materials."
+"""Where a value is a shipped material by its name."""
 
 
 def template(kind: str) -> str:
@@ -27,6 +31,7 @@ def template(kind: str) -> str:
     about = (cls.__doc__ or "").partition("\n")[0].strip()
     lines = [
         "# yaml-language-server: $schema=case.schema.json",
+        "# An editor completes the keys once that schema lies beside this file: tactsim schema --out case.schema.json",
         *_comment(about, ""),
         *_needed(example),
         f"schema: {SCHEMA}",
@@ -37,7 +42,8 @@ def template(kind: str) -> str:
     described = field_descriptions(cls)
     for name in given:
         if name != "kind":
-            lines += ["", *_comment(described.get(name, ""), "  "), *_entry(name, given[name])]
+            about = described.get(name, "") + (MATERIALS if _names_material(given[name]) else "")
+            lines += ["", *_comment(about, "  "), *_entry(name, given[name])]
     left = [name for name in every if name not in given]
     if left:
         lines += ["", "  # What follows are defaults: take the # before a key away to change one."]
@@ -57,6 +63,13 @@ def _texts(value: Any) -> list[str]:
     if isinstance(value, dict | list):
         return [text for item in (value.values() if isinstance(value, dict) else value) for text in _texts(item)]
     return [value] if isinstance(value, str) else []
+
+
+def _names_material(value: Any) -> bool:
+    """Whether a part of a written case is the name of a shipped material, or holds one."""
+    if isinstance(value, dict | list):
+        return any(map(_names_material, value.values() if isinstance(value, dict) else value))
+    return isinstance(value, str) and value in set(LIBRARY)
 
 
 def _comment(text: str, indent: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -64,6 +65,7 @@ def format_values(quantity: Quantity) -> str:
     if values.ndim == 0:
         return format_quantity(float(values), quantity.unit)
     if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
+        values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
         return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
     finite = values[np.isfinite(values)]
     shape = " x ".join(map(str, values.shape))
@@ -75,6 +77,10 @@ def format_values(quantity: Quantity) -> str:
 
 LISTED = 4
 """Values of a list that are all shown, such as a place."""
+ROUND_OFF = 1e-10
+"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points that is solved to 1e-10 is better."""
+COMPONENT = re.compile(r"(.+)_[xyz]")
+"""Name of a component of a vector."""
 VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 
@@ -90,13 +96,20 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, f
     elapsed : time in s since the run began, without compiling; from a second on the time left is given, as if all took as long
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
-    values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
+    values = [f"{name} {format_quantity(_without_round_off(name, record.values), units.get(name, ''))}" for name in shown]
     share = record.values.get(extent[0], 0.0) / extent[1] if extent else 0.0
     reached = f" {share:4.0%}" if extent else ""
     solved = record.newton_iterations > 0 or record.residual > 0
     effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []
     left = [f"about {_rough(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
     return "  ".join([f"step {record.step:4d}{reached}", *values, *effort, *left])
+
+
+def _without_round_off(name: str, values: Mapping[str, float]) -> float:
+    """A history value, 0 if it is a component of a vector that is round-off beside another one."""
+    vector = COMPONENT.fullmatch(name)
+    beside = [abs(values.get(f"{vector[1]}_{axis}", 0.0)) for axis in "xyz"] if vector else [0.0]
+    return 0.0 if abs(values[name]) < ROUND_OFF * max(beside) else values[name]
 
 
 def _rough(seconds: float) -> str:
