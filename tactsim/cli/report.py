@@ -78,7 +78,7 @@ def format_values(quantity: Quantity) -> str:
 LISTED = 4
 """Values of a list that are all shown, such as a place."""
 ROUND_OFF = 1e-10
-"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points that is solved to 1e-10 is better."""
+"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points solved to 1e-10 is better."""
 COMPONENT = re.compile(r"(.+)_[xyz]")
 """Name of a component of a vector."""
 VALUES_IN_A_LINE = 4
