@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import itertools
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, get_type_hints
 
@@ -67,3 +69,16 @@ class FrozenModel(BaseModel, metaclass=_MadeInPython):
     """A closed, immutable value: unknown keys, NaN and later changes are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def check_increasing(**lists: Sequence[float]) -> None:
+    """Check that every list increases strictly.
+
+    Raises
+    ------
+    ValueError
+        Naming the first that does not.
+    """
+    for name, values in lists.items():
+        if any(later <= earlier for earlier, later in itertools.pairwise(values)):
+            raise ValueError(f"{name} must increase")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -18,6 +19,44 @@ OPEN_FORM = "{desc} {n_fmt} steps {postfix} [{elapsed}]"
 ELAPSED_FORM, TICK = "{desc} [{elapsed}]", 0.5
 """Of what cannot say how far it is, and the seconds after which its time is written anew."""
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+_note: ContextVar[Callable[[str], None] | None] = ContextVar("note", default=None)
+COMPILING = "compiling the element loops, once on this machine (about 25 s)"
+"""Source: 17 s of the processor for those of a grasp, of which two busy cores make 20 to 30; numba keeps them from then on."""
+
+
+class Compilation:
+    """What compiling has taken in this process; it is said once, as it begins, that it goes on.
+
+    One loop is compiled within another, on whatever thread: only the outermost counts.
+
+    Attributes
+    ----------
+    seconds : time in s of all that is compiled
+    """
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        self._depth, self._begun, self._said = 0, 0.0, False
+        self._lock = threading.Lock()
+
+    def begin(self) -> None:
+        """A loop is about to be compiled."""
+        with self._lock:
+            self._depth += 1
+            if self._depth == 1:
+                self._begun = time.monotonic()
+        self._said = self._said or noted(COMPILING)
+
+    def end(self) -> None:
+        """It is compiled."""
+        with self._lock:
+            self._depth -= 1
+            if self._depth == 0:
+                self.seconds += time.monotonic() - self._begun
+
+
+COMPILATION = Compilation()
+"""That of this process, whose loops numba keeps compiled until it ends."""
 
 
 @contextmanager
@@ -34,9 +73,13 @@ def step_bar(name: str, extent: tuple[str, float] | None) -> Iterator[Callable[[
         return
     from tqdm import tqdm
 
+    compiled = COMPILATION.seconds
     with tqdm(total=extent and 100, desc=name, bar_format=FORM if extent else OPEN_FORM, leave=False) as bar:
 
         def advance(record: StepRecord) -> None:
+            nonlocal compiled
+            later, compiled = COMPILATION.seconds - compiled, COMPILATION.seconds
+            bar.start_t, bar.last_print_t = bar.start_t + later, bar.last_print_t + later
             bar.set_postfix_str(f"step {record.step}", refresh=False)
             if extent is None:
                 bar.update()
@@ -70,6 +113,29 @@ def quiet(silent: bool = True) -> Iterator[None]:
         yield
     finally:
         _quiet.reset(token)
+
+
+@contextmanager
+def noted_by(note: Callable[[str], None] | None) -> Iterator[None]:
+    """A block whose notes go to a function, watched or not; None leaves them to the terminal or the notebook."""
+    token = _note.set(note)
+    try:
+        yield
+    finally:
+        _note.reset(token)
+
+
+def noted(text: str) -> bool:
+    """Writes a note about what is going on, above the bars; whether anybody is there to read it."""
+    if (note := _note.get()) is not None:
+        note(text)
+        return True
+    if _quiet.get() or not is_watched():
+        return False
+    from tqdm import tqdm
+
+    tqdm.write(text, file=sys.stderr)
+    return True
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, get_args
 
@@ -96,7 +96,8 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
     if error_type == "extra_forbidden":
         allowed = _keys(_schema_at(schema, root, path[:-1]), schema)
         comma = f"; {DECIMAL_POINT}" if str(path[-1]).isdecimal() else ""
-        return path, f"unknown key{suggestion(str(path[-1]), allowed)}; allowed: {', '.join(allowed) or 'none'}{comma}"
+        meant = _deeper(path, root, schema, allowed) or suggestion(str(path[-1]), allowed)
+        return path, f"unknown key{meant}; allowed: {', '.join(allowed) or 'none'}{comma}"
     if error_type == "missing":
         return path, f"missing; expected {_expectation(fragment, schema)}"
     if error_type == "union_tag_not_found":
@@ -116,6 +117,13 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
     return path, _out_of_bounds(
         context, value, fragment
     ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}{_comma(value)}"
+
+
+def _deeper(path: Path, root: Any, schema: dict[str, Any], allowed: Sequence[str]) -> str:
+    """What to say of an unknown key that is one of a mapping beside it, as ``recess`` is of ``experiment``."""
+    *above, key = path
+    beside = [name for name in allowed if key in _keys(_schema_at(schema, root, (*above, name)), schema)]
+    return f" (did you mean {'.'.join(map(str, (*above, beside[0], key)))!r}?)" if beside else ""
 
 
 def _comma(value: Any) -> str:

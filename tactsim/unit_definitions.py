@@ -4,6 +4,10 @@ Any other unit that pint knows, from the furlong to the parsec, is a slip. With 
 quantities in a tenth of the time that all of pint's units take.
 """
 
+from __future__ import annotations
+
+from functools import cache
+
 PREFIXES = (
     "quecto- = 1e-30 = q-",
     "ronto- = 1e-27 = r-",
@@ -107,3 +111,19 @@ DIMENSIONS = {
     "kg/m^3": ("a density", "1 g/cm^3"),
 }
 """SI unit of a dimension -> its name, and an example."""
+
+
+@cache
+def customary_words() -> frozenset[str]:
+    """Every spelling of a customary unit, with its prefixes."""
+    prefixes, prefixed, unprefixed = (
+        {name.removesuffix("-") for line in lines for name in _names(line)} for lines in (PREFIXES, PREFIXED, UNPREFIXED)
+    )
+    single = {*unprefixed, *prefixed, *(prefix + name for prefix in prefixes for name in prefixed)}
+    return frozenset({*single, *(f"{name}s" for name in single)})
+
+
+def _names(definition: str) -> list[str]:
+    """The names in a definition such as ``meter = [length] = m = metre``."""
+    name, _, *others = (part.strip() for part in definition.split("="))
+    return [name, *others]

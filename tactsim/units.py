@@ -6,11 +6,11 @@ A pydantic field typed ``Length`` accepts ``"0.8 mm"`` and holds ``0.0008``. A b
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
+from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Annotated, Any, TypeVar
 
@@ -24,7 +24,7 @@ from pydantic import (
 )
 
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.unit_definitions import DIMENSIONS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED
+from tactsim.unit_definitions import DIMENSIONS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED, customary_words
 
 _QUANTITY = re.compile(
     r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",
@@ -47,35 +47,6 @@ def _registry() -> Any:
     return pint.UnitRegistry([*PREFIXES, *PREFIXED, *UNPREFIXED], cache_folder=None)
 
 
-@cache
-def _words() -> frozenset[str]:
-    """Every spelling of a customary unit, with its prefixes."""
-    prefixes, prefixed, unprefixed = (
-        {name.removesuffix("-") for line in lines for name in _names(line)} for lines in (PREFIXES, PREFIXED, UNPREFIXED)
-    )
-    single = {*unprefixed, *prefixed, *(prefix + name for prefix in prefixes for name in prefixed)}
-    return frozenset({*single, *(f"{name}s" for name in single)})
-
-
-def _names(definition: str) -> list[str]:
-    """The names in a definition such as ``meter = [length] = m = metre``."""
-    name, _, *others = (part.strip() for part in definition.split("="))
-    return [name, *others]
-
-
-def check_increasing(**lists: Sequence[float]) -> None:
-    """Check that every list increases strictly.
-
-    Raises
-    ------
-    ValueError
-        Naming the first that does not.
-    """
-    for name, values in lists.items():
-        if any(later <= earlier for earlier, later in itertools.pairwise(values)):
-            raise ValueError(f"{name} must increase")
-
-
 @lru_cache(maxsize=1024)
 def _factor_to(unit: str, given_unit: str) -> float:
     """How many ``unit`` one ``given_unit`` is."""
@@ -91,7 +62,7 @@ def _unusual_unit(given_unit: str) -> str | None:
     import pint
 
     for word in re.findall(_WORD, given_unit):
-        if word not in _words() and pint.UnitRegistry(cache_folder=None).parse_unit_name(word):
+        if word not in customary_words() and pint.UnitRegistry(cache_folder=None).parse_unit_name(word):
             return str(word)
     return None
 
@@ -152,7 +123,7 @@ def parse_quantity(text: str, unit: str) -> float:
             f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
         )
     try:
-        converted = value * _factor_to(unit, given_unit)
+        converted = _converted(parts["number"], _factor_to(unit, given_unit))
     except pint.DimensionalityError:
         raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected}") from None
     except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
@@ -161,7 +132,25 @@ def parse_quantity(text: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
     if converted == 0 and re.search("[1-9]", re.split("[eE]", parts["number"])[0]):
         raise InvalidQuantity(f"{shown(text)} is too small to be told from 0; {expected}")
-    return float(f"{converted:.15g}")  # so that "0.8 mm" and "800 um" are the same float
+    return converted
+
+
+def _converted(number: str, factor: float) -> float:
+    """A number as it is written times a factor, such that "0.8 mm" and "800 um" are the same float.
+
+    The factor of a prefix moves the decimal point, and no digit is lost; the product with any other is taken to 15 digits.
+    """
+    value, power = float(number), _power_of_ten(factor)
+    if power is None or value == 0:
+        return float(f"{value * factor:.15g}")
+    digits, _, exponent = number.lower().partition("e")
+    return float(f"{digits}e{int(exponent or 0) + power}")
+
+
+def _power_of_ten(factor: float) -> int | None:
+    """The exponent of a factor that is a power of ten but for the round-off of its computation, None of any other."""
+    power = round(math.log10(factor)) if factor > 0 else 0
+    return power if math.isclose(factor, float(f"1e{power}"), rel_tol=1e-14) else None
 
 
 def conversion(given_unit: str, unit: str) -> float:
@@ -238,14 +227,28 @@ def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
     return read
 
 
+MOST_ZEROS = 7
+"""Digits before the first one, or after the last, from which on a written number has an exponent."""
+
+
 def written_quantity(value: float, unit: str) -> str:
-    """``value`` in SI as a file writes it, exact to 15 digits: ``0.04, "m"`` gives ``"40 mm"``."""
+    """``value`` in SI as a file writes it, which is read as the same float: ``0.04, "m"`` gives ``"40 mm"``."""
+    if unit == "rad" and parse_quantity(degrees := f"{math.degrees(value):.15g} deg", unit) == value:
+        return degrees
     if value and math.isfinite(value) and unit != "rad":
         compact = _compact(value, unit)
-        text = f"{compact.magnitude:.15g} {compact.units:~C}".replace("**", "^")
-        if parse_quantity(text, unit) == float(f"{value:.15g}"):
+        given_unit = f"{compact.units:~C}".replace("**", "^")
+        power = _power_of_ten(_factor_to(unit, given_unit))
+        number = f"{compact.magnitude:.15g}" if power is None else _shifted(value, -power)
+        if parse_quantity(text := f"{number} {given_unit}", unit) == value:
             return text
-    return f"{value:.17g} {unit}"
+    return f"{_shifted(value, 0)} {unit}"
+
+
+def _shifted(value: float, power: int) -> str:
+    """The fewest digits that tell the float apart, with the decimal point moved; an exponent instead of many zeros."""
+    number = Decimal(repr(value)).scaleb(power).normalize()
+    return f"{number:f}" if number == 0 or abs(number.adjusted()) < MOST_ZEROS else f"{number:e}"
 
 
 def _writer(unit: str) -> Callable[[float, SerializationInfo], Any]:

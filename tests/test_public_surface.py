@@ -158,7 +158,7 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     assert again.scene == result.scene
     changed = result.quantities | {"force": ts.Quantity(np.nextafter(result["force"].value, 1), "N", result["force"].description)}
     assert ts.Result(**{**vars(result), "quantities": changed}) != result
-    with pytest.raises(StorageError, match="first"):
+    with pytest.raises(StorageError, match=r"first exists; use --force \(in Python: force=True\) to replace it"):
         result.save(tmp_path / "first")
     assert again.save(tmp_path / "first", force=True).is_dir()
 
@@ -215,6 +215,22 @@ def test_a_case_built_in_python_is_saved_and_read_as_the_same(grasp: ts.Grasp, t
     assert "material: lump" in place.read_text()
     with pytest.raises(StorageError, match="exists"):
         ts.save_case(grasp, place)
+
+
+def test_a_saved_design_keeps_what_was_given_though_it_is_the_default_and_every_bit(tmp_path: Path) -> None:
+    default = ts.Annulus().outer_radius
+    fitted = ts.MooneyRivlin3(c10=7838.8393223224548, c01=1234.5678901234567, c11=-2000.1234567890123)
+    specimen = {"material": fitted, "thickness": "10 mm"}
+    options = {"specimen": specimen, "recess": "0.8 mm", "displacement": 0.7 * 1e-3}
+    design = ts.Indentation(body=ts.Annulus(outer_radius=default), **options)
+    text = ts.save_case(design, tmp_path / "design.yaml").read_text()
+    assert "outer_radius: 3 mm" in text
+    assert "inner_radius" not in text, "nobody gave it"
+    assert "      c10: 7.838839322322455 kPa\n      c01: 1.2345678901234567 kPa\n" in text
+    again = ts.load_case(tmp_path / "design.yaml")
+    assert (again.experiment.specimen.material, again.experiment.displacement) == (fitted, 0.7 * 1e-3)
+    unwritten = ts.save_case(ts.Indentation(**options), tmp_path / "unwritten.yaml")
+    assert ts.load_case(unwritten).case_id == again.case_id, "a default that is written out is the same case"
 
 
 def test_lengths_may_be_text_pint_or_si() -> None:
@@ -309,6 +325,8 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
     with pytest.warns(UserWarning, match="no sample that is done; take more samples"):  # of four, each split has none or one
         data = ts.sweep(varied, samples=4, out=tmp_path / "annuli.zarr", workers=1, title="Annuli")
     assert data.sizes["sample"] == 4
+    with pytest.raises(StorageError, match=r"go on with it by --resume \(in Python: resume=True\), or choose another folder"):
+        ts.sweep(varied, samples=4, out=tmp_path / "annuli.zarr", workers=1, title="Annuli")
     radii = data["varied_outer_radius"].values
     assert ((radii > 2e-3) & (radii < 4e-3)).all()
     assert len(set(radii)) == 4

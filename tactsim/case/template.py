@@ -8,6 +8,10 @@ from typing import Any
 from tactsim.case.field_docstrings import field_descriptions
 from tactsim.case.model import SCHEMA, experiment_class
 from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
+from tactsim.materials.library import LIBRARY
+
+MATERIALS = " Names of materials: tactsim list materials."
+"""Where a value is a shipped material by its name."""
 
 
 def template(kind: str) -> str:
@@ -25,6 +29,7 @@ def template(kind: str) -> str:
     about = (cls.__doc__ or "").partition("\n")[0].strip()
     lines = [
         "# yaml-language-server: $schema=case.schema.json",
+        "# An editor completes the keys once that schema lies beside this file: tactsim schema --out case.schema.json",
         *_comment(about, ""),
         f"schema: {SCHEMA}",
         f"title: {kind.replace('_', ' ').capitalize()}",
@@ -34,13 +39,21 @@ def template(kind: str) -> str:
     described = field_descriptions(cls)
     for name in given:
         if name != "kind":
-            lines += ["", *_comment(described.get(name, ""), "  "), *_entry(name, given[name])]
+            about = described.get(name, "") + (MATERIALS if _names_material(given[name]) else "")
+            lines += ["", *_comment(about, "  "), *_entry(name, given[name])]
     left = [name for name in every if name not in given]
     if left:
         lines += ["", "  # What follows are defaults: take the # before a key away to change one."]
     for name in left:
         lines += ["", *_comment(described.get(name, ""), "  "), *(f"  #{line[2:]}" for line in _entry(name, every[name]))]
     return "\n".join(lines) + "\n"
+
+
+def _names_material(value: Any) -> bool:
+    """Whether a part of a written case is the name of a shipped material, or holds one."""
+    if isinstance(value, dict | list):
+        return any(map(_names_material, value.values() if isinstance(value, dict) else value))
+    return isinstance(value, str) and value in set(LIBRARY)
 
 
 def _comment(text: str, indent: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""From a case to its file: quantities with their units, nothing that is a default, shipped materials by name."""
+"""From a case to its file: quantities with their units, what was given and no other default, shipped materials by name."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 from ruamel.yaml import YAML, RoundTripRepresenter
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from tactsim.case.model import Case
 from tactsim.errors import StorageError
@@ -18,6 +19,10 @@ from tactsim.storage.files import naming, write_bytes
 
 HEADER = "# yaml-language-server: $schema=case.schema.json\n"
 LONGEST_LINE = 100
+LONGEST_TEXT = 4096
+"""Characters of a single text, such as a title, that stay on one line."""
+KEPT = ("kind", "control", "schema_version")
+"""Fields that say what a mapping is, which are written whatever they are."""
 
 
 def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False) -> Path:
@@ -60,11 +65,27 @@ _Writer.add_representer(type(None), lambda writer, _: writer.represent_scalar("t
 
 
 def yaml_text(value: Any) -> str:
-    """Plain data as YAML: what holds no other list or mapping on one line."""
+    """Plain data as YAML: what holds no other list or mapping on one line if that is not too long, else a line for each entry."""
     text, yaml = io.StringIO(), YAML()
-    yaml.Representer, yaml.width, yaml.default_flow_style = _Writer, LONGEST_LINE, None
-    yaml.dump(value, text)
+    yaml.Representer, yaml.width, yaml.default_flow_style = _Writer, LONGEST_TEXT, None
+    yaml.dump(_lined(value), text)
     return text.getvalue()
+
+
+def _lined(value: Any) -> Any:
+    """Data whose lists and mappings that are too long for a line have a line for each entry."""
+    if not isinstance(value, dict | list):
+        return value
+    entries = value.values() if isinstance(value, dict) else value
+    nested = any(isinstance(entry, dict | list) for entry in entries)
+    lined: Any = CommentedMap() if isinstance(value, dict) else CommentedSeq()
+    if isinstance(value, dict):
+        lined.update({key: _lined(entry) for key, entry in value.items()})
+    else:
+        lined.extend(map(_lined, value))
+    if nested or len(str(value)) > LONGEST_LINE:
+        lined.fa.set_block_style()
+    return lined
 
 
 def case_document(case: Case | Experiment, *, complete: bool = False) -> dict[str, Any]:
@@ -82,14 +103,18 @@ def case_document(case: Case | Experiment, *, complete: bool = False) -> dict[st
 
 
 def _without_defaults(value: Any, dumped: Any) -> Any:
-    """What was dumped of a value, without the fields that have their default; shipped materials by name."""
+    """What was dumped of a value, without the fields that nobody gave and that have their default; shipped materials by name.
+
+    What was given stays though it equals the default: another version may have another default.
+    """
     if isinstance(value, Material) and (name := _shipped_name(value)):
         return name
     if isinstance(value, BaseModel):
         kept = {}
         for name, field in type(value).model_fields.items():
             key, entry = field.serialization_alias or field.alias or name, getattr(value, name)
-            if name in ("kind", "control", "schema_version") or entry != field.get_default(call_default_factory=True):
+            given = name in KEPT or name in value.model_fields_set
+            if given or entry != field.get_default(call_default_factory=True):
                 kept[key] = _without_defaults(entry, dumped[key])
         return kept
     if isinstance(value, tuple | list):

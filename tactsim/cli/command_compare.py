@@ -61,7 +61,7 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
     """Print the table, and write it with its figure if a folder is given."""
     from tactsim.results.comparison import compared, shown_number
 
-    comparison = compared(results, _unit_of)
+    comparison = compared(results, _unit_of, _name_of)
     width = max(6, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
     given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
@@ -94,6 +94,15 @@ def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:
         return unit_at(experiment_class(str(experiment.get("kind"))), experiment, path)
     except UnknownName:
         return ""
+
+
+def _name_of(part: Mapping[str, Any]) -> str:
+    """The shipped material set of which a part of a case holds the constants; empty if it holds those of none."""
+    if "kind" not in part:
+        return ""
+    from tactsim.materials.library import LIBRARY
+
+    return next((name for name, entry in LIBRARY.items() if entry.material.model_dump(mode="json") == part), "")
 
 
 def _folders(place: Path) -> list[Path]:

@@ -115,13 +115,14 @@ def _relaxation(arguments: argparse.Namespace) -> int:
 def _fit(arguments: argparse.Namespace) -> int:
     from tactsim.errors import ConvergenceError, InvalidQuantity
     from tactsim.identification.uniaxial import FORMS, fit_uniaxial, spread_of_forms
-    from tactsim.identification.uniaxial_certainty import wrong_signs
+    from tactsim.identification.uniaxial_advice import advice
+    from tactsim.identification.uniaxial_certainty import large_strains, wrong_signs
     from tactsim.identification.uniaxial_data import read_uniaxial_curve
 
     curve = read_uniaxial_curve(arguments.fit)
     if arguments.strains is not None:
         curve = curve.within(*arguments.strains)
-    for warning in wrong_signs(curve):
+    for warning in (*large_strains(curve), *wrong_signs(curve)):
         console.note(f"note: {warning}")
     fits: list[UniaxialFit] = []
     refused: list[str] = []
@@ -134,7 +135,7 @@ def _fit(arguments: argparse.Namespace) -> int:
             refused.append(f"{form}: no fit: {error}")
     for fit in fits:
         console.out(str(fit))
-    for line in refused:
+    for line in (*refused, *filter(None, [advice(fits)])):
         console.out(line)
     if not fits:
         raise InputError(f"{arguments.fit}: no form of the energy fits this curve")

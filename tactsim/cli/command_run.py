@@ -91,7 +91,9 @@ def run(arguments: argparse.Namespace) -> int:
     if repeated := [name for name in names if names.count(name) > 1]:
         raise InputError(f"two cases are called {one_line(repeated[0])}; their results would have one folder")
     root, codes = arguments.out or Path("results"), []
-    for path in arguments.cases:
+    for number, path in enumerate(arguments.cases):
+        if number and not arguments.quiet:
+            console.out()
         codes.append(_run(path, root / path.stem, arguments))
         if codes[-1] == INTERRUPTED:
             return INTERRUPTED
@@ -114,6 +116,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
     from tactsim.outside.library_warnings import collected_warnings
+    from tactsim.progress import noted_by
     from tactsim.results.folder import claimed
 
     seconds = _time_limit(arguments.time_limit)
@@ -128,7 +131,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             if progress is not None:
                 for doubt in case.experiment.doubts():
                     console.note(f"warning: {doubt}")
-            with collected_warnings() as raised:
+            with collected_warnings() as raised, noted_by(progress and console.note):
                 result = case.experiment.run(progress, time_limit=seconds)
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
             result = replace(result, provenance=case.provenance(case_file=path.name, overrides=arguments.set))
@@ -159,11 +162,17 @@ def _time_limit(text: str | None) -> float | None:
 
 def _progress(case: Case, arguments: argparse.Namespace) -> Callable[[StepRecord], None] | None:
     from tactsim.cli.report import step_line
+    from tactsim.progress import COMPILATION
 
     if arguments.quiet or not (arguments.progress or console.notes_are_watched()):
         return None
-    begin, units, extent = time.monotonic(), case.experiment.history_units, case.experiment.extent
-    return lambda record: console.note(step_line(record, units, extent, time.monotonic() - begin))
+    units, extent = case.experiment.history_units, case.experiment.extent
+
+    def computing() -> float:
+        return time.monotonic() - COMPILATION.seconds
+
+    begin = computing()
+    return lambda record: console.note(step_line(record, units, extent, computing() - begin))
 
 
 def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Interruption, arguments: argparse.Namespace) -> int:
@@ -175,7 +184,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
     figures, warnings = ({}, []) if arguments.figures == "none" else rendered_figures(result, arguments.figures)
     frames = {"all": result.frames, "last": result.frames[-1:], "none": ()}[case.output.fields]
     result = replace(result, warnings=(*result.warnings, *warnings), frames=frames)
-    report = result_report(result, case.title)
+    report = result_report(result, _heading(result, len(arguments.cases) > 1))
     try:
         kept = _write(result, case, folder, figures, arguments)
     except StorageError:
@@ -188,6 +197,12 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
             console.out(f"  the earlier result, which converged, is kept in {kept}")
         console.out(last_line(result, folder.path, figures))
     return INTERRUPTED if interruption.requested else result.status.exit_code
+
+
+def _heading(result: Result, several: bool) -> str:
+    """Whose report it is: the title of the case or the name of its file, of one among several both."""
+    name = Path(result.provenance["case_file"]).stem
+    return f"{name}: {result.title}" if several and result.title else result.title or name
 
 
 def _write(

@@ -43,6 +43,10 @@ WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_brow
 """Options that say something about the page only."""
 
 CASE_ENDINGS = (".yaml", ".yml")
+NOISE_WORDS = (
+    "standard deviation of what a taxel reads, such as '2 mN'; by default that of a stored localization, 0.6 %% of the largest "
+    "force for forces of a simulation (what its mesh leaves), and 28.868 mN for any others (a resolution of 0.1 N, the thesis's)"
+)
 LONGEST_KIND = 60
 """Characters of a foreign kind that a message shows."""
 
@@ -57,9 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--live", metavar="SOURCE", help=words)
     words = "result of the same grasp without a lump, which most estimators need; several for several closings"
     parser.add_argument("--reference", metavar="FOLDER", action="append", default=[], help=words)
-    parser.add_argument(
-        "--noise", metavar="FORCE", help="of a reading, such as '2 mN' (default: that of the result, or rounding)"
-    )
+    parser.add_argument("--noise", metavar="FORCE", help=NOISE_WORDS)
     parser.add_argument("--learned", metavar="WEIGHTS.npz", help="offer the learned estimator: the file of tactsim data train")
     parser.add_argument("--port", metavar="N", type=int, help="port of the page; by default any that is free")
     parser.add_argument("--host", metavar="ADDRESS", help="serve on another address than that of this machine alone")
@@ -128,7 +130,8 @@ def _show_result(arguments: argparse.Namespace) -> int:
     folder = arguments.result.parent if arguments.result.name == "result.json" else arguments.result
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
-    console.out(result_report(stored.result, str(case.get("title", "")) if isinstance(case, dict) else ""))
+    title = str(case.get("title") or "") if isinstance(case, dict) else ""
+    console.out(result_report(stored.result, title or folder.resolve().name))
     console.out(f"  case {one_line(stored.case_id)}")
     for name in stored.changed:
         console.out(f"  warning: {name} was changed since tactsim wrote it")

@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="STORE", type=Path, required=True, help="folder of the data set, such as lumps.zarr")
     parser.add_argument("--samples", metavar="N", type=int, help="number of samples (default: that of the file)")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--workers", metavar="N", type=int, help="processes of this machine (default: one per core)")
+    place.add_argument("--workers", metavar="N", type=int, help="processes of this machine (default: one per core, if it pays)")
     place.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask scheduler, such as tcp://host:8786")
     parser.add_argument("--resume", action="store_true", help="go on with the data set in --out")
     parser.add_argument(
@@ -114,9 +114,8 @@ def _executor(sweep: Sweep, arguments: argparse.Namespace) -> Executor:
 
         return Cluster(sweep.text, arguments.scheduler, folder=sweep.folder)
     from tactsim.dataset.running.executors import LocalWorkers
-    from tactsim.outside.environment import usable_cores
 
-    return LocalWorkers(sweep.text, arguments.workers or usable_cores(), folder=sweep.folder)
+    return LocalWorkers.of(sweep, arguments.workers)
 
 
 def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:

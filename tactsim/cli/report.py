@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +13,26 @@ from tactsim.units import format_quantity
 
 
 def result_report(result: Result, title: str = "") -> str:
-    """Title, status, quantities with units, warnings and the number of assumptions."""
+    """Title, status, quantities with units, each with assumptions that name it, warnings, and the number of assumptions."""
     width = max((len(one_line(name)) for name in result.quantities), default=0)
     lines = [one_line(title)] if title else []
     lines.append(_ending(result))
-    lines += [
-        f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip()
-        for name, q in result.quantities.items()
-    ]
+    for name, q in result.quantities.items():
+        lines.append(f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip())
+        lines += [f"  {'':<{width}}  assumption: {one_line(words)}" for words in assumptions_about(name, result.assumptions)]
     lines += [f"  warning: {one_line(warning)}" for warning in result.warnings]
     counted = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
     lines.append(f"  {', '.join(counted)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
     return "\n".join(lines)
+
+
+def assumptions_about(name: str, assumptions: Iterable[str]) -> list[str]:
+    """Those that name a quantity, such as "threshold pressure": they say what its number owes to them.
+
+    A name of a single word, such as ``time``, is a word of any sentence.
+    """
+    words = name.replace("_", " ")
+    return [assumption for assumption in assumptions if words in assumption] if " " in words else []
 
 
 def last_line(result: Result, place: Path, figures: Mapping[str, Any]) -> str:
@@ -56,6 +65,7 @@ def format_values(quantity: Quantity) -> str:
     if values.ndim == 0:
         return format_quantity(float(values), quantity.unit)
     if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
+        values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
         return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
     finite = values[np.isfinite(values)]
     shape = " x ".join(map(str, values.shape))
@@ -67,6 +77,10 @@ def format_values(quantity: Quantity) -> str:
 
 LISTED = 4
 """Values of a list that are all shown, such as a place."""
+ROUND_OFF = 1e-10
+"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points solved to 1e-10 is better."""
+COMPONENT = re.compile(r"(.+)_[xyz]")
+"""Name of a component of a vector."""
 VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 
@@ -79,16 +93,23 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, f
     ----------
     record, units : the step, and the unit of each of its values
     extent : the value that grows during the run and its last value, of which the step has reached so many per cent
-    elapsed : time in s since the run began; from a second on the time left is told, as if the rest took as long for its length
+    elapsed : time in s since the run began, without compiling; from a second on the time left is given, as if all took as long
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
-    values = [f"{name} {format_quantity(record.values[name], units.get(name, ''))}" for name in shown]
+    values = [f"{name} {format_quantity(_without_round_off(name, record.values), units.get(name, ''))}" for name in shown]
     share = record.values.get(extent[0], 0.0) / extent[1] if extent else 0.0
     reached = f" {share:4.0%}" if extent else ""
     solved = record.newton_iterations > 0 or record.residual > 0
     effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []
     left = [f"about {_rough(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
     return "  ".join([f"step {record.step:4d}{reached}", *values, *effort, *left])
+
+
+def _without_round_off(name: str, values: Mapping[str, float]) -> float:
+    """A history value, 0 if it is a component of a vector that is round-off beside another one."""
+    vector = COMPONENT.fullmatch(name)
+    beside = [abs(values.get(f"{vector[1]}_{axis}", 0.0)) for axis in "xyz"] if vector else [0.0]
+    return 0.0 if abs(values[name]) < ROUND_OFF * max(beside) else values[name]
 
 
 def _rough(seconds: float) -> str:

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 
 import numba
 
+import tactsim.fem.compiling  # noqa: F401  follows numba's compiling from the first loop on
+
 SERIAL_ELEMENTS = 15_000
 """Element loops over fewer elements use one thread: with two, each of the dozen barriers of a loop may wait for the system."""
 SERIAL_UNKNOWNS = 40_000

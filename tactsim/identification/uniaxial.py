@@ -14,6 +14,7 @@ from tactsim.identification.uniaxial_certainty import (
     BARELY_STRETCHED,
     UniaxialCertainty,
     certainty,
+    large_strains,
     one_sided,
     pressure_text,
     wrong_signs,
@@ -55,6 +56,8 @@ compression curve as well and differ in every other deformation: their spread is
 IN_TENSION, IN_COMPRESSION = 1.5, 0.7
 """Assumption: moderate stretches at which fits are compared on the side that a curve leaves out."""
 
+ALIKE = 1.1
+"""Ratio of stresses below which fits are said to agree within so many per cent."""
 STRESS_FLOOR = 1e-4
 """Assumption: a relative error is taken of at least this part of the largest stress: what a load cell resolves."""
 
@@ -77,7 +80,8 @@ class UniaxialFit:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the curve leaves open of this form."""
-        return (*wrong_signs(self.curve), *self.certainty.warnings(self.max_relative_error), *one_sided(self.curve))
+        seen = (*large_strains(self.curve), *wrong_signs(self.curve))
+        return (*seen, *self.certainty.warnings(self.max_relative_error), *one_sided(self.curve))
 
     @property
     def case_line(self) -> str:
@@ -183,8 +187,9 @@ def spread_of_forms(fits: Sequence[UniaxialFit]) -> tuple[str, ...]:
     if len(stable) < 2:
         return open_side
     sizes = [abs(uniaxial_nominal_stress(material, np.array(where)).item()) for material in stable]
-    factor = f"{max(sizes) / min(sizes):.2g}"
-    return (f"{open_side[0]}: at a stretch of {where:g} the stable fits differ by a factor of {factor}",)
+    ratio = max(sizes) / min(sizes)
+    differ = f"agree within {max(ratio - 1, 0.001):.1%}" if ratio < ALIKE else f"differ by a factor of {ratio:.2g}"
+    return (f"{open_side[0]}: at a stretch of {where:g} the stable fits {differ}",)
 
 
 def stress_size(curve: UniaxialCurve) -> Array:

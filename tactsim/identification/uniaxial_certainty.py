@@ -17,6 +17,8 @@ AT_REST = ("c10", "c01")
 """Twice the sum of these is the shear modulus at rest."""
 ROUND_OFF = 1e-9
 """Part of an interval below which one of its ends is 0."""
+LARGEST_STRAIN = 10.0
+"""Assumption: no rubber or tissue is stretched further, by 1000 %."""
 BARELY_STRETCHED = 0.05
 """Assumption: a curve that ends within this strain of rest holds nothing of that side."""
 
@@ -28,7 +30,7 @@ class UniaxialCertainty:
     intervals: dict[str, tuple[float, float]]
     """Constant -> lower and upper end in Pa of its interval of 95 %; infinite where no point is to spare."""
     shear_modulus: tuple[float, float]
-    """The same of the shear modulus at rest."""
+    """The same of the shear modulus at rest, which is that of no material below 0."""
     undetermined: tuple[str, ...]
     """Constants whose value may be exchanged for that of others."""
     noise: Noise
@@ -72,7 +74,7 @@ def certainty(squares: LeastSquares, design: Array, target: Array, names: tuple[
     ends = intervals(fitted.T)
     worth = np.diff(ends, axis=0)[0] / 2 * np.sqrt(np.mean(design**2, axis=0))
     at_rest = [name in AT_REST for name in names]
-    low, high = map(float, intervals(2 * fitted[at_rest].sum(axis=0)))
+    low, high = (max(0.0, float(end)) for end in intervals(2 * fitted[at_rest].sum(axis=0)))
     return UniaxialCertainty(
         intervals={name: (float(ends[0, k]), float(ends[1, k])) for k, name in enumerate(names)},
         shear_modulus=(low, high),
@@ -92,6 +94,15 @@ def wrong_signs(curve: UniaxialCurve) -> tuple[str, ...]:
         f"{at - 1:.3g}, of slack or of an offset of the load cell; they rule a fit of relative errors: leave them out or fit "
         "absolute errors",
     )
+
+
+def large_strains(curve: UniaxialCurve) -> tuple[str, ...]:
+    """What strains beyond any tissue suggest, in words: that they are in percent."""
+    largest = float(curve.stretch.max()) - 1
+    if largest <= LARGEST_STRAIN:
+        return ()
+    percent = f"{largest:.4g} ({100 * largest:.4g} %)"
+    return (f"strains reach {percent}: if they are in percent, say so in the header, such as strain [%]",)
 
 
 def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:

@@ -47,7 +47,8 @@ class UniaxialCurve:
             raise InvalidQuantity(f"{self.source}: a stretch or a stress is not finite")
         if (stretch <= 0).any():
             raise InvalidQuantity(
-                f"{self.source}: stretch = {stretch.min():g}; it must be > 0 (1 is rest, strain is stretch - 1)"
+                f"{self.source}: stretch = {stretch.min():g}; it must be > 0 (1 is rest, strain is stretch - 1; "
+                "a strain in percent has a header such as strain [%])"
             )
         if np.unique(stretch[stretch != 1]).size < FEWEST_POINTS:
             raise InvalidQuantity(f"{self.source}: needs at least {FEWEST_POINTS} different stretches other than 1")

@@ -56,6 +56,7 @@ class Readings:
     block_size : (3,) of the undeformed tissue in m, which begins at the origin
     reference : (jaw, row, column) in N, what the same tissue without a lump reads at the same closing; None if not known
     noise : standard deviation of a reading in N
+    noise_origin : in words, why this noise is taken; empty if not known
     valid : (jaw, row, column), False for a dead or saturated taxel; None if all can be trusted
     middle : (2,) x and y in m of the middle of both matrices; None for that of the block
     closing : of each jaw from first touch, in m; None if not known
@@ -72,6 +73,7 @@ class Readings:
     block_size: Array
     reference: Array | None = None
     noise: float = ROUNDING_NOISE
+    noise_origin: str = ""
     valid: Array | None = None
     middle: Array | None = None
     closing: float | None = None

@@ -18,7 +18,12 @@ def material_report(name: str, material: Material) -> str:
     entry = LIBRARY.get(name)
     lines = [f"{name} ({material.kind})", *_origin_lines(entry, material), "", "Constants"]
     lines += [f"  {label:<16} {value}" for label, value in _constants(material)]
-    lines += ["", "Moduli at small strain", *_moduli_lines(material), *_relaxation_lines(material)]
+    lines += [
+        "",
+        f"Moduli at small strain{'' if material.relaxation is None else ', at once'}",
+        *_moduli_lines(material),
+        *_relaxation_lines(material),
+    ]
     lines += ["", *_stability_lines(stability_range(material))]
     return "\n".join(lines)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Hashable, Sequence
 from contextlib import suppress
@@ -25,10 +26,14 @@ class Answer(Generic[Key]):
 
 
 class WorkerPool(Generic[Key]):
-    """Starts workers of one thread each as requests come, ``count`` at most."""
+    """Starts workers of one thread each as requests come, ``count`` at most.
 
-    def __init__(self, module: str, arguments: Sequence[str], count: int):
+    The first begins at once, the others ``patience`` in s later: what it answers meanwhile need not pay for their beginning.
+    """
+
+    def __init__(self, module: str, arguments: Sequence[str], count: int, *, patience: float = 0.0):
         self._module, self._arguments, self.count = module, arguments, count
+        self._patience, self._begun = patience, 0.0
         self._waiting: deque[tuple[Key, bytes]] = deque()
         self._workers: list[Worker] = []
         self._busy: dict[Worker, Key] = {}
@@ -46,6 +51,9 @@ class WorkerPool(Generic[Key]):
     def wait(self, seconds: float | None = None) -> list[Answer[Key]]:
         """What was answered, after ``seconds`` at most, and the requests of workers that died."""
         busy = {worker.connection: worker for worker in self._busy}
+        patience = self._begun + self._patience - time.monotonic()
+        if self._waiting and patience > 0 and (seconds is None or patience < seconds):
+            seconds = patience
         answers = [self._answer(busy[ready]) for ready in wait(list(busy), seconds)]  # type: ignore[index]
         self._hand_out()
         return answers
@@ -68,7 +76,8 @@ class WorkerPool(Generic[Key]):
     def _hand_out(self) -> None:
         while self._waiting:
             idle = next((worker for worker in self._workers if worker not in self._busy), None)
-            if idle is None and len(self._workers) >= self.count:
+            early = bool(self._workers) and time.monotonic() < self._begun + self._patience
+            if idle is None and (early or len(self._workers) >= self.count):
                 return
             worker = idle or self._started()
             self._busy[worker], request = self._waiting.popleft()
@@ -77,5 +86,7 @@ class WorkerPool(Generic[Key]):
 
     def _started(self) -> Worker:
         worker = Worker(self._module, self._arguments, environment=ONE_THREAD)
+        if not self._workers:
+            self._begun = time.monotonic()
         self._workers.append(worker)
         return worker

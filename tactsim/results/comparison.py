@@ -14,6 +14,8 @@ from tactsim.units import compact_unit, conversion
 
 UnitOf = Callable[[Mapping[str, Any], tuple[str | int, ...]], str]
 """SI unit of a number by the experiment of its case and its key path in it; empty without one."""
+NameOf = Callable[[Mapping[str, Any]], str]
+"""Name of a part of a case, such as that of a shipped material; empty without one."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def shown_number(value: float | None) -> str:
     return "" if value is None else f"{value:.5g}"
 
 
-def compared(results: Mapping[str, Result], unit_of: UnitOf) -> Comparison:
+def compared(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf = lambda part: "") -> Comparison:
     """The numbers of results by their names, in the order in which they come."""
     names: dict[str, tuple[str, str]] = {}
     for result in results.values():
@@ -82,13 +84,13 @@ def compared(results: Mapping[str, Result], unit_of: UnitOf) -> Comparison:
                 names.setdefault(name, (quantity.unit, quantity.description))
     columns = [_column(name, *about, results) for name, about in names.items()]
     statuses = tuple(str(result.status) for result in results.values())
-    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results, unit_of))
+    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results, unit_of, name_of))
 
 
-def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf) -> dict[str, tuple[str, ...]]:
+def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf) -> dict[str, tuple[str, ...]]:
     """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key."""
     experiments = [result.provenance.get("case", {}).get("experiment", {}) for result in results.values()]
-    cases = [dict(_leaves(experiment, ())) for experiment in experiments]
+    cases = [dict(_leaves(experiment, (), name_of)) for experiment in experiments]
     differing: dict[str, tuple[str, ...]] = {}
     for path in dict.fromkeys(path for case in cases for path in case):
         values = [case.get(path) for case in cases]
@@ -113,11 +115,13 @@ def _text(value: Any, factor: float = 1.0) -> str:
     return f"{factor * value:.5g}" if isinstance(value, float) else str(value)
 
 
-def _leaves(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], Any]]:
-    """Key path and value of everything in a case that is no list or mapping."""
+def _leaves(value: Any, path: tuple[str | int, ...], name_of: NameOf) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+    """Key path and value of everything in a case that is no list or mapping, and of what has a name its name before."""
+    if isinstance(value, Mapping) and (name := name_of(value)):
+        yield path, name
     if isinstance(value, Mapping | list | tuple):
         for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
-            yield from _leaves(item, (*path, key))
+            yield from _leaves(item, (*path, key), name_of)
     else:
         yield path, value
 

@@ -185,7 +185,7 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     path = Path(directory)
     path = path if path.name not in ("", "..") else Path(os.path.abspath(path))
     folder = OutputFolder(path, replace)
-    with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another with --out"):
+    with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another folder"):
         try:
             folder.recover()
             check_replaceable(path, replace)
@@ -207,13 +207,14 @@ def check_replaceable(path: Path, replace: bool) -> None:
     if not os.path.lexists(path) or (path.is_dir() and not path.is_symlink() and not any(path.iterdir())):
         return
     if path.is_symlink() or not path.is_dir():
-        raise StorageError(f"the output folder {one_line(path)} exists and is not a folder; choose another with --out")
+        raise StorageError(f"the output folder {one_line(path)} exists and is not a folder; choose another place")
     if strangers := _foreign(path):
         more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
-        advice = "move that away or choose another folder with --out"
+        advice = "move that away or choose another folder"
         raise StorageError(f"the output folder {one_line(path)} holds {strangers[0]}{more}; {advice}")
     if not replace:
-        raise StorageError(f"the output folder {one_line(path)} exists; use --force to replace it or choose another with --out")
+        how = "use --force (in Python: force=True) to replace it, or choose another folder"
+        raise StorageError(f"the output folder {one_line(path)} exists; {how}")
 
 
 def _foreign(path: Path) -> list[str]:

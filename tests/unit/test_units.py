@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pint
 import pytest
 from pydantic import TypeAdapter, ValidationError
@@ -74,6 +75,20 @@ def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(0.25, "1") == "0.25"
     assert format_quantity(math.radians(30), "rad") == "30°"
     assert format_quantity(0.0, "Pa") == "0 Pa"
+
+
+@pytest.mark.parametrize("unit", ["m", "Pa", "m^2", "N", "rad", "Pa*s", "kg/m^3", "Pa/N"])
+def test_what_is_written_is_read_as_the_same_float(unit: str) -> None:
+    generator = np.random.default_rng(3)
+    values = 10.0 ** generator.uniform(-9, 9, 100) * generator.choice([-1, 1], 100)
+    for value in (*values.tolist(), 0.7 * 1e-3, 0.0):
+        assert parse_quantity(written_quantity(value, unit), unit) == value
+
+
+def test_what_is_written_is_written_to_be_read() -> None:
+    assert written_quantity(7838.8393223224548, "Pa") == "7.838839322322455 kPa"
+    assert [written_quantity(value, "m") for value in (0.04, 0.0, 8e-4)] == ["40 mm", "0 m", "800 µm"]
+    assert written_quantity(parse_quantity("20 deg", "rad"), "rad") == "20 deg"
 
 
 def test_a_unit_that_does_not_begin_at_zero_is_refused() -> None:

@@ -149,9 +149,10 @@ def words(browser: webdriver.Chrome, name: str) -> str:
 
 
 def table(browser: webdriver.Chrome) -> dict[str, float]:
-    """Taxel -> the number in its cell."""
+    """Taxel -> the force of its cell in N, or the pressure in kPa."""
+    factor = 1e-3 if words(browser, "taxel-unit") == "force in mN" else 1.0
     script = "return [...document.querySelectorAll('[data-taxel]')].map((cell) => [cell.dataset.taxel, cell.textContent])"
-    return {name: float(text.replace("–", "nan")) for name, text in browser.execute_script(script)}
+    return {name: factor * float(text.replace("–", "nan")) for name, text in browser.execute_script(script)}
 
 
 def expected(forces: np.ndarray) -> dict[str, float]:
@@ -252,7 +253,7 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
         with served(opened_content(folder, reference=[str(plain)])) as address:
             browser.get(address)
             until(lambda: "Off by" in words(browser, "estimate"))
-            sections = "[...document.querySelectorAll('main > section')]"
+            sections = "[...document.querySelectorAll('main section')]"
             bottoms = dict(browser.execute_script(f"return {sections}.map((s) => [s.id, s.getBoundingClientRect().bottom])"))
             assert next(iter(bottoms)) == "words"
             assert max(bottoms.values()) <= 640
@@ -266,6 +267,27 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
             until(lambda: words(browser, "space-words") not in ("", now))
             assert "longest bar now 0.1" in words(browser, "space-words"), "of this step, not of the whole history"
             browser.save_screenshot(str(tmp_path / "small.png"))
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_small_forces_have_one_unit_and_both_tables_in_sight(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    forces = 0.08 * taxel_forces(1, 5)
+    size = {"width": 1024, "height": 640, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        with served(opened_content(grasp_folder(tmp_path / "a", forces))) as address:
+            browser.get(address)
+            until(lambda: "Off by" in words(browser, "estimate") and shows(browser, forces[-1]))
+            assert words(browser, "taxel-unit") == "force in mN"
+            labels = [part.get_attribute("aria-label") for part in browser.find_elements(By.CSS_SELECTOR, "canvas")]
+            scales = [label for label in labels if "scale to" in label or "of a bar, from" in label]
+            assert len(scales) == 4, "of three views and the bars"
+            assert all(label.endswith(" mN") for label in [*scales, words(browser, "space-words")])
+            last = "return [...document.querySelectorAll('#tables td')].at(-1).getBoundingClientRect().bottom"
+            place = "return document.getElementById('tables').getBoundingClientRect().bottom"
+            assert browser.execute_script(last) <= browser.execute_script(place) + 0.6, "without scrolling"
+            browser.save_screenshot(str(tmp_path / "small_forces.png"))
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 

@@ -16,6 +16,7 @@ from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
 from tactsim.materials.stability_range import PathStability, stability_range
+from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.plotting.canvas import entitle
 from tactsim.units import format_quantity
 
@@ -32,7 +33,10 @@ LOST_COLOUR = "#d62728"
 
 
 def material_figure(material: Material, name: str) -> Figure:
-    """Nominal stress against stretch in uniaxial, equibiaxial and planar loading, stable range shaded, lost range marked."""
+    """Nominal stress against stretch in uniaxial, equibiaxial and planar loading, stable range shaded, lost range marked.
+
+    Of a material that relaxes it is the stress at once, and says so.
+    """
     report = stability_range(material)
     figure = Figure(figsize=(10.5, 3.9), layout="constrained")
     FigureCanvasAgg(figure)
@@ -40,16 +44,25 @@ def material_figure(material: Material, name: str) -> Figure:
     stresses = {path: nominal_stress(material, path, stretch) for path in PATHS}
     unit, factor = pressure_unit(np.concatenate(list(stresses.values())))
     axes = figure.subplots(1, len(PATHS), squeeze=False)[0]
+    label = "nominal stress" if material.relaxation is None else "nominal stress at once"
     for axis, (path, stress) in zip(axes, stresses.items(), strict=True):
-        _draw_path(axis, stretch, stress * factor, report.paths[path])
+        _draw_path(axis, stretch, stress * factor, report.paths[path], label)
         axis.set_title(path, loc="left")
         axis.set_xlabel("stretch")
-    axes[0].set_ylabel(f"nominal stress in {unit}")
+    axes[0].set_ylabel(f"{label} in {unit}")
     labelled = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(list(labelled.values()), list(labelled), loc="outside lower center", ncols=len(labelled), frameon=False)
     volume = "" if material.small_strain else ", incompressible"
-    entitle(figure, f"{name} ({material.kind}){volume}, G = {format_quantity(material.shear_modulus, 'Pa')}")
+    entitle(figure, f"{name} ({material.kind}){volume}, {_modulus_words(material)}")
     return figure
+
+
+def _modulus_words(material: Material) -> str:
+    """The shear modulus, of a material that relaxes at once and in the end."""
+    first = f"G = {format_quantity(material.shear_modulus, 'Pa')}"
+    if material.relaxation is None:
+        return first
+    return f"{first} at once, {format_quantity(shear_relaxation(material).equilibrium_modulus, 'Pa')} in the end"
 
 
 def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> Figure:
@@ -91,8 +104,8 @@ def pressure_unit(pressures: Array) -> tuple[str, float]:
     return "Pa", 1.0
 
 
-def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStability) -> None:
-    """One curve over its stable and lost ranges."""
+def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStability, label: str) -> None:
+    """One curve with its label over its stable and lost ranges."""
     low, high = np.clip(stability.elliptic, *SHOWN)
     axis.axvspan(low, high, color=STABLE_COLOUR, zorder=0, label="strongly elliptic around rest")
     for k, (lost_low, lost_high) in enumerate(stability.elliptic_lost):
@@ -107,7 +120,7 @@ def _draw_path(axis: Axes, stretch: Array, stress: Array, stability: PathStabili
             alpha=0.7,
             label="strong ellipticity lost" if k == 0 else None,
         )
-    axis.plot(stretch, stress, color="#1f4e79", linewidth=1.6, label="nominal stress")
+    axis.plot(stretch, stress, color="#1f4e79", linewidth=1.6, label=label)
     axis.axhline(0, color="0.6", linewidth=0.8)
     axis.axvline(1, color="0.6", linewidth=0.8)
     axis.set_xlim(*SHOWN)

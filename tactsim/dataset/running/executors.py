@@ -9,9 +9,11 @@ import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
+from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError, shown
+from tactsim.outside.environment import usable_cores
 from tactsim.outside.processes import requests
 from tactsim.outside.worker_pool import Answer, WorkerPool
 
@@ -22,6 +24,8 @@ ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
 """What Dask prints as the address of a scheduler."""
 CONNECTING = 30.0
 """Seconds to wait for the scheduler."""
+WORTH_A_PROCESS = 8.0
+"""Time in s that a sweep must take for another process to pay, which takes 3 to 5 s to begin, and from the first one's core."""
 TASKS_PER_THREAD = 2
 """Tasks under way for each thread of the cluster, so that none waits for the network."""
 
@@ -65,11 +69,21 @@ class Executor(ABC):
 
 
 class LocalWorkers(Executor):
-    """Talks to its processes in bytes: the sweep and then numbers of samples as JSON, blocks as they stand in the journal."""
+    """Talks to its processes in bytes: the sweep and then numbers of samples as JSON, blocks as they stand in the journal.
 
-    def __init__(self, text: str, count: int, *, folder: str | None = None):
+    Processes after the first begin ``patience`` in s later.
+    """
+
+    def __init__(self, text: str, count: int, *, folder: str | None = None, patience: float = 0.0):
         self._text, self._folder = text, folder
-        self._pool: WorkerPool[tuple[int, ...]] = WorkerPool(MODULE, (), count)
+        self._pool: WorkerPool[tuple[int, ...]] = WorkerPool(MODULE, (), count, patience=patience)
+
+    @classmethod
+    def of(cls, sweep: Sweep, count: int | None) -> Self:
+        """Those of a sweep; by default one per core, not more than samples, and the first alone if the sweep is short."""
+        if count is not None:
+            return cls(sweep.text, count, folder=sweep.folder)
+        return cls(sweep.text, min(usable_cores(), sweep.samples), folder=sweep.folder, patience=WORTH_A_PROCESS)
 
     @property
     def slots(self) -> int:

@@ -45,13 +45,13 @@ def opened_run(sweep: Sweep, path: str | Path, *, resume: bool = False, accept_c
     """
     place = Path(path)
     layout = layout_of(sweep)
-    with only_one(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another with --out"):
+    with only_one(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another folder"):
         with naming(place):
             remove_leftover(place)
         if os.path.lexists(place / META):
             run = _continued(sweep, layout, place, resume, accept_changes)
         elif resume:
-            raise StorageError(f"there is no data set {one_line(place)} to resume; leave out --resume")
+            raise StorageError(f"there is no data set {one_line(place)} to resume; leave out --resume (in Python: resume=True)")
         else:
             run = _run(sweep, layout, _created(sweep, layout, place))
         run.tally.before = run.store.samples - len(run.store.pending())
@@ -67,7 +67,7 @@ def _created(sweep: Sweep, layout: Layout, place: Path) -> Store:
     try:
         refuse_taken(place)
     except StorageError:
-        taken = f"{one_line(place)} exists and is not a data set of tactsim; choose another with --out"
+        taken = f"{one_line(place)} exists and is not a data set of tactsim; choose another folder"
         raise StorageError(taken) from None
     return create(place, layout.variables, sweep.samples, attributes_of(sweep, layout))
 
@@ -76,7 +76,8 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
     """The run in a store that an earlier one left: put right, its journal in the arrays, and every sample verified."""
     store = Store.open(place, writing=True, damaged=resume)
     if not resume:
-        raise StorageError(f"the data set {one_line(place)} exists; go on with it by --resume or choose another with --out")
+        how = "go on with it by --resume (in Python: resume=True), or choose another folder"
+        raise StorageError(f"the data set {one_line(place)} exists; {how}")
     check_same(sweep, store.attributes, place)
     _check_code(store, accept_changes)
     refuse_links(place)
@@ -96,7 +97,7 @@ def _check_code(store: Store, accept_changes: bool) -> None:
     if last != code_identity() and not accept_changes:
         raise StorageError(
             f"the data set {one_line(store.path)} was computed by tactsim {one_line(last, 80)}, this is {code_identity()}; "
-            "mark what follows with --accept-changed-code, or begin anew with another --out"
+            "mark what follows with --accept-changed-code, or begin anew in another folder"
         )
 
 
@@ -124,7 +125,7 @@ def _refuse_other_arrays(store: Store, layout: Layout) -> None:
     """Refuses to write into arrays that are not those of the sweep."""
     remedy = "or remove it, and --resume makes it anew"
     if never := store.never_stored(variable.name for variable in layout.variables):
-        raise StorageError(f"{one_line(store.path)}: {earlier_words(never)}; begin anew with another --out")
+        raise StorageError(f"{one_line(store.path)}: {earlier_words(never)}; begin anew in another folder")
     if store.faults:
         raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
     for name, words in wrong_arrays(store.described.values(), layout.variables):

@@ -20,7 +20,6 @@ from tactsim.dataset.store.files import FIGURES
 from tactsim.dataset.use.card import adopt_earlier_files, write_card
 from tactsim.errors import CaseError, InputError
 from tactsim.interfaces.variation import Variation
-from tactsim.outside.environment import usable_cores
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
 from tactsim.registry import registered_outside
@@ -54,7 +53,7 @@ def sweep(
     variation : of `Experiment.vary`
     out : folder of the data set
     samples : number of samples; of a grid it follows from the places
-    workers : processes, by default one for each core
+    workers : processes, by default one for each core if it pays
     resume : whether to go on in a data set that an earlier call left
     title : one line for the card
     **settings : of the section ``sweep`` of a sweep file, such as ``seed``, ``design``, ``splits``
@@ -73,7 +72,7 @@ def sweep(
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
     with (
-        closing(LocalWorkers(asked.text, workers or usable_cores(), folder=None)) as executor,
+        closing(LocalWorkers.of(asked, workers)) as executor,
         opened_run(asked, out, resume=resume) as run,
         count_bar("samples", run.store.samples) as shown,
     ):

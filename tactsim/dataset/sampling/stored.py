@@ -59,7 +59,7 @@ def check_same(sweep: Sweep, attributes: dict[str, Any], place: Path) -> None:
     if not where:
         raise StorageError(f"{one_line(place)}/{META}: sweep_id is not that of its sweep; bring back a copy of it")
     raise StorageError(
-        f"the data set {one_line(place)} holds another sweep: {where} differs; choose another with --out, "
+        f"the data set {one_line(place)} holds another sweep: {where} differs; choose another folder, "
         "or go on with the case it was made with"
     )
 

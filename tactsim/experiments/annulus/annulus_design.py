@@ -14,10 +14,10 @@ from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, Viscoelast
 from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, check_increasing
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
-from tactsim.units import Force, Length, Positive, Time, check_increasing, format_quantity
+from tactsim.units import Force, Length, Positive, Time, format_quantity
 
 Formula = Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"]
 

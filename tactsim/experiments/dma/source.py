@@ -21,9 +21,9 @@ from tactsim.identification.dma_signals import (
     read_dma_tests,
 )
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, check_increasing
 from tactsim.outside.input_path import InputPath
-from tactsim.units import Area, Force, Frequency, Length, Positive, Time, check_increasing, format_quantity
+from tactsim.units import Area, Force, Frequency, Length, Positive, Time, format_quantity
 
 Seed = Annotated[int, Field(ge=0)]
 

@@ -13,13 +13,14 @@ from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.run import Course, Findings
+from tactsim.model import check_increasing
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.electronics.film_calibration import slope_and_intercept
 from tactsim.sensors.films.any_film import AnyFilm
 from tactsim.sensors.films.film import HOLM, Film
-from tactsim.units import Force, Time, check_increasing
+from tactsim.units import Force, Time
 
 LEAST_FORCE, LONGEST = 1e-9, 1e12
 """Range in N and s that is far wider than any test and in which no quotient or product leaves the floats."""

@@ -12,6 +12,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.film.force_signal import AnyForceSignal, Square
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
+from tactsim.model import check_increasing
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import rows
 from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
@@ -19,7 +20,7 @@ from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
 from tactsim.sensors.films.any_film import ConductingFilm
 from tactsim.sensors.films.film import Film
 from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_square
-from tactsim.units import Force, check_increasing, format_quantity
+from tactsim.units import Force, format_quantity
 
 MOST_SAMPLES = 100_000
 """Longest recording, in samples: the inverse of the film takes about a minute for it."""

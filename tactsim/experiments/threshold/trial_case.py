@@ -8,11 +8,11 @@ from pydantic import Field, model_validator
 
 from tactsim.experiments.threshold.sampling import FINER
 from tactsim.experiments.threshold.source import AnySource
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, check_increasing
 from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
-from tactsim.units import Frequency, Speed, Time, Voltage, check_increasing
+from tactsim.units import Frequency, Speed, Time, Voltage
 
 
 class TrialCase(FrozenModel):

@@ -10,10 +10,10 @@ from pydantic import Field, model_validator
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.array import Array
 from tactsim.experiments.threshold.tip_contact import SensorContact
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, check_increasing
 from tactsim.relaxation import Relaxation
 from tactsim.sensors.threshold.sensor_ring import SensorRing
-from tactsim.units import Length, Positive, Pressure, check_increasing
+from tactsim.units import Length, Positive, Pressure
 
 
 class BandTissue(FrozenModel):

@@ -30,6 +30,7 @@ export class Answer {
     const lines = message.busy ? [] : [
       ...message.words.map((words) => paragraph(words, / at \(|^At \(/.test(words) ? "place" : "")),
       ...message.errors.map((words) => paragraph(words)),
+      ...(message.noise ? [paragraph(message.noise, "quiet")] : []),
       ...(message.fault ? [paragraph(message.cancelled ? `No estimate: ${message.fault}` : message.fault, "fault")] : []),
     ];
     const words = lines.map((line) => line.textContent).join("\n"), place = get("estimate");
@@ -48,7 +49,7 @@ export class Answer {
 
   // The server has gone: nothing is being computed any more.
   lost() {
-    if (this.message?.busy) this.take({ ...this.message, busy: false, words: [], errors: [], inclusions: [], fault: "the server has ended", cancelled: true });
+    if (this.message?.busy) this.take({ ...this.message, busy: false, words: [], errors: [], noise: "", inclusions: [], fault: "the server has ended", cancelled: true });
     get("again").hidden = true;
   }
 

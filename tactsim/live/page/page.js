@@ -3,7 +3,7 @@ import { Answer } from "./answer.js";
 import { Controls } from "./controls.js";
 import { Taxels } from "./taxels.js";
 import { View } from "./views.js";
-import { drawRamp, evenly, readFrame, readable } from "./wire.js";
+import { drawRamp, evenly, forceUnit, readFrame, readable } from "./wire.js";
 
 const get = (id) => document.getElementById(id);
 const views = ["front", "left", "top"].map((kind) => new View(get(kind), kind));
@@ -154,15 +154,16 @@ function drawViews(now) {
 
 // The longest bar of now, and the scale of colours and lengths, which is that of the whole history, so that frames compare.
 function drawSpaceScale(unit) {
-  const factor = unit === "kPa" ? 1e-3 / scene.area : 1, end = factor * frame.scales[3];
-  const words = `longest bar now ${readable(factor * frame.forces.reduce((a, b) => (b > a ? b : a), 0), 3)} ${unit}`;
+  const { name, factor: per } = forceUnit(unit, frame);
+  const factor = unit === "kPa" ? 1e-3 / scene.area : per, end = factor * frame.scales[3];
+  const words = `longest bar now ${readable(factor * frame.forces.reduce((a, b) => (b > a ? b : a), 0), 3)} ${name}`;
   if (get("space-words").textContent !== words) get("space-words").textContent = words;
   const canvas = get("space-ramp"), sharp = window.devicePixelRatio || 1, text = evenly(end, 3);
-  const labels = ["0", `${text(end)} ${unit}`], key = `${labels} ${sharp} ${getComputedStyle(document.body).color}`;
+  const labels = ["0", `${text(end)} ${name}`], key = `${labels} ${sharp} ${getComputedStyle(document.body).color}`;
   if (canvas.dataset.key === key) return;
   Object.assign(canvas, { width: 120 * sharp, height: 24 * sharp });
   canvas.dataset.key = key;
-  canvas.setAttribute("aria-label", `Colour and length of a bar, from 0 to ${text(end)} ${unit}`);
+  canvas.setAttribute("aria-label", `Colour and length of a bar, from 0 to ${text(end)} ${name}`);
   const pen = canvas.getContext("2d");
   pen.setTransform(sharp, 0, 0, sharp, 0, 0);
   pen.font = "11px system-ui, sans-serif"; pen.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--quiet");

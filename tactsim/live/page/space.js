@@ -49,7 +49,9 @@ export class Space {
       along.setComponent(axis, 1);
       if (axis < 2) from.setComponent(axis, 0);
       this.fixed.add(new THREE.ArrowHelper(along, from, size[axis] + reach / 2, colour, 0.5 * reach, 0.25 * reach));
-      this.marks.push({ at: from.clone().addScaledVector(along, size[axis] + 1.2 * reach), words: `${"xyz"[axis]}, ${size[axis]} mm` });
+      const at = from.clone().addScaledVector(along, size[axis] + (axis < 2 ? 0.6 : 1.2) * reach);
+      if (axis < 2) at.addScaledVector(new THREE.Vector3(axis, axis - 1, 0), 1.3 * reach);       // off the jaws, to the right or the front
+      this.marks.push({ at, words: `${"xyz"[axis]}, ${size[axis]} mm` });
     });
     const tip = front - 1.6 * reach, middle = size[0] / 2;
     const shape = new THREE.BufferGeometry();

@@ -1,5 +1,5 @@
 // Every taxel: few of them as numbers in two tables, many as two heat maps with the number under the pointer.
-import { drawRamp, evenly } from "./wire.js";
+import { drawRamp, evenly, forceUnit } from "./wire.js";
 
 const FEW = 6, HEAD = 16, FOOT = 26;           // px above a heat map for the numbers of columns, and below it for the colour scale
 const HELP = "Seen from above: front row 1 at the bottom, column 1 at the left.";
@@ -90,16 +90,17 @@ export class Taxels {
 
   draw(frame, unit) {
     Object.assign(this, { frame, unit });
-    const factor = unit === "kPa" ? 1e-3 / this.scene.area : 1, invalid = new Set(frame.invalid);
+    const { name, factor: per } = forceUnit(unit, frame), invalid = new Set(frame.invalid);
+    const factor = unit === "kPa" ? 1e-3 / this.scene.area : per;
     const words = evenly(factor * frame.scales[3], 4);
-    this.unitPlace.textContent = unit === "kPa" ? "pressure in kPa" : "force in N";
+    this.unitPlace.textContent = unit === "kPa" ? "pressure in kPa" : `force in ${name}`;
     this.cells.forEach((made, k) => {
       const text = words(factor * frame.forces[k]);
       if (made.textContent !== text) made.textContent = text;
       made.classList.toggle("bad", invalid.has(k));
     });
     for (const map of this.maps) this.#drawMap(map, frame, invalid, factor);
-    if (this.maps.length) this.wordsPlace.textContent = this.#words(frame, invalid, words, factor, unit);
+    if (this.maps.length) this.wordsPlace.textContent = this.#words(frame, invalid, words, factor, name);
   }
 
   #words(frame, invalid, words, factor, unit) {

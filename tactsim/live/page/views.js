@@ -1,5 +1,5 @@
 // Front, left and top view: the picture in colour, block, jaws with the sums of their taxels, true and estimated inclusions.
-import { evenly, readable } from "./wire.js";
+import { evenly, forceUnit, readable } from "./wire.js";
 
 const JAW = 1.2, ROOM = 1.0;                  // thickness with which a jaw is drawn and room around everything, in mm
 const MARGIN = { left: 40, right: 10, top: 4, bottom: 64 };      // in px, for ticks and the colour scale
@@ -267,7 +267,7 @@ export class View {
     if (!frame.meaning) { this.words = "unknown, see the estimate"; return; }
     const k = { front: 0, left: 1, top: 2 }[this.kind], summed = [this.scene.rows, this.scene.columns, 2][k];
     const end = frame.scales[k] * (unit === "kPa" ? 1e-3 / (this.scene.area * summed) : 1);
-    const small = unit === "N" && end < 0.1, factor = small ? 1e3 : 1;
+    const { name, factor } = forceUnit(unit, frame);
     const meaning = unit === "kPa" ? frame.meaning.replace("force", "mean pressure") : frame.meaning;
     const width = Math.min(180, Math.max(60, 0.42 * box.width)), left = MARGIN.left, y = box.height - 26;
     pen.imageSmoothingEnabled = true;
@@ -280,10 +280,10 @@ export class View {
       pen.fillText(words(factor * share * end), left + share * width, y + 11);
     });
     pen.textAlign = "left"; pen.textBaseline = "middle"; pen.fillStyle = this.ink;
-    const [caption, room] = [`${meaning} in ${small ? "mN" : unit}`, Math.max(40, box.width - left - width - 20)];
+    const [caption, room] = [`${meaning} in ${name}`, Math.max(40, box.width - left - width - 20)];
     const half = caption.lastIndexOf(" ", caption.length * 0.6), fits = pen.measureText(caption).width <= room;
     const lines = fits ? [caption] : [caption.slice(0, half), caption.slice(half + 1)];
     lines.forEach((line, n) => pen.fillText(line, left + width + 14, y + 5 + (lines.length - 1) * (14 * n - 4), room));
-    this.words = `${meaning}, scale to ${readable(factor * end, 3)} ${small ? "mN" : unit}`;
+    this.words = `${meaning}, scale to ${readable(factor * end, 3)} ${name}`;
   }
 }

@@ -28,6 +28,12 @@ export function evenly(largest, digits = 3) {
   return (value) => (Number.isFinite(value) ? value.toFixed(decimals) : "–");
 }
 
+// The unit of all numbers of the page and how many of it are one newton: mN where no taxel has read a tenth of a newton.
+export function forceUnit(unit, frame) {
+  const small = unit === "N" && frame.scales[3] > 0 && frame.scales[3] < 0.1;
+  return small ? { name: "mN", factor: 1e3 } : { name: unit, factor: 1 };
+}
+
 // Draws the colour map as a bar with numbers under its begin, middle and end.
 export function drawRamp(pen, colours, { left, top, width, height }, words) {
   for (let k = 0; k < width; k++) {

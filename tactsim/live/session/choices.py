@@ -22,6 +22,9 @@ from tactsim.outside.text import one_line
 from tactsim.results.quantity import Quantity
 from tactsim.results.reading import read_result
 
+STORED = "stored"
+"""Name of the choice of a stored estimate, which rests on the readings of its own time."""
+
 
 class AnyEstimation(Protocol):
     """What estimates inclusions: an estimator, or an estimate that was stored."""
@@ -98,7 +101,7 @@ def stored_choice(folder: str | Path) -> Choice | None:
     except DAMAGE as error:
         where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
         raise StorageError(f"{where}; run it again") from None
-    return Choice("stored", f"As stored: {scene.estimator}"[:60], StoredEstimate(estimate), False, plain)
+    return Choice(STORED, f"As stored: {scene.estimator}"[:60], StoredEstimate(estimate), False, plain)
 
 
 def _reference(quantities: dict[str, Quantity]) -> Array | None:

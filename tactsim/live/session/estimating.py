@@ -14,13 +14,15 @@ from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, with_reference
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, shown_change
-from tactsim.live.session.choices import Choice
+from tactsim.live.session.choices import STORED, Choice
+from tactsim.live.sources.noise import given_noise
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.live.sources.watch import Watch
 from tactsim.localization.lump_response import stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.localization.region import shadows
+from tactsim.units import format_quantity
 
 DIGITS = 3
 """Decimals in mm of an outline."""
@@ -33,14 +35,14 @@ BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a
 def frame_readings(
     scene: PageScene, frame: Frame, choice: Choice, reference: Reference | None, noise: float | None = None
 ) -> Readings:
-    """Readings of a frame with what an estimator needs beside its model of the tissue; ``noise`` in N replaces the scene's.
+    """Readings of a frame with what an estimator needs beside its model of the tissue; ``noise`` in N replaces the frame's.
 
     Raises
     ------
     InputError
         If there is no reference, or it is of another grasp.
     """
-    readings = frame.readings(scene if noise is None else replace(scene, noise=noise))
+    readings = (frame if noise is None else replace(frame, noise=given_noise(noise))).readings(scene)
     if choice.plain is not None and choice.plain.shape == readings.forces.shape:
         return replace(readings, reference=choice.plain)
     if not choice.needs_reference:
@@ -78,13 +80,24 @@ def estimated(
     with stopped_by(watch.asked_to_stop):
         estimate = choice.estimator.estimate(readings)
     misfit = plain_parts_warning(readings, estimate)
-    bare = [BARE] if readings.difference is None and estimate.inclusions and choice.name != "stored" else []
+    of_these = choice.name != STORED
+    bare = [BARE] if readings.difference is None and estimate.inclusions and of_these else []
+    noise = noise_words(readings) if of_these else ""
     return {
         "present": estimate.present,
         "words": [*_words(estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
         "errors": _errors(scene, estimate),
+        "noise": noise,
         "inclusions": [_drawn(one) for one in estimate.inclusions],
     }
+
+
+def noise_words(readings: Readings) -> str:
+    """Which noise of a taxel the estimate rests on, where it comes from, and how another is given."""
+    size = format_quantity(float(f"{readings.noise:.3g}"), "N")
+    return (
+        f"Noise of {size} on each taxel (one standard deviation): {readings.noise_origin}; start with --noise FORCE for another"
+    )
 
 
 def _drawn(one: EstimatedInclusion) -> dict[str, Any]:

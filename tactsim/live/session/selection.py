@@ -10,7 +10,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName
-from tactsim.live.session.choices import Choice
+from tactsim.live.session.choices import STORED, Choice
 from tactsim.live.session.commands import ChooseEstimator, ChooseSample, ChooseSource, Choosing, FilterSamples
 from tactsim.live.session.content import LIVE, Content
 from tactsim.live.session.estimating import frame_readings, shown_signal
@@ -158,7 +158,7 @@ class Selection:
 
 def _first_choice(content: Content) -> Choice:
     """The stored estimate, else the simplest estimator that takes off the reference, else the simplest one."""
-    if content.reference is None or content.choices[0].name == "stored":
+    if content.reference is None or content.choices[0].name == STORED:
         return content.choices[0]
     return next((one for one in content.choices if one.needs_reference), content.choices[0])
 

@@ -33,7 +33,7 @@ BEAT = 0.5
 """Time in s after which it says so anew, with how far it is."""
 REST, LONGEST_REST = 0.1, 3.0
 """Time in s from an answer to the next one: words cannot be read faster, and what took long stands as long, up to the longest."""
-NOTHING: dict[str, Any] = {"present": None, "words": [], "errors": [], "inclusions": []}
+NOTHING: dict[str, Any] = {"present": None, "words": [], "errors": [], "noise": "", "inclusions": []}
 """An estimate that there is not."""
 Make = Callable[[Watch], str]
 Waiting = Callable[[Watch, float], str]

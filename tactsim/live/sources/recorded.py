@@ -11,8 +11,8 @@ from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.experiments.localization.source import saturated_taxels
-from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
@@ -44,7 +44,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
             "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
         )
     case = stored.provenance.get("case")
-    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or result.kind)
+    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or Path(folder).resolve().name)
     incomplete = f"{one_line(folder)}/result.json is not a complete result of a grasp"
     try:
         grasp = result.scene_as(GraspScene)
@@ -65,7 +65,6 @@ def _scene(result: Result, grasp: GraspScene, title: str) -> PageScene:
         grasp,
         closing=0.0 if displacement is None else float(displacement.value),
         notes=_notes(result),
-        noise=grasp.noise if isinstance(grasp, LocalizedGrasp) and grasp.noise else ROUNDING_NOISE,
     )
 
 
@@ -83,7 +82,14 @@ def _recording(result: Result, scene: PageScene, name: str) -> Recording:
         times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
         forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
     valid = checked_validity(forces, times, scene, _saturated(result, name))
-    return Recording(scene, times, forces, valid, _closings(result, times), name)
+    stored = scene.grasp.noise if isinstance(scene.grasp, LocalizedGrasp) else 0.0
+    noise = ReadingNoise(stored, "as stored with the localization") if stored else source_noise(name, forces, valid)
+    return Recording(scene, times, forces, valid, _closings(result, times), name, noise)
+
+
+def source_noise(name: str, forces: Array, valid: Array) -> ReadingNoise:
+    """Of simulated forces (n, jaw, row, column) in N by their name in ``SOURCES``."""
+    return solution_noise(np.where(valid, forces, 0.0)) if name == "taxel_force" else RESOLVED
 
 
 def checked_validity(forces: Array, times: Array, scene: PageScene, saturated: Array | None = None) -> Array:

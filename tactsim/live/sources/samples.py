@@ -20,7 +20,7 @@ from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import EmbeddedShape, GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.live.sources.recorded import SOURCES, checked_validity
+from tactsim.live.sources.recorded import SOURCES, checked_validity, source_noise
 from tactsim.live.sources.scene import PageScene, Recording
 
 OTHER_CASE = (
@@ -128,7 +128,8 @@ class Samples:
             forces = np.asarray(row[name].values, dtype=float)
             closings = np.asarray(row["displacement"].values, dtype=float)
             known = closings if np.isfinite(closings).all() else None
-            recordings[name] = Recording(scene, times, forces, checked_validity(forces, times, scene), known, name)
+            valid = checked_validity(forces, times, scene)
+            recordings[name] = Recording(scene, times, forces, valid, known, name, source_noise(name, forces, valid))
         return recordings
 
     def _scene(self, number: int, status: int) -> PageScene:

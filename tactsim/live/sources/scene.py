@@ -11,8 +11,9 @@ from tactsim.errors import InputError, shown
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, named_taxels, silent_taxels, silent_words
+from tactsim.interfaces.readings import Readings, named_taxels, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.live.sources.noise import RESOLVED, ReadingNoise
 
 LARGEST_FORCE = 1e6
 """In N; a larger number is not a force on a taxel but a mistaken unit."""
@@ -36,7 +37,6 @@ class PageScene:
     truth_known : whether the inclusions of ``grasp`` are known, as they are not with a real sensor
     closing : of each jaw in m
     notes : what the user must know about these data
-    noise : standard deviation of a reading in N
 
     Raises
     ------
@@ -49,7 +49,6 @@ class PageScene:
     truth_known: bool = True
     closing: float = 0.0
     notes: tuple[str, ...] = ()
-    noise: float = ROUNDING_NOISE
 
     @property
     def size(self) -> Array:
@@ -124,6 +123,7 @@ class Frame:
     time : in s; None if not known
     closing : of each jaw from first touch in m; None if not known
     source : what the forces are, as in ``recorded.SOURCES``
+    noise : of each reading
     """
 
     forces: Array
@@ -131,6 +131,7 @@ class Frame:
     time: float | None = None
     closing: float | None = None
     source: str = "taxel_force"
+    noise: ReadingNoise = RESOLVED
 
     def notes(self) -> tuple[str, ...]:
         """What the user must know about this frame: taxels that are not to be trusted."""
@@ -159,7 +160,8 @@ class Frame:
             self.forces,
             scene.layout,
             scene.size,
-            noise=scene.noise,
+            noise=self.noise.deviation,
+            noise_origin=self.noise.origin,
             valid=None if self.valid.all() else self.valid,
             middle=scene.grasp.middle,
             closing=self.closing,
@@ -176,6 +178,7 @@ class Recording:
     forces, valid : (n, jaw, row, column), forces in N
     closings : (n,) in m; None if not known
     source : what the forces are, as in ``recorded.SOURCES``
+    noise : of each reading
     """
 
     scene: PageScene
@@ -184,12 +187,13 @@ class Recording:
     valid: Array
     closings: Array | None
     source: str = "taxel_force"
+    noise: ReadingNoise = RESOLVED
 
     def frame(self, step: int) -> Frame:
         """The frame of a step, counted from 0; beyond the ends the nearest one."""
         k = min(max(step, 0), len(self.times) - 1)
         closing = None if self.closings is None else float(self.closings[k])
-        return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing, self.source)
+        return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing, self.source, self.noise)
 
     def step_at(self, time: float) -> int:
         """Number of the last step that is not after a time in s."""
@@ -205,4 +209,4 @@ class Recording:
         if self.closings is not None:
             closing = float((1 - share) * self.closings[k] + share * self.closings[k + 1])
         forces = (1 - share) * self.forces[k] + share * self.forces[k + 1]
-        return Frame(forces, self.valid[k] & self.valid[k + 1], float(time), closing, self.source)
+        return Frame(forces, self.valid[k] & self.valid[k + 1], float(time), closing, self.source, self.noise)

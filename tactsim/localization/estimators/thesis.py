@@ -74,16 +74,17 @@ class ThesisEstimator(Estimator):
         strength, least = float(total.max()) - base, self.threshold * self._deviation(readings)
         over = f"{'less' if softer else 'more'} than {'the reference' if self.background == 'reference' else 'the median of all'}"
         words = f"the strongest place reads {format_quantity(strength, 'N')} {over}"
-        limit = f"{self.threshold:g} standard deviations of the noise, {format_quantity(least, 'N')}"
+        limit = self._limit_words(readings)
         if strength <= least:
-            return Estimate(False, (), f"no inclusion: {words}, within {limit}")
+            return Estimate(False, (), f"no inclusion: {words}, which is within {limit}")
         peaks = [peak for peak in separate_peaks(total, max(least, PROMINENCE * strength)) if total[peak] - base > least]
         if len(peaks) > 1:
             words = f"{len(peaks)} places explain the readings better than one, as the sums fall between them; {words}"
         nearest = nearest_peak(total.shape, peaks)
         parts = [np.where(nearest == number, total, base) for number in range(len(peaks))]
         places = [self._place(part, base, upper, lower, readings) for part in parts]
-        return Estimate(True, tuple(EstimatedInclusion("unknown", place) for place in places), f"{words}, beyond {limit}")
+        inclusions = tuple(EstimatedInclusion("unknown", place) for place in places)
+        return Estimate(True, inclusions, f"{words}, which is beyond {limit}")
 
     def _place(self, total: Array, base: float, upper: Array, lower: Array, readings: Readings) -> tuple[float, float, float]:
         """Centre in m of what rises in sums (row, column) above their base."""
@@ -105,6 +106,13 @@ class ThesisEstimator(Estimator):
     def _deviation(self, readings: Readings) -> float:
         """Standard deviation in N of the sum of both jaws at one place."""
         return float(readings.noise * (2.0 if self.background == "reference" else np.sqrt(2.0)))
+
+    def _limit_words(self, readings: Readings) -> str:
+        """The least change that counts, and how it follows from the noise of a taxel."""
+        deviation = self._deviation(readings)
+        forces = (self.threshold * deviation, deviation, readings.noise)
+        least, one, each = (format_quantity(float(f"{force:.3g}"), "N") for force in forces)
+        return f"{least} ({self.threshold:g} standard deviations of {one}, from noise of {each} on each taxel)"
 
     def _weights(self, total: Array, base: float) -> Array:
         """Share of each place (row, column) in the estimated position; they add up to 1."""

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import SensorFilm
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, check_increasing
 from tactsim.sensors.electronics.calibration import AnyCalibration, LinearCalibration
 from tactsim.sensors.electronics.film_calibration import film_line
 from tactsim.sensors.electronics.low_pass import LowPass
@@ -19,7 +19,7 @@ from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
 from tactsim.sensors.films.any_film import ConductingFilm
 from tactsim.sensors.films.film import Film
-from tactsim.units import Force, check_increasing
+from tactsim.units import Force
 
 
 @dataclass(frozen=True, eq=False)

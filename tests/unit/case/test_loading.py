@@ -125,6 +125,7 @@ def test_the_missing_experiment_is_told(case_file: Path) -> None:
         ("experiment.specimen.layers.0=1", "--set experiment.specimen.layers.0: 1 is not allowed; expected a mapping with "),
         ("experiment.specimen.layers.9.thickness=1 mm", "--set experiment.specimen.layers.9.thickness=1 mm: experiment."),
         ("experiment.friction", "--set experiment.friction: 'experiment.friction' is not of the form path.to.key=value"),
+        ("friction=1", "--set friction: unknown key (did you mean 'experiment.friction'?); allowed: schema, title, "),
         ("experiment=null", "--set experiment: null is not a mapping with a 'kind'; choices: pretence"),
         ("experiment.kind=x", "--set experiment.kind: unknown kind 'x'; choices: pretence"),
         ("schema=tactsim/case/9", "--set schema: the version 'tactsim/case/9' is not supported"),

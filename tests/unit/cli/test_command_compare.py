@@ -8,8 +8,11 @@ from pathlib import Path
 import pytest
 
 from tactsim.cli import main
+from tactsim.cli.command_compare import _name_of, report
+from tactsim.cli.figures.comparison import comparison_figure
 from tactsim.errors import InputError
-from tactsim.results import Quantity, Result, Status
+from tactsim.materials.library import LIBRARY
+from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.comparison import compared
 
 CASE = """\
@@ -67,6 +70,34 @@ def test_what_cannot_be_compared_is_said(cases: list[str], capsys: pytest.Captur
     assert "nothing to be compared with" in capsys.readouterr().err
     assert main(["compare", "results/small", "nowhere"]) == 5
     assert main(["run", cases[0], f"./{cases[0]}"]) == 2
+
+
+def pressed(tissue: str, threshold: float | None, **mesh: float) -> Result:
+    """A made-up indentation of a shipped tissue."""
+    steps = tuple(StepRecord(k, 1, 0.0, {"displacement": 1e-3 * k, "reaction_force": 0.1 * k**2}) for k in range(4))
+    quantities = {f"threshold_{name}": Quantity(threshold, "", "") for name in ("displacement", "force") if threshold}
+    case = {"experiment": {"kind": "made_up", "tissue": LIBRARY[tissue].material.model_dump(mode="json"), "mesh": mesh}}
+    units = {"displacement": "m", "reaction_force": "N"}
+    return Result("made_up", Status.CONVERGED, "", quantities, steps=steps, units=units, provenance={"case": case})
+
+
+def test_tissues_are_compared_by_their_names_too(capsys: pytest.CaptureFixture[str]) -> None:
+    report({"soft": pressed("icf_stable", None), "firm": pressed("b1a_stable", None)}, None)
+    shown = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["tissue", "icf_stable", "b1a_stable"] in shown
+    assert any(line[0].startswith("tissue.c10") for line in shown)
+
+
+def test_curves_are_told_apart_without_colour_and_the_title_says_what_differs() -> None:
+    results = {f"run{number}": pressed("icf_stable", 2e-3 if number < 2 else None, size=1e-3 * number) for number in range(12)}
+    results["firm"] = pressed("b1a_stable", None)
+    figure = comparison_figure(results, compared(results, lambda experiment, path: "", _name_of))
+    lines = figure.axes[0].lines
+    drawn = [(line.get_linestyle(), line.get_marker()) for line in lines]
+    assert len(set(drawn)) == len(drawn) == len(results) + 1
+    assert lines[-1].get_label() == "threshold"
+    assert len(lines[-1].get_xdata()) == 2
+    assert figure.get_suptitle() == "13 results that differ in tissue, mesh.size"
 
 
 def test_numbers_of_other_kinds_leave_gaps() -> None:

@@ -55,6 +55,14 @@ def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert "schema: tactsim/case/1" in capsys.readouterr().out
 
 
+def test_a_new_case_says_where_its_schema_and_the_materials_are() -> None:
+    lines = template("grasp").splitlines()
+    assert lines[1].startswith("# An editor")
+    assert lines[1].endswith("tactsim schema --out case.schema.json")
+    assert "  # The tissue. Names of materials: tactsim list materials." in lines
+    assert sum("tactsim list materials" in line for line in lines) == 1
+
+
 def test_everything_that_ships_is_listed_with_a_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list"]) == 0
     shown = capsys.readouterr().out

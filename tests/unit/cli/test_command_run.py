@@ -11,6 +11,8 @@ from pretence import PNG, Pretence
 
 from tactsim import plotting
 from tactsim.cli import main
+from tactsim.interfaces.run import Course
+from tactsim.progress import COMPILATION
 from tactsim.results import read_result
 
 
@@ -35,6 +37,36 @@ def test_a_run_reports_quantities_and_ends_with_the_threshold(capsys: pytest.Cap
     assert lines[-1] == "threshold pressure 17.2 kPa; figure results/case/figures/pretence.png"
     assert Path("results/case/figures/pretence.png").read_bytes() == PNG
     assert err == ""
+
+
+def test_the_time_left_does_not_count_compiling(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    clock = [0.0]
+    monkeypatch.setattr("tactsim.cli.command_run.time.monotonic", lambda: clock[0])
+    begin = Pretence.begin
+
+    def compiled(self: Pretence) -> Course:
+        clock[0] += 32.0
+        monkeypatch.setattr(COMPILATION, "seconds", COMPILATION.seconds + 30.0)
+        return begin(self)
+
+    monkeypatch.setattr(Pretence, "begin", compiled)
+    monkeypatch.setattr(Pretence, "extent", property(lambda self: ("displacement", 3e-4)))
+    assert main(["run", "case.yaml", "--progress"]) == 0
+    assert "about 4 s left" in capsys.readouterr().err.splitlines()[0]
+
+
+def test_a_report_says_whose_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    text = Path("case.yaml").read_text(encoding="utf-8")
+    Path("untitled.yaml").write_text(
+        "\n".join(line for line in text.splitlines() if not line.startswith("title")), encoding="utf-8"
+    )
+    assert main(["run", "untitled.yaml", "--figures", "none"]) == 0
+    assert capsys.readouterr().out.startswith("untitled\nconverged")
+    assert main(["show", "results/untitled"]) == 0
+    assert capsys.readouterr().out.startswith("untitled\nconverged")
+    assert main(["run", "case.yaml", "untitled.yaml", "--figures", "none"]) == 0
+    reports = capsys.readouterr().out.split("\n\n")
+    assert [report.splitlines()[0] for report in reports[:2]] == ["case: A pretended case", "untitled"]
 
 
 def test_provenance_holds_the_resolved_case_and_the_overrides() -> None:

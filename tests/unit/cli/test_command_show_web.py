@@ -18,6 +18,9 @@ from fork_server import forked_command
 from live_pages import grasp_folder, made_up_store
 
 from tactsim.cli import main
+from tactsim.interfaces.readings import ROUNDING_NOISE
+from tactsim.live.sources.noise import MESH_SHARE
+from tactsim.units import format_quantity
 
 
 @contextmanager
@@ -49,6 +52,13 @@ def test_the_address_is_reported_once_and_a_signal_ends_it_in_good_order(
         out, err = process.communicate(timeout=20)
         assert (process.returncode, err) == (0, "")
         assert address not in out
+
+
+def test_the_help_gives_the_noise_that_is_taken_without_the_option(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "--help"]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert f"{MESH_SHARE:.1%}".replace("%", " %") + " of the largest force" in words
+    assert f"{format_quantity(ROUNDING_NOISE, 'N')} for any others" in words
 
 
 def test_another_address_is_warned_of(tmp_path: Path) -> None:

@@ -32,6 +32,13 @@ def assert_nothing_is_cut(figure: Figure) -> None:
         assert (edge == 1).all()
 
 
+def test_a_material_that_relaxes_is_drawn_at_once_and_says_so() -> None:
+    figure = material_figure(named_material("atrial").material, "atrial")
+    assert figure.get_suptitle() == "atrial (neo_hookean), incompressible, G = 18.818 MPa at once, 195.15 Pa in the end"
+    assert figure.axes[0].get_ylabel() == "nominal stress at once in MPa"
+    assert "nominal stress at once" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
 @pytest.mark.parametrize("name", [*SHIPPED, *EXAMPLES])
 def test_material_figure(name):
     figure = material_figure((SHIPPED | EXAMPLES)[name], name)

@@ -10,6 +10,7 @@ import pytest
 from pretence import pretended_result
 
 from tactsim.cli.report import format_values, last_line, result_report, step_line
+from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
 
 RESULT = pretended_result(Status.CONVERGED, "done", ())
@@ -32,6 +33,13 @@ def test_values_with_units(value: object, unit: str, text: str) -> None:
     assert format_values(Quantity(value, unit, "")) == text
 
 
+def test_a_component_that_is_round_off_beside_another_is_zero() -> None:
+    assert format_values(Quantity([-2.4e-12, 6e-9, -6.112], "N", "")) == "0 N, 6 nN, -6.112 N"
+    record = StepRecord(1, 1, 0.0, {"jaw_force_upper_x": -7e-12, "jaw_force_upper_z": 6.1, "time": 1e-15})
+    line = step_line(record, dict.fromkeys(record.values, "N"))
+    assert "jaw_force_upper_x 0 N  jaw_force_upper_z 6.1 N  time 1 fN" in line
+
+
 def test_the_last_line_reports_only_what_was_reached() -> None:
     place = Path("results/x")
     assert last_line(RESULT, place, {}) == "threshold pressure 17.2 kPa; result results/x"
@@ -41,6 +49,16 @@ def test_the_last_line_reports_only_what_was_reached() -> None:
     assert last_line(replace(RESULT, quantities={}), place, {}).startswith("converged;")
     failed = replace(RESULT, status=Status.FAILED, reason="stuck")
     assert last_line(failed, place, {}).startswith("failed: stuck;")
+
+
+def test_what_the_threshold_owes_to_an_assumption_stands_below_it() -> None:
+    spread = f"icf_stable is {LIBRARY['icf_stable'].left_open}"
+    result = replace(RESULT, assumptions=("exactly incompressible tissue", spread, "error in time below 0.001"))
+    lines = result_report(replace(result, quantities=RESULT.quantities | {"time": Quantity(1.0, "s", "")})).splitlines()
+    threshold = next(number for number, line in enumerate(lines) if line.strip().startswith("threshold_pressure"))
+    assert lines[threshold + 1].strip() == f"assumption: {spread}"
+    assert sum("assumption: " in line for line in lines) == 1
+    assert lines[-1].endswith("3 assumptions listed in result.json")
 
 
 def test_an_empty_result_can_be_reported() -> None:

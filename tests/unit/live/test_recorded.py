@@ -18,7 +18,7 @@ from tactsim.live.session.content import opened_content
 from tactsim.live.session.estimating import estimated, frame_readings, shown_signal
 from tactsim.live.session.messages import Scales, frame_message
 from tactsim.live.session.thinking import estimate_message
-from tactsim.live.sources.recorded import result_recordings
+from tactsim.live.sources.recorded import result_recordings, source_noise
 from tactsim.live.sources.reference import PlainResult, Reference
 from tactsim.live.sources.samples import Samples
 from tactsim.results import Quantity, write_result
@@ -34,6 +34,10 @@ def test_frames_between_the_steps_are_linear_and_the_jaws_follow(tmp_path: Path)
     np.testing.assert_allclose(recording.scene.places_at(frame.closing)[:, 2], [20e-3 - 0.625e-3, 0.625e-3])
     np.testing.assert_allclose(recording.at(5.0).forces, taxel_forces()[-1])
     np.testing.assert_allclose(recording.at(-5.0).forces, taxel_forces()[0])
+
+
+def test_a_result_without_a_title_goes_by_its_folder(tmp_path: Path) -> None:
+    assert result_recordings(grasp_folder(tmp_path / "left_hand", title=""))["taxel_force"].scene.title == "left_hand"
 
 
 def test_a_taxel_that_is_null_in_the_result_is_dead(tmp_path: Path) -> None:
@@ -291,7 +295,27 @@ def test_the_noise_is_that_of_the_result_unless_another_is_given(tmp_path: Path)
     folder = change(localized_folder(tmp_path / "b"), ("scene", "noise"), 1e-3)
     told = result_recordings(folder)["taxel_force"]
     thesis = BY_NAME["thesis"]
-    assert frame_readings(rounded.scene, rounded.frame(0), thesis, None).noise == pytest.approx(0.1 / 12**0.5)
+    largest = taxel_forces().max()
+    assert frame_readings(rounded.scene, rounded.frame(0), thesis, None).noise == pytest.approx(0.006 * largest)
+    read = replace(rounded.frame(0), noise=source_noise("read_force", rounded.forces, rounded.valid))
+    assert frame_readings(rounded.scene, read, thesis, None).noise == pytest.approx(0.1 / 12**0.5), "by sensors of the thesis"
+    assert source_noise("taxel_force", 0 * rounded.forces, rounded.valid).deviation == pytest.approx(0.1 / 12**0.5)
     assert frame_readings(told.scene, told.frame(0), thesis, None).noise == 1e-3
     assert frame_readings(told.scene, told.frame(0), thesis, None, 5e-3).noise == 5e-3
     assert opened_content(folder, noise=2e-3).noise == 2e-3
+
+
+def test_a_small_loss_over_a_soft_lump_is_found_and_the_estimate_says_on_which_noise_it_rests(tmp_path: Path) -> None:
+    plain = grasp_folder(tmp_path / "plain", taxel_forces(1), lump=False)
+    soft = taxel_forces(1)
+    soft[0, :, 1, 1] -= 0.027  # as ``grasp_lump_icf`` against ``grasp_plain``: 54 mN of both jaws
+    recording = result_recordings(grasp_folder(tmp_path / "soft", soft))["taxel_force"]
+    scene, frame = recording.scene, recording.frame(0)
+    choice, reference = BY_NAME["thesis with reference"], Reference.open([str(plain)])
+    stated = estimated(scene, frame_readings(scene, frame, choice, reference), choice, reference)
+    assert stated["present"]
+    assert "0.6% of the largest force" in stated["noise"]
+    given = estimated(scene, frame_readings(scene, frame, choice, reference, 29e-3), choice, reference)
+    assert not given["present"]
+    noise = "Noise of 29 mN on each taxel (one standard deviation): as given by --noise; start with --noise FORCE for another"
+    assert given["noise"] == noise

@@ -73,6 +73,7 @@ def test_nothing_there_is_an_answer():
         assert estimate.present is there
         assert bool(estimate.inclusions) is there
         assert ("no inclusion" in estimate.reason) is not there
+        assert "8 mN (4 standard deviations of 2 mN, from noise of 1 mN on each taxel)" in estimate.reason
 
 
 def test_false_alarms_of_noise_are_as_rare_as_the_threshold_says():
