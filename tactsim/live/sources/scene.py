@@ -73,6 +73,10 @@ class PageScene:
         places = self.grasp.places
         if not (np.abs([*places.ravel(), self.closing]) <= LONGEST_LENGTH).all():
             raise InputError(f"a jaw is beyond {LONGEST_LENGTH:g} m or nowhere: {shown(places)} at {shown(self.closing)} m")
+        with np.errstate(all="ignore"):  # what is too large is refused
+            middles = [np.abs(shape.places(self.size)).max(initial=0.0) for shape in self.inclusions or ()]
+        if not all(middle <= LONGEST_LENGTH for middle in middles):
+            raise InputError(f"an inclusion is beyond {LONGEST_LENGTH:g} m or nowhere: {shown(middles)} m")
 
     def places_at(self, closing: float | None) -> Array:
         """Middle (2, 3) in m of both faces when each jaw has closed by ``closing`` in m; None leaves them where they are."""
