@@ -10,7 +10,6 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.overhang import covered_areas, overhang_warnings
 from tactsim.experiments.grasp.symmetry import mirror_axes
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, VolumeRatios
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = np.array([30e-3, 30e-3])
@@ -32,23 +31,12 @@ def closing(to):
 def test_an_incompressible_grasp_whose_elements_lose_their_volume_is_reported():
     result = run(loading=closing(3e-3))
     assert result.quantities["min_volume_ratio"].value < 0.8
-    assert result.quantities["poor_volume_fraction"].value > POOR_SHARE
+    assert result.quantities["poor_volume_fraction"].value > 1e-3
     (reported,) = (warning for warning in result.warnings if "misses the volume" in warning)
     assert "the mesh is too coarse there" in reported
     assert "mm in region 0" in reported
     assert reported.endswith("take more mesh.cells")
     assert result.steps[-1].values["poor_volume_fraction"] <= result.quantities["poor_volume_fraction"].value
-
-
-def test_a_part_at_the_edges_that_moves_no_taxel_is_not_warned_of():
-    ratios = VolumeRatios()
-    for part, warned in (
-        (0.0010333, False),
-        (0.0018, False),
-        (0.0034, True),
-    ):  # grasp_lump_icf, and a = 2 and 0 in docs/theory/mesh.md
-        ratios.worst = part
-        assert bool(ratios.warnings()) is warned
 
 
 def test_tissue_that_may_change_its_volume_is_not_blamed():
@@ -57,7 +45,7 @@ def test_tissue_that_may_change_its_volume_is_not_blamed():
         block={"tissue": soft}, loading=closing(3e-3), contact={"kind": "coulomb", "friction": 0.0}, penetration_tolerance=2e-6
     )
     assert result.quantities["min_volume_ratio"].value < 0.9
-    assert result.quantities["poor_volume_fraction"].value < POOR_SHARE
+    assert result.quantities["poor_volume_fraction"].value < 1e-3
     assert not any("misses the volume" in warning for warning in result.warnings)
 
 

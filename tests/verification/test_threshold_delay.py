@@ -13,6 +13,7 @@ from tactsim.experiments.threshold.contact_curve import Approach
 from tactsim.experiments.threshold.sampling import SILENT, ApproachSampling
 from tactsim.experiments.threshold.source import ClosedFormSource
 from tactsim.experiments.threshold.threshold_trial import ThresholdTrial
+from tactsim.interfaces.run import returned_by
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.sensors.electronics.converter import Converter
 from tactsim.sensors.electronics.low_pass import LowPass
@@ -124,7 +125,7 @@ def test_sampling_adds_half_an_interval(verification_record):
 
 def test_threshold_of_the_closed_form_and_the_sum_of_the_parts(verification_record):
     source = ClosedFormSource(material=NeoHookean(c10=5e3), recess=0.1e-3)
-    tissue = source.tissue()
+    tissue = returned_by(source.tissue())
     approach = tissue.approach(2e-3)
     time = np.array([0.0, approach.touch, approach.duration])
     plate, small = approach.at(time)

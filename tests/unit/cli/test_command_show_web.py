@@ -75,7 +75,7 @@ def test_another_address_is_warned_of(tmp_path: Path) -> None:
     ("arguments", "code", "words"),
     [
         (["--web"], 2, "nothing to show"),
-        ([], 2, "RESULT_OR_STORE is missing"),
+        ([], 2, "RESULT_STORE_OR_CASE is missing"),
         (["{grasp}", "--port", "8000"], 2, "--port: for the live page only; add --web"),
         (["{grasp}", "--live", "-"], 2, "--live: for the live page only"),
         (["{grasp}", "--web", "--save", "a.png"], 2, "one at a time"),

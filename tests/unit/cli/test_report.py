@@ -37,7 +37,7 @@ def test_a_component_that_is_round_off_beside_another_is_zero() -> None:
     assert format_values(Quantity([-2.4e-12, 6e-9, -6.112], "N", "")) == "0 N, 6 nN, -6.112 N"
     record = StepRecord(1, 1, 0.0, {"jaw_force_upper_x": -7e-12, "jaw_force_upper_z": 6.1, "time": 1e-15})
     line = step_line(record, dict.fromkeys(record.values, "N"))
-    assert "jaw_force_upper_x 0 N  jaw_force_upper_z 6.1 N  time 1 fN" in line
+    assert "jaw_force_upper_x 0 N  jaw_force_upper_z 6.1 N  time 1e-15 N" in line
 
 
 def test_the_last_line_reports_only_what_was_reached() -> None:

@@ -74,4 +74,4 @@ def test_drawings_are_png_and_none_without_steps():
     assert list(drawings) == ["indentation_3d.png"]
     assert drawings["indentation_3d.png"]().startswith(b"\x89PNG")
     assert unmarked_figures(made_up()) == []
-    assert figures_for(replace(made_up(), steps=())) == {}
+    assert figures_for(replace(made_up(), steps=(), frames=())) == {}
