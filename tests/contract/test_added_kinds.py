@@ -170,6 +170,14 @@ PRESS = """
   stop: displacement
   displacement: 0.2 mm
 """
+SMALL_GRASP = """
+  kind: grasp
+  block: {size: [20 mm, 20 mm, 10 mm], tissue: MATERIAL}
+  contact: {kind: LAW, friction: 0.5}
+  matrix: {rows: 2, columns: 2, pitch: 8 mm, size: 7 mm}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 0.3 mm, duration: 1 s}]}
+  mesh: {kind: structured, cells: [2, 2, 2]}
+"""
 FILM = "{kind: film_test, film: {kind: NAMED}, forces: [1 N, 2 N, 3 N], times: [1 s]}"
 
 
@@ -179,11 +187,24 @@ def test_a_material_is_named_in_a_case(added: Any, tmp_path: Path) -> None:
         case(tmp_path, GRASP, changes)
     cls = added(Material)
     assert type(case(tmp_path, GRASP, changes).block.tissue) is cls
+    own, shipped = (
+        case(tmp_path, SMALL_GRASP, {"MATERIAL": f"{{kind: {kind}, c10: 3 kPa}}", "LAW": "coulomb"}).run(None)
+        for kind in ("added", "neo_hookean")
+    )
+    assert own.status is Status.CONVERGED
+    assert own.quantities == shipped.quantities
 
 
 def test_a_contact_law_is_named_in_a_case(added: Any, tmp_path: Path) -> None:
     cls = added(ContactLaw)
     assert type(case(tmp_path, GRASP, {"MATERIAL": "icf_stable", "SHAPE": "sphere", "LAW": "added"}).contact) is cls
+    own, shipped, slippery = (
+        case(tmp_path, SMALL_GRASP, {"MATERIAL": "icf_stable", "LAW": law, "0.5}": friction}).run(None)
+        for law, friction in (("added", "0.5}"), ("coulomb", "0.5}"), ("added", "0.1}"))
+    )
+    assert own.status is Status.CONVERGED
+    assert own.quantities == shipped.quantities
+    assert own.quantities != slippery.quantities, "friction is felt"
 
 
 def test_a_body_is_pressed_and_tilted_without_a_radius(added: Any, tmp_path: Path) -> None:
@@ -191,6 +212,10 @@ def test_a_body_is_pressed_and_tilted_without_a_radius(added: Any, tmp_path: Pat
     experiment = case(tmp_path, PRESS, {"BODY": "added"})
     assert type(experiment.body) is cls
     assert experiment.contact_radius == experiment.specimen.radius  # it has none: it reaches as far as the specimen
+    text = PRESS + "  mesh: {finest: 2 mm, growth: 1, adaptive: false}\n"
+    own, shipped = (case(tmp_path, text, {"BODY": body}).run(None) for body in ("added", "plane"))
+    assert own.status is Status.CONVERGED
+    assert own.quantities == shipped.quantities
     tilted = kind_class(RigidBody, "tilted").model_validate({"kind": "tilted", "body": {"kind": "added"}, "tilt_x": 0.1})
     assert type(tilted.body) is cls
 
