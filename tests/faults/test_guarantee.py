@@ -21,6 +21,7 @@ from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact import guarantee
+from tactsim.mechanics.contact.contact_equilibrium import Action
 from tactsim.mechanics.contact.guarantee import check_accepted
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.block_model import GraspModel
@@ -44,7 +45,7 @@ def grasp():
 
 def held(state):
     model, _, _ = grasp()
-    check_accepted(model.problem, state, loads=[model.springs])
+    check_accepted(model.problem, state, Action((), loads=[model.springs]))
 
 
 def with_forces(state, **changes):

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
-from tactsim.fem.assembly.body import Kinematics
+from tactsim.fem.assembly.body import Kinematics, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Equilibrium, Problem
@@ -63,8 +62,31 @@ class ContactEquilibrium:
     kinematics: Kinematics
 
 
+@dataclass(frozen=True)
+class Action:
+    """What a step prescribes of the rigid bodies, and what acts on the body beside them.
+
+    Attributes
+    ----------
+    directions : unit vector (d,) along which each rigid body moves
+    force : with which they press along these together in N, if that is prescribed instead of the displacement
+    relaxation : coefficients of the time step of materials that relax
+    loads : further loads on the body
+    """
+
+    directions: Sequence[Array]
+    force: float | None = None
+    relaxation: RelaxationStep | None = None
+    loads: Sequence[FollowerLoad] = ()
+
+    @property
+    def load_control(self) -> PrescribedForce | None:
+        """The prescribed force, if there is one."""
+        return None if self.force is None else PrescribedForce(tuple(self.directions), self.force)
+
+
 def contact_equilibrium(
-    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, **settings: Any
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
 ) -> ContactEquilibrium:
     """The state of ``_equilibrium``, or the reason why none can be reached from ``state`` by any shorter step.
 
@@ -76,7 +98,7 @@ def contact_equilibrium(
         If so, and an element of ``state`` is nearly inside out already.
     """
     try:
-        return _equilibrium(problem, state, load, guess, **settings)
+        return _equilibrium(problem, state, load, guess, action)
     except ConvergenceError as error:
         if collapsed := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
             raise Collapsed(
@@ -84,23 +106,22 @@ def contact_equilibrium(
             ) from error
         if not 0 < load - state.load <= SNAP_STEP * load:
             raise
-    return _after_snap(problem, state, load, **settings)
+    return _after_snap(problem, state, load, action)
 
 
-def _after_snap(
-    problem: Problem, state: ContactEquilibrium, load: float, *, loads: Sequence[FollowerLoad] = (), **settings: Any
-) -> ContactEquilibrium:
+def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action: Action) -> ContactEquilibrium:
     """The state past the one that the body snaps to when no equilibrium is near; raises ConvergenceError if it comes to none."""
-    divisible = settings.get("relaxation") is None and settings.get("force") is None
+    divisible = action.relaxation is None and action.force is None
     near = min(load, state.load + SNAP_LENGTH * load) if divisible else load
 
     def solve(guess: Array, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
-        return _equilibrium(problem, state, near, guess, loads=[*loads, *drag], from_guess=True, **settings)
+        dragged = replace(action, loads=[*action.loads, *drag])
+        return _equilibrium(problem, state, near, guess, dragged, from_guess=True)
 
     snapped = after_snap(problem.body, state.unknowns, solve, lambda reached: reached.unknowns)
     if near == load:
         return snapped
-    beyond = _equilibrium(problem, snapped, load, snapped.unknowns, loads=loads, **settings)
+    beyond = _equilibrium(problem, snapped, load, snapped.unknowns, action)
     return replace(beyond, iterations=snapped.iterations + beyond.iterations)
 
 
@@ -109,16 +130,14 @@ def _equilibrium(
     state: ContactEquilibrium,
     load: float,
     guess: Array,
+    action: Action,
     *,
-    directions: Sequence[Array],
-    force: float | None = None,
-    **solving: Any,
+    from_guess: bool = False,
 ) -> ContactEquilibrium:
     """The state in which each rigid body has moved by ``load`` in m along its unit vector, its penetration in tolerance.
 
-    With a ``force`` in N the bodies move on from ``load`` until together they press so hard along these vectors. ``solving``
-    may hold ``relaxation``, the coefficients of the time step of materials that relax, ``loads``, further loads on the body, and
-    whether Newton starts from the contact forces that belong to the guess, ``from_guess``, not from those of ``state``.
+    With a prescribed force the bodies move on from ``load`` until together they press so hard along these vectors. Newton starts
+    from the contact forces of ``state``, or from those that belong to the guess.
 
     Raises
     ------
@@ -128,18 +147,17 @@ def _equilibrium(
     regularisation, iterations, before = state.regularisation, 0, state.contacts
     if regularisation.augments:
         before = tuple(contact.expected(load - state.load) for contact in before)
-    load_control = None if force is None else PrescribedForce(tuple(directions), force)
     coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
-        contacts = _moved(before, load - state.load, directions, regularisation)
+        contacts = _moved(before, load - state.load, action.directions, regularisation)
         try:
-            solved = _solved(problem, guess, contacts, load_control, **solving, coarse=coarse)
+            solved = _solved(problem, guess, contacts, action, from_guess=from_guess, coarse=coarse)
         except ConvergenceError as error:
             error.solutions += iterations
             raise
         load += solved.rigid_displacement
-        contacts = _moved(before, load - state.load, directions, regularisation)
+        contacts = _moved(before, load - state.load, action.directions, regularisation)
         iterations += solved.iterations
         if solved.iterations == 0:
             coarse *= SHARPER
@@ -171,10 +189,10 @@ def _solved(
     problem: Problem,
     guess: Array,
     contacts: Sequence[PosedContact],
-    load_control: PrescribedForce | None,
+    action: Action,
     *,
-    from_guess: bool = False,
-    **settings: Any,
+    from_guess: bool,
+    coarse: float,
 ) -> Equilibrium:
     """Newton's solution; if it stalls with points that stick and slip by turns, from solutions with limits of friction that do
     not depend on the pressure, which have no such turns (Tresca's friction; the fixed point of Panagiotopoulos 1975,
@@ -185,21 +203,29 @@ def _solved(
         moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
         return [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
 
-    rigid_displacement = 0.0
+    def solve(interfaces: Sequence[PosedContact]) -> Equilibrium:
+        """From the guess, with what acts."""
+        return problem.solve(
+            guess,
+            interfaces=interfaces,
+            loads=action.loads,
+            load_control=load_control,
+            rigid_displacement=rigid_displacement,
+            relaxation=action.relaxation,
+            coarse=coarse,
+        )
+
+    load_control, rigid_displacement = action.load_control, 0.0
     begun = warm_started() if from_guess else list(contacts)
     for held_round in range(HELD_ROUNDS + 1):
         try:
-            return problem.solve(
-                guess, interfaces=begun, load_control=load_control, rigid_displacement=rigid_displacement, **settings
-            )
+            return solve(begun)
         except ConvergenceError as stalled:
             if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
         moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
         held = [contact.holding(move) for contact, move in zip(contacts, moves, strict=True)]
-        between = problem.solve(
-            guess, interfaces=held, load_control=load_control, rigid_displacement=rigid_displacement, **settings
-        )
+        between = solve(held)
         guess, rigid_displacement = between.unknowns, between.rigid_displacement
         begun = warm_started()
     raise AssertionError("the last round returns or raises")

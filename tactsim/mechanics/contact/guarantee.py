@@ -9,21 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
-from tactsim.fem.assembly.body import Body, Kinematics, RelaxationStep
-from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.assembly.body import Body, Kinematics
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words
 from tactsim.fem.equilibrium.newton import Problem
-from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium, contact_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.units import format_quantity
 
@@ -39,10 +36,7 @@ def guaranteed_equilibrium(
     state: ContactEquilibrium,
     load: float,
     guess: Array,
-    *,
-    directions: Sequence[Array],
-    force: float | None = None,
-    **settings: Any,
+    action: Action,
 ) -> ContactEquilibrium:
     """The state of `contact_equilibrium` with the same arguments, once it has passed `check_accepted`.
 
@@ -51,24 +45,16 @@ def guaranteed_equilibrium(
     ConvergenceError
         If there is none, or it breaks the guarantee.
     """
-    reached = contact_equilibrium(problem, state, load, guess, directions=directions, force=force, **settings)
-    load_control = None if force is None else PrescribedForce(tuple(directions), force)
+    reached = contact_equilibrium(problem, state, load, guess, action)
     try:
-        check_accepted(problem, reached, load_control=load_control, **settings)
+        check_accepted(problem, reached, action)
     except ConvergenceError as error:
         error.solutions = reached.iterations
         raise
     return reached
 
 
-def check_accepted(
-    problem: Problem,
-    state: ContactEquilibrium,
-    *,
-    loads: Sequence[FollowerLoad] = (),
-    load_control: PrescribedForce | None = None,
-    relaxation: RelaxationStep | None = None,
-) -> None:
+def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) -> None:
     """Nothing, if a state keeps all that is guaranteed of an accepted one.
 
     1. Unknowns, deformation and contact forces are finite numbers.
@@ -81,7 +67,7 @@ def check_accepted(
 
     Parameters
     ----------
-    loads, load_control, relaxation : that the state was solved with, as in `Problem.solve`
+    action : that the state was solved with
 
     Raises
     ------
@@ -95,7 +81,8 @@ def check_accepted(
         fault = fault or _contact_fault(body, state, contact, f"rigid body {number}")
     if fault is None:
         recorded = tuple(_Recorded(contact) for contact in state.contacts)
-        balance = problem.balance(ExternalForces(recorded, tuple(loads), None, load_control), relaxation)  # type: ignore[arg-type]
+        forces = ExternalForces(recorded, tuple(action.loads), None, action.load_control)  # type: ignore[arg-type]
+        balance = problem.balance(forces, action.relaxation)
         fault = _unbalanced(balance, balance.at(state.unknowns, kinematics, 0.0))
     if fault is not None:
         raise ConvergenceError(f"the state breaks what every accepted state is held to: {fault}")

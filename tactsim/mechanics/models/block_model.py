@@ -22,7 +22,7 @@ from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
-from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
@@ -146,16 +146,9 @@ class GraspModel:
         ConvergenceError
             If Newton fails, or no penalty keeps the tissue out of the jaws.
         """
-        return guaranteed_equilibrium(
-            self.problem,
-            state,
-            closing,
-            guess,
-            directions=[CLOSING[side] for side in JAWS],
-            force=None if force is None else 2 * force,
-            relaxation=relaxation,
-            loads=[self.springs, *loads],
-        )
+        both = None if force is None else 2 * force
+        action = Action([CLOSING[side] for side in JAWS], both, relaxation, [self.springs, *loads])
+        return guaranteed_equilibrium(self.problem, state, closing, guess, action)
 
     def jaw_force(self, state: ContactEquilibrium, side: str) -> Array:
         """Force (3,) in N of the tissue on a jaw."""

@@ -18,7 +18,7 @@ from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.linear import solved
 from tactsim.fem.solvers.solver_choice import solver_for
-from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.fields.point_values import cauchy_stress, von_mises
@@ -131,7 +131,7 @@ class LoadedBody:
         distance = max(float(np.linalg.norm(step)) for step in steps)
         directions = [step / distance if distance > 0 else step for step in steps]
         return guaranteed_equilibrium(
-            self.problem, now, now.load + distance, unknowns, directions=directions, loads=acting, relaxation=relaxation
+            self.problem, now, now.load + distance, unknowns, Action(directions, relaxation=relaxation, loads=acting)
         )
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:

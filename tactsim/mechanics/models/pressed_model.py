@@ -19,7 +19,7 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material, RigidBody
-from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
@@ -138,9 +138,7 @@ class PressedModel(ABC):
         ``relaxation`` holds the coefficients of the time step of materials that relax, ``loads`` what else acts on the tissue.
         """
         directions = (self.down,) * len(state.contacts)
-        return guaranteed_equilibrium(
-            self.problem, state, load, guess, directions=directions, force=force, relaxation=relaxation, loads=loads
-        )
+        return guaranteed_equilibrium(self.problem, state, load, guess, Action(directions, force, relaxation, loads))
 
     def displacement(self, unknowns: Array) -> Array:
         """Displacements (d, n) in m of the surface points."""
