@@ -25,7 +25,7 @@ from tactsim.results.scene import Scene
 from tactsim.units import parse_quantity
 
 Progress = Callable[[StepRecord], None]
-Value = TypeVar("Value")
+Made = TypeVar("Made")
 
 NO_MEMORY = "the memory does not suffice: take larger elements, fewer taxels, steps or samples, or a machine with more of it"
 ACCEPTED_STEPS = "the accepted steps are kept, the run is incomplete"
@@ -262,14 +262,14 @@ def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Resu
         raise OutOfMemory(NO_MEMORY) from error
 
 
-def returned_by(steps: Generator[StepRecord, None, Value]) -> Value:
+def returned_by(steps: Generator[StepRecord, None, Made]) -> Made:
     """What steps return at their end, such as those of `run_within_another`; they are reported to nobody."""
     with quiet():
         while True:
             try:
                 next(steps)
             except StopIteration as end:
-                value: Value = end.value
+                value: Made = end.value
                 return value
 
 
