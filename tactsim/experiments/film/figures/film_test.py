@@ -12,6 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from scipy.interpolate import PchipInterpolator
 
 from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
@@ -127,13 +128,12 @@ def _draw_creep(axis: Axes, result: Result) -> None:
 
 
 def _smooth(times: Array, values: Array) -> tuple[Array, Array]:
-    """A curve through positive values at times from 0 s on, straight between them on logarithmic axes; scipy's splines would take
-    as long to load as the film to be computed."""
+    """A curve through positive values at times from 0 s on that has no other ups and downs than they have."""
     if len(times) < 3:
         return times, values
     along = np.log1p(times / times[1])
     dense = np.linspace(0.0, along[-1], DENSE)
-    return times[1] * np.expm1(dense), np.exp(np.interp(dense, along, np.log(values)))
+    return times[1] * np.expm1(dense), np.exp(PchipInterpolator(along, np.log(values))(dense))
 
 
 def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:
