@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 
+PLANCK = 6.62607015e-34
+"""Planck constant in J s, exact by the definition of the kilogram; scipy's tables of constants load longer than a film takes."""
+ELECTRON_MASS = 9.1093837139e-31
+"""In kg, CODATA 2022, doi:10.1103/RevModPhys.97.025002."""
 LOOSEST_PACKING = np.pi / 6
 """Volume fraction of a simple cubic packing: spheres touch, the separation of eq. 2.1.8 is zero."""
 
@@ -32,7 +35,7 @@ def tunnelling_decay(barrier: float) -> float:
     """
     if not barrier > 0:
         raise InvalidQuantity(f"barrier is {barrier} J; allowed: > 0")
-    return float(4 * np.pi / scipy.constants.h * np.sqrt(2 * scipy.constants.m_e * barrier))
+    return float(4 * np.pi / PLANCK * np.sqrt(2 * ELECTRON_MASS * barrier))
 
 
 def particle_separation(diameter: float, volume_fraction: float) -> float:
