@@ -83,17 +83,11 @@ def is_unit(text: str) -> bool:
 @lru_cache(maxsize=1024)
 def _asked(unit: str) -> str:
     """What a message asks for where a quantity of the dimension of ``unit`` belongs."""
-    import pint
-
     if unit in ("", "1", "%"):
         return "a number with its unit, such as '1 %'"
-    for known, words in DIMENSIONS.items():
-        try:
-            _factor_to(known, unit)
-        except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
-            continue
-        return f"{words[0]} with its unit, such as {words[1]!r}"
-    return f"a number with its unit, such as '1 {unit}'"
+    known = (words for other, words in DIMENSIONS.items() if _registry().is_compatible_with(other, unit))
+    name, example = next(known, ("a number", f"1 {unit}"))
+    return f"{name} with its unit, such as {example!r}"
 
 
 def parse_quantity(text: str, unit: str) -> float:
@@ -106,18 +100,20 @@ def parse_quantity(text: str, unit: str) -> float:
     """
     import pint
 
-    expected = f"expected {_asked(unit)}"
+    def expected() -> str:
+        return f"expected {_asked(unit)}"
+
     parts = _QUANTITY.fullmatch(text.strip())
     if parts is None or (parts["unit"] or "").startswith(","):
-        point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected
+        point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected()
         raise InvalidQuantity(f"{shown(text)} is not a quantity; {point}")
     value, given_unit = float(parts["number"]), parts["unit"]
     if not math.isfinite(value):
-        raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
+        raise InvalidQuantity(f"{shown(text)} is not finite; {expected()}")
     if not given_unit:
-        raise InvalidQuantity(f"{shown(text)} has no unit; {expected}")
+        raise InvalidQuantity(f"{shown(text)} has no unit; {expected()}")
     if not _UNIT.fullmatch(given_unit):
-        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}")
+        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected()}")
     if unusual := _unusual_unit(given_unit):
         raise InvalidQuantity(
             f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
@@ -125,13 +121,13 @@ def parse_quantity(text: str, unit: str) -> float:
     try:
         converted = _converted(parts["number"], _factor_to(unit, given_unit))
     except pint.DimensionalityError:
-        raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected}") from None
+        raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected()}") from None
     except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
-        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected}") from None
+        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected()}") from None
     if not math.isfinite(converted):
-        raise InvalidQuantity(f"{shown(text)} is not finite; {expected}")
+        raise InvalidQuantity(f"{shown(text)} is not finite; {expected()}")
     if converted == 0 and re.search("[1-9]", re.split("[eE]", parts["number"])[0]):
-        raise InvalidQuantity(f"{shown(text)} is too small to be told from 0; {expected}")
+        raise InvalidQuantity(f"{shown(text)} is too small to be told from 0; {expected()}")
     return converted
 
 

@@ -61,7 +61,7 @@ class Grasp(GraspSetup, Experiment):
     def unloaded(self) -> Findings:
         """The block between jaws that just touch it."""
         path, record = self._begun()
-        return record.unloaded(path.start.contact, len(path.start.loads))
+        return record.unloaded(path.start)
 
     def _begun(self) -> tuple[TimedPath, GraspRecord]:
         """The path at its start, and what will record it."""

@@ -55,7 +55,7 @@ def indentation_course(setup: IndentationSetup) -> Course:
 def unloaded_indentation(setup: IndentationSetup) -> Findings:
     """The tissue and the body at first touch."""
     path, record = _begun(setup)
-    return record.unloaded(path.start)
+    return record.unloaded(TimedState(0.0, (0.0,), path.start, None))
 
 
 def _begun(setup: IndentationSetup) -> tuple[DisplacementPath | HistoryPath, IndentationRecord]:
@@ -161,15 +161,15 @@ class HistoryPath:
         self._setup, self._drive, self._model = setup, drive, model
         stiffest = max(shear_relaxation(material).instantaneous_modulus for material in setup.specimen.materials)
         share = min(1.0, setup.tolerance / (LEAST_PENETRATION * setup.contact_radius))
-        self._start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
+        start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
         body = PressedBody(model, by_force=drive.by_force, first_displacement=TOUCH * setup.tolerance)
         course = smooth_intervals([drive.loading.history()], drive.loading.duration)
-        self._path = TimedPath(body, drive.policy, course, self._start)
+        self._path = TimedPath(body, drive.policy, course, start)
 
     @property
     def start(self) -> ContactEquilibrium:
         """The undeformed tissue at first touch."""
-        return self._start.contact
+        return self._path.start.contact
 
     @property
     def rejected(self) -> int:

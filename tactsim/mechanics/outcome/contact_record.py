@@ -132,9 +132,9 @@ class ContactRecord(ABC, Generic[Model]):
             scene=self.scene(),
         )
 
-    def unloaded(self, start: ContactEquilibrium, loads: int = 1) -> Findings:
-        """Frame and scene of the state that the path begins at, under ``loads`` prescribed values; none is solved."""
-        self._kept["last"] = self.model, TimedState.at_rest(self.model.body, start, loads)
+    def unloaded(self, start: TimedState) -> Findings:
+        """Frame and scene of the state that the path begins at; nothing is solved."""
+        self._kept["last"] = self.model, start
         return Findings("at rest", assumptions=self.assumptions(), frames=self._frames(), scene=self.scene())
 
     @abstractmethod

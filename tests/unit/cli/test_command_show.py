@@ -10,6 +10,9 @@ from pretence import PNG, pretended_result
 
 from tactsim import plotting
 from tactsim.cli import main
+from tactsim.cli.command_show import NOISE_WORDS
+from tactsim.interfaces.readings import RESOLUTION, ROUNDING_NOISE
+from tactsim.live.sources.noise import MESH_SHARE
 from tactsim.results import Status, StepRecord, write_result
 
 
@@ -81,3 +84,10 @@ def test_a_folder_of_the_name_of_a_case_comes_first(folder: Path, capsys: pytest
         folder.rename("annulus_icf")
         assert main(["show", "annulus_icf"]) == 0
     assert capsys.readouterr().out.startswith("A case\nconverged: done\n")
+
+
+def test_the_help_gives_the_noise_that_the_page_takes() -> None:
+    """Written out, since the help loads none of what computes it."""
+    assert f"{100 * MESH_SHARE:g} %% of the largest force" in " ".join(NOISE_WORDS.split())
+    assert f"{1e3 * ROUNDING_NOISE:.3f} mN" in NOISE_WORDS
+    assert f"a resolution of {RESOLUTION:g} N" in NOISE_WORDS

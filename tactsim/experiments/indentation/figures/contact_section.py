@@ -105,11 +105,17 @@ def draw_contact_section(axis: Axes, result: Result, displacement: float = 0.0) 
     half, bottom, top = _window(section, 1e3 * scene.body.contact_shape.reach, height)
     top = max(top, top_of_words(scene, height, half))
     shown = PressedSection(section, scene, height, ((-half, half), (bottom, top)), sides=(-1.0, 1.0), meshed=(-1.0,))
-    moment = (
-        f"at a displacement of {format_quantity(displacement, 'm')}" if result.steps else f"at rest: {scene.solver.size_in_words}"
+    shown.draw(
+        axis, "radius in mm", f"{moment_in_words(result, displacement)} (elements shown on the left)", at_rest=result.at_rest
     )
-    shown.draw(axis, "radius in mm", f"{moment} (elements shown on the left)", at_rest=result.at_rest)
     axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
+
+
+def moment_in_words(result: Result, displacement: float) -> str:
+    """When a section is shown: at a displacement in m, or at rest, with the size of its mesh."""
+    if result.at_rest:
+        return f"at rest: {result.scene_as(PressedBodyScene).solver.size_in_words}"
+    return f"at a displacement of {format_quantity(displacement, 'm')}"
 
 
 def top_of_words(scene: PressedBodyScene, height: float, half: float) -> float:

@@ -20,29 +20,31 @@ from tactsim.units import format_quantity
 FORCE_COLOUR, RISE_COLOUR = "#1f4e79", "#b8540a"
 
 
-class IndentationFigures(SingleFigure):
+class PressedFigures(SingleFigure):
+    """The one figure of a kind, or of what is at rest a sketch: its section."""
+
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """The one figure, or ``sketch.png``."""
+        return {SKETCH: Plot(lambda: self._sketch(result))} if result.at_rest else super().drawings(result)
+
+    def draw_at_rest(self, axis: Axes, result: Result) -> None:
+        """The section of a sketch."""
+        draw_contact_section(axis, result)
+
+    def _sketch(self, result: Result) -> Figure:
+        with result_figure(result, (8.0, 4.8), f"A rigid {result.scene_as(PressedBodyScene).body.kind} on tissue") as figure:
+            self.draw_at_rest(figure.add_subplot(), result)
+        return figure
+
+
+class IndentationFigures(PressedFigures):
     """Section and curve side by side."""
 
     kind: Literal["indentation"] = "indentation"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``indentation.png``, or a sketch of what is at rest."""
-        return sketched(result, draw_contact_section) if result.at_rest else super().drawings(result)
-
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and force-displacement curve of an indentation."""
         return section_beside(result, draw_curve, f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}")
-
-
-def sketched(result: Result, draw: Callable[[Axes, Result], None]) -> dict[str, Drawing]:
-    """``sketch.png``: the section at rest, as ``draw`` draws it."""
-
-    def figure() -> Figure:
-        with result_figure(result, (8.0, 4.8), f"A rigid {result.scene_as(PressedBodyScene).body.kind} on tissue") as figure:
-            draw(figure.add_subplot(), result)
-        return figure
-
-    return {SKETCH: Plot(figure)}
 
 
 def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:

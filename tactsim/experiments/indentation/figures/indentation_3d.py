@@ -8,22 +8,21 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, after, draw_curve, sketched
+from tactsim.experiments.indentation.figures.indentation import FORCE_COLOUR, PressedFigures, after, draw_curve
 from tactsim.experiments.indentation.figures.section_3d import draw_cut
 from tactsim.experiments.indentation.scene import Indentation3dScene
-from tactsim.interfaces import Drawing
-from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
+from tactsim.plotting.canvas import despined, result_figure, scale_of
 from tactsim.results import Result
 
 
-class SpaceIndentationFigures(SingleFigure):
+class SpaceIndentationFigures(PressedFigures):
     """The cut, and the curves beside it."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"
 
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``indentation_3d.png``, or a sketch of what is at rest."""
-        return sketched(result, draw_cut) if result.at_rest else super().drawings(result)
+    def draw_at_rest(self, axis: Axes, result: Result) -> None:
+        """The cut of a sketch."""
+        draw_cut(axis, result)
 
     def figure(self, result: Result) -> Figure:
         """Cut (if the result has fields), force-displacement curve, and pressure around an annulus off the axis or leaning."""

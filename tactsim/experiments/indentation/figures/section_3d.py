@@ -6,13 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
-from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, PressedSection, top_of_words
+from tactsim.experiments.indentation.figures.contact_section import SHOWN_RADII, PressedSection, moment_in_words, top_of_words
 from tactsim.experiments.indentation.figures.section import Section
 from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.mesh.quadratic import MIRROR
 from tactsim.plotting.plane_cut import FACES
 from tactsim.results import FieldFrame, Result
-from tactsim.units import format_quantity
 
 _ASCENDING = np.where(FACES[:, [1]] < FACES[:, [2]], FACES, FACES[:, MIRROR[2]])
 """Nodes (4, 6) of the faces of a tetrahedron, those of its corners ascending."""
@@ -41,10 +40,7 @@ def draw_cut(axis: Axes, result: Result) -> None:
     limits = _window(section, 1e3 * scene.body.contact_shape.reach, height, mirrored=len(sides) > 1)
     limits = limits[0], (limits[1][0], max(limits[1][1], top_of_words(scene, height, limits[0][1])))
     shown = PressedSection(section, scene, height, limits, sides=sides, meshed=sides, turn=scene.body.rotation)
-    moment = (
-        f"at a displacement of {format_quantity(frame.time, 'm')}" if result.steps else f"at rest: {scene.solver.size_in_words}"
-    )
-    shown.draw(axis, "x in mm", f"cut y = 0 {moment}", at_rest=result.at_rest)
+    shown.draw(axis, "x in mm", f"cut y = 0 {moment_in_words(result, frame.time)}", at_rest=result.at_rest)
 
 
 def _in_plane(points: Array) -> Array:

@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import draw_contact_section
-from tactsim.experiments.indentation.figures.indentation import sketched
+from tactsim.experiments.indentation.figures.indentation import PressedFigures
 from tactsim.experiments.indentation.scene import TimedIndentationScene
-from tactsim.interfaces import Drawing
-from tactsim.plotting.canvas import SingleFigure, despined, result_figure, scale_of
+from tactsim.plotting.canvas import despined, result_figure, scale_of
 from tactsim.results import Result
 
 COMPUTED_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
@@ -22,14 +21,10 @@ DECADES = 1e3
 """Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
 
 
-class TimedIndentationFigures(SingleFigure):
+class TimedIndentationFigures(PressedFigures):
     """Section beside the histories."""
 
     kind: Literal["timed_indentation"] = "timed_indentation"
-
-    def drawings(self, result: Result) -> dict[str, Drawing]:
-        """``timed_indentation.png``, or a sketch of what is at rest."""
-        return sketched(result, draw_contact_section) if result.at_rest else super().drawings(result)
 
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and histories of a timed indentation."""
