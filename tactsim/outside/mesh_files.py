@@ -8,6 +8,7 @@ import re
 import sys
 import tempfile
 import warnings
+from collections.abc import Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +21,7 @@ from tactsim.errors import StorageError
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.environment import ONE_THREAD
 from tactsim.outside.files import MEBIBYTE, OutsideFile
-from tactsim.outside.processes import run_child
+from tactsim.outside.processes import Ended, run_child
 from tactsim.outside.text import one_line
 
 TIME, TIME_PER_MEBIBYTE = 8.0, 2.0
@@ -74,28 +75,50 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
     MeshFileWarning
         For each thing that the reader warned of.
     """
-    allowed = TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE if time_limit is None else time_limit
-    largest = ANSWER_MEMORY + UNPACKED * file.size
+    return read_mesh_files([file], time_limit)[0]
+
+
+def read_mesh_files(files: Sequence[OutsideFile], time_limit: float | None = None) -> list[MeshArrays]:
+    """The content of several files, read as by ``read_mesh_file`` by one process, whose start takes longer than most files."""
+    allowed = sum(TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE for file in files) if time_limit is None else time_limit
+    largest = [ANSWER_MEMORY + UNPACKED * file.size for file in files]
     with tempfile.TemporaryDirectory(prefix="tactsim-read-") as folder:
-        answer = Path(folder) / "answer.npz"
-        arguments = [str(file.path.absolute()), str(answer), str(largest)]
-        memory = READER_MEMORY + 2 * largest
+        answers = [Path(folder) / f"{number}.npz" for number in range(len(files))]
+        arguments = [
+            str(part)
+            for file, answer, most in zip(files, answers, largest, strict=True)
+            for part in (file.path.absolute(), answer, most)
+        ]
+        memory = READER_MEMORY + 2 * max(largest)
         done = run_child(MODULE, arguments, time_limit=allowed, memory=memory, environment=ONE_THREAD)
-        named = f"cannot read {one_line(file.named)}"
-        if done.out_of_time:
-            raise StorageError(f"{named}: the reader was stopped after {allowed:.3g} s; is it complete?")
-        if done.out_of_memory:
-            raise StorageError(f"{named}: it asks for more memory than a file of {file.size} bytes should; is it damaged?")
-        if done.code or not answer.exists():
-            reason = f"damaged or of an unknown format ({done.ending})"
-            raise StorageError(f"{named}: {(file.quotable and done.last_line) or reason}")
-        arrays = read_arrays(answer.read_bytes(), file.named, largest=largest)
+        unread = [file for file, answer in zip(files, answers, strict=True) if not answer.exists()]
+        if unread or done.code:
+            raise StorageError(_why_unread((unread or files)[0], done, allowed))
+        return [_answered(answer, file, most) for answer, file, most in zip(answers, files, largest, strict=True)]
+
+
+def _why_unread(file: OutsideFile, done: Ended, allowed: float) -> str:
+    """Why the reader ended at this file."""
+    named = f"cannot read {one_line(file.named)}"
+    if done.out_of_time:
+        return f"{named}: the reader was stopped after {allowed:.3g} s; is it complete?"
+    if done.out_of_memory:
+        return f"{named}: it asks for more memory than a file of {file.size} bytes should; is it damaged?"
+    return f"{named}: {(file.quotable and done.last_line) or f'damaged or of an unknown format ({done.ending})'}"
+
+
+def _answered(answer: Path, file: OutsideFile, largest: int) -> MeshArrays:
+    """What the child wrote about a file; warns of what its reader warned of."""
+    arrays = read_arrays(answer.read_bytes(), file.named, largest=largest)
     for line in arrays.pop("warnings").tolist():
         words = line if file.quotable else "a part of the file was passed over or completed"
         warnings.warn_explicit(f"{one_line(file.named)}: {words}", MeshFileWarning, READER, 0)
     mesh = _unpacked(arrays)
     if not _consistent(mesh):
-        raise StorageError(f"{named}: the numbers of points, nodes of cells and data do not fit each other; is it damaged?")
+        raise StorageError(
+            f"cannot read {one_line(file.named)}: the numbers of points, nodes of cells and data do not fit each other; "
+            "is it damaged?"
+        )
     return mesh
 
 
@@ -137,13 +160,30 @@ def _read(path: str) -> tuple[Any, list[str]]:
     return mesh, list(dict.fromkeys(one_line(" ".join(line.split())) for line in lines))[:MOST_WARNINGS]
 
 
-def main(path: str, answer: str, largest: str) -> int:
-    """Read one file and write its arrays; what the child process does.
+def main(*files: str) -> int:
+    """Read each file and write its arrays; what the child process does.
+
+    Parameters
+    ----------
+    files : for each of them its path, that of the answer, and the most bytes that its arrays may take
 
     Raises
     ------
     MemoryError
-        If the arrays take more bytes than ``largest``; meshio's own errors end the process, too.
+        If the arrays of one take more; meshio's own errors end the process, too.
+    """
+    for path, answer, largest in zip(files[::3], files[1::3], files[2::3], strict=True):
+        _convert(path, answer, int(largest))
+    return 0
+
+
+def _convert(path: str, answer: str, largest: int) -> None:
+    """Read one file and write its arrays.
+
+    Raises
+    ------
+    MemoryError
+        If the arrays take more bytes than ``largest``.
     """
     mesh, lines = _read(path)
     kept = [k for k, block in enumerate(mesh.cells) if np.ndim(block.data) == 2]
@@ -157,7 +197,7 @@ def main(path: str, answer: str, largest: str) -> int:
     for number, parts in enumerate(cell_data.values()):
         arrays |= {f"cell_{number}_{k}": part for k, part in enumerate(parts)}
     points = np.asarray(mesh.points, float)
-    if points.nbytes + sum(array.nbytes for array in arrays.values()) > int(largest):
+    if points.nbytes + sum(array.nbytes for array in arrays.values()) > largest:
         raise MemoryError
     content = io.BytesIO()
     np.savez(
@@ -171,8 +211,9 @@ def main(path: str, answer: str, largest: str) -> int:
         warnings=np.array(lines, dtype=str),
         **arrays,
     )
-    Path(answer).write_bytes(content.getvalue())
-    return 0
+    begun = Path(f"{answer}.begun")
+    begun.write_bytes(content.getvalue())
+    begun.replace(answer)
 
 
 if __name__ == "__main__":

@@ -27,8 +27,8 @@ SKETCH = "sketch.png"
 RESOLUTION = 160
 """In dots per inch."""
 
-COMPRESSION = 4
-"""Level of PNG: twice as fast as the usual 6, for files a tenth larger."""
+COMPRESSION = 2
+"""Level of PNG: nearly twice as fast as the usual 6, for files an eighth larger."""
 PRINTED_RESOLUTION = 240
 """In dots per inch, of what is dense and therefore a picture inside a vector file."""
 LONGEST_TITLE = 200

@@ -43,7 +43,8 @@ def read_fields(directory: Path) -> tuple[FieldFrame, ...]:
         return ()
     try:
         entries = [dict(entry.attrib) for entry in ElementTree.fromstring(opened(index, "description").text()).iter("DataSet")]
-        return tuple(_read_frame(directory / Path(e["file"]).name, float(e["timestep"])) for e in entries)
+        times = [float(entry["timestep"]) for entry in entries]
+        return _read_frames([directory / Path(entry["file"]).name for entry in entries], times)
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         raise StorageError(f"{index} is damaged: {one_line(error)}") from None
 
@@ -69,9 +70,13 @@ def _columns(values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(array if array.ndim < 3 else array.reshape(len(array), -1))
 
 
-def _read_frame(path: Path, time: float) -> FieldFrame:
-    from tactsim.outside.mesh_files import read_mesh_file  # starts processes, which most runs never need
+def _read_frames(paths: Sequence[Path], times: Sequence[float]) -> tuple[FieldFrame, ...]:
+    from tactsim.outside.mesh_files import read_mesh_files  # starts processes, which most runs never need
 
-    mesh = read_mesh_file(opened(path, "field file"))
-    cell_data = {name: np.concatenate(parts) for name, parts in mesh.cell_data.items()}
-    return FieldFrame(time, mesh.points, dict(mesh.cells), mesh.point_data, cell_data)
+    meshes = read_mesh_files([opened(path, "field file") for path in paths]) if paths else []
+    return tuple(
+        FieldFrame(
+            time, mesh.points, dict(mesh.cells), mesh.point_data, {k: np.concatenate(v) for k, v in mesh.cell_data.items()}
+        )
+        for time, mesh in zip(times, meshes, strict=True)
+    )

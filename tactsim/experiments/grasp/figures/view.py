@@ -52,7 +52,7 @@ def view_figure(result: Result) -> Figure:
         figure.set_layout_engine("constrained", h_pad=0.12)
         axes = figure.subplots(1, 2)
         for axis, camera, image, words in zip(axes, cameras, images, ("from above", "from below"), strict=True):
-            axis.imshow(image, interpolation="hanning")
+            axis.imshow(image, interpolation="bilinear")
             axis.set_axis_off()
             axis.set_title(f"seen from the front, right and {words.split()[-1]}", loc="left")
             annotate(axis, grasp, camera)

@@ -54,7 +54,7 @@ def space_figure(result: Result) -> Figure:
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
         for axis, image, (words, inside) in zip(axes, images, scenes.items(), strict=True):
-            axis.imshow(image, interpolation="hanning")
+            axis.imshow(image, interpolation="bilinear")
             axis.set_axis_off()
             axis.set_title(words if inside else f"{words}: none", loc="left")
             annotate(axis, grasp, camera)
