@@ -32,9 +32,6 @@ KEYS = {
 """Keys of files, which stay."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
-    "tactsim/mechanics/contact/posed_contact.py:PosedContact": "one contact with its history; a method a step of its life",
-    "tactsim/mechanics/models/pressed_model.py:PressedModel": "what the course of an indentation asks of its model",
-    "tactsim/mechanics/outcome/contact_record.py:ContactRecord": "the hooks by which records of kinds differ",
     "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case, and the values that follow from them",
     "tactsim/experiments/indentation/setup.py:IndentationSetup": "fields of a case, and the values that follow from them",
 }

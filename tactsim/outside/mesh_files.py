@@ -79,7 +79,13 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
 
 
 def read_mesh_files(files: Sequence[OutsideFile], time_limit: float | None = None) -> list[MeshArrays]:
-    """The content of several files, read as by ``read_mesh_file`` by one process, whose start takes longer than most files."""
+    """The content of several files, read by one process, whose start takes longer than most files.
+
+    Raises
+    ------
+    StorageError
+        As `read_mesh_file`, for the first file that cannot be read.
+    """
     allowed = sum(TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE for file in files) if time_limit is None else time_limit
     largest = [ANSWER_MEMORY + UNPACKED * file.size for file in files]
     with tempfile.TemporaryDirectory(prefix="tactsim-read-") as folder:

@@ -20,10 +20,10 @@ from tactsim.contact.penalty import Augmentation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.contact import guarantee
+from tactsim.mechanics.contact import contact_equilibrium, guarantee
 from tactsim.mechanics.contact.contact_equilibrium import Action
+from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.guarantee import check_accepted
-from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mesh.structured_block import structured_block
 
@@ -139,14 +139,13 @@ def test_a_state_that_breaks_it_is_refused_with_what_is_broken(name):
 
 def test_a_step_that_ends_in_such_a_state_is_no_step(monkeypatch):
     """A solver that records half of the friction that it balanced is not believed."""
-    committed = PosedContact.committed
 
     def halved(contact, displacement):
-        after = committed(contact, displacement)
+        after = accepted(contact, displacement)
         return replace(after, state=replace(after.state, tangential=0.5 * after.state.tangential))
 
     model, start, _ = grasp()
-    monkeypatch.setattr(PosedContact, "committed", halved)
+    monkeypatch.setattr(contact_equilibrium, "accepted", halved)
     with pytest.raises(ConvergenceError, match="out of balance") as refused:
         model.equilibrium(start, CLOSING, model.compressed(FIRST_PART * CLOSING))
     assert refused.value.solutions > 0, "the work counts for the headway of the path"

@@ -5,6 +5,8 @@ Mutants: Cauchy for nominal pressure, swapped coefficients, no friction, the wro
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -20,6 +22,7 @@ from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mesh.quadratic import quadratic_mesh
 
@@ -57,12 +60,12 @@ class Press:
         for level in np.linspace(start, height, steps + 1)[1:]:
             place = self.contact.place.copy()
             place[-1] = level
-            moved = self.contact.moved(place, self.scale.applied(self.contact.pair))
+            moved = replace(self.contact, place=place, pair=self.scale.applied(self.contact.pair))
             solved = self.problem.solve(self.unknowns, interfaces=[moved])
             self.unknowns = solved.unknowns
             displacement = self.displacement
             self.state = moved.at(displacement)
-            self.contact, self.scale = moved.committed(displacement), self.scale.seen(self.state.pressure.max())
+            self.contact, self.scale = accepted(moved, displacement), self.scale.seen(self.state.pressure.max())
         return self
 
     @property

@@ -6,6 +6,8 @@ the inverse of the relaxation modulus for the creep compliance.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -33,6 +35,7 @@ from tactsim.fem.paths.time_steps import TimeControl, TimeMarcher
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mesh.quadratic import quadratic_mesh
 from tactsim.relaxation import Relaxation
@@ -91,7 +94,7 @@ class Block:
         load_control = None if force is None else PrescribedForce((-np.eye(self.dim)[-1],), force)
         if height is not None:
             self.place = height * np.eye(self.dim)[-1]
-        contact = self.contact.moved(self.place, self.scale.applied(self.contact.pair))
+        contact = replace(self.contact, place=self.place, pair=self.scale.applied(self.contact.pair))
         rigid_displacement = 0.0 if force is None else 1e-8
         relaxation = self.variables.relaxation_step(time_step)
         solved = self.problem.solve(
@@ -104,8 +107,8 @@ class Block:
         self.place = self.place - solved.rigid_displacement * np.eye(self.dim)[-1]
         self._accept(solved, time_step)
         displacement = self.surface.points.interpolate(self.space.split(self.unknowns)[0])
-        moved = contact.moved(self.place, contact.pair)
-        self.contact, self.scale = moved.committed(displacement), self.scale.seen(moved.at(displacement).pressure.max())
+        moved = replace(contact, place=self.place)
+        self.contact, self.scale = accepted(moved, displacement), self.scale.seen(moved.at(displacement).pressure.max())
         return -self.surface.total(moved.at(displacement).traction)[-1] if force is None else self.place[-1]
 
     def _accept(self, solved, time_step):

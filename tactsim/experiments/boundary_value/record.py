@@ -16,7 +16,13 @@ from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces.run import Course
 from tactsim.mechanics.models.loaded_body import LoadedBody
 from tactsim.mechanics.outcome.contact_history import LAST
-from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.contact_record import (
+    ERROR_IN_TIME,
+    ContactRecord,
+    FollowedPath,
+    penetration_allowed,
+    solver_report,
+)
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
 from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
 from tactsim.results.quantity import Quantity
@@ -78,13 +84,22 @@ def boundary_value_course(problem: BoundaryValueSetup) -> Course:
     return Course(steps, record.findings, setup_is_timed=True)
 
 
+def _time_reached(step: StepRecord) -> str:
+    """The time of a step, in words."""
+    return format_quantity(step.values["time"], "s")
+
+
 class BoundaryValueRecord(ContactRecord[LoadedBody]):
     """Collects the accepted states of a problem."""
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
         material, size = problem.material, posed.size
         super().__init__(
-            posed.model, path, tolerance=problem.largest_penetration(size), stiffest=3 * material.shear_modulus / size
+            posed.model,
+            path,
+            tolerance=problem.largest_penetration(size),
+            stiffest=3 * material.shear_modulus / size,
+            reached=_time_reached,
         )
         self.problem, self._probes, self._mirrors = problem, probes, posed.domain.mirrors
 
@@ -96,7 +111,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             "time": state.time,
             **self._probes.values(state),
             "max_penetration": max([0.0, *gaps]),
-            **self.body_values(state.contact),
+            **self.quality.values(self.model.body, state.contact),
         }
 
     def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
@@ -135,7 +150,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         if mirrors := tuple(self._mirrors):
             assumptions.append(f"symmetry about {', '.join(mirrors)}: forces, energy and volume are those of the part computed")
         if self.problem.contacts:
-            assumptions.append(self.penetration_allowed())
+            assumptions.append(penetration_allowed(self.tolerance))
         if self.problem.material.relaxation is not None:
             assumptions.append(ERROR_IN_TIME.format(self.problem.time.tolerance))
         return assumptions
@@ -144,14 +159,10 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         """Warnings about volumes and ellipticity."""
         return [*super().warnings(), *interpreted_warnings({"material": self.problem.material})]
 
-    def reached(self, step: StepRecord) -> str:
-        """The time of a step."""
-        return format_quantity(step.values["time"], "s")
-
     def scene(self) -> BoundaryValueScene:
         """What the figure reads."""
         return BoundaryValueScene(
             dimension=self.problem.dimension,
             asked={name: one.unit for name, one in self.problem.asked.items()},
-            solver=self.solver_report(),
+            solver=solver_report(self),
         )

@@ -23,7 +23,13 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.block_source import SourcedBlock
 from tactsim.mechanics.outcome.contact_history import LAST
-from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, UNPRINTED, ContactRecord
+from tactsim.mechanics.outcome.contact_record import (
+    ERROR_IN_TIME,
+    UNPRINTED,
+    ContactRecord,
+    penetration_allowed,
+    solver_report,
+)
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Status, StepRecord
@@ -31,12 +37,22 @@ from tactsim.sensors.matrix_readout import MatrixReading
 from tactsim.units import format_quantity
 
 
+def _closing_reached(step: StepRecord) -> str:
+    """How far the jaws have closed in a step, in words."""
+    return f"a closing of {format_quantity(step.values['displacement'], 'm')} per jaw"
+
+
 class GraspRecord(ContactRecord[GraspModel]):
     """Collects the accepted steps of a grasp, with what the taxels of both jaws read."""
 
     def __init__(self, experiment: GraspSetup, model: GraspModel, sourced: SourcedBlock, path: TimedPath):
         super().__init__(
-            model, path, tolerance=experiment.tolerance, stiffest=stiffest_block(experiment), finer=finer(experiment.mesh.kind)
+            model,
+            path,
+            tolerance=experiment.tolerance,
+            stiffest=stiffest_block(experiment),
+            finer=finer(experiment.mesh.kind),
+            reached=_closing_reached,
         )
         self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
@@ -60,7 +76,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             values[f"gap_force_{side}"] = float(reading.taxels.gaps[2])
             values[f"outside_force_{side}"] = float(reading.taxels.outside[2])
         values["max_penetration"] = deepest_penetration(self.model, state.contact)
-        values |= self.body_values(state.contact)
+        values |= self.quality.values(self.model.body, state.contact)
         values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
         if max(layout.rows, layout.columns) <= MOST_COLUMNS:
             for side, reading in readings.items():
@@ -133,7 +149,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
         assumptions += smaller_elements(block)
-        assumptions.append(self.penetration_allowed())
+        assumptions.append(penetration_allowed(experiment.tolerance))
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
         if experiment.relaxes:
@@ -152,10 +168,6 @@ class GraspRecord(ContactRecord[GraspModel]):
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
         return [*warnings, *doubts(self.experiment), *super().warnings()]
 
-    def reached(self, step: StepRecord) -> str:
-        """How far the jaws have closed in a step."""
-        return f"a closing of {format_quantity(step.values['displacement'], 'm')} per jaw"
-
     def _asymmetry(self) -> float | None:
         """How far the last forces are from their mirror images, None if the grasp is not its own."""
         axes = mirror_axes(self.experiment)
@@ -171,7 +183,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             jaws={side: experiment.jaw(side) for side in JAWS},
             jaw_places=self._places(),
             matrix=experiment.matrix,
-            solver=self.solver_report(),
+            solver=solver_report(self),
             mesh=MeshReport(
                 content=self._sourced.content,
                 origin=self._sourced.origin,

@@ -111,8 +111,8 @@ class DisplacementPath:
         posed = setup.posed()
         if touched and not self._drive.stops_at_touch and posed.inner_sensor is not None:
             place = state.contact.contacts[0].place + recess * posed.axis
-            sensor = self.model.contact(posed.inner_sensor, setup.contact, place)
-            yield from self.follow(self.model.with_contact(state.contact, sensor), None, adapted)
+            with_sensor = self.model.with_body(state.contact, posed.inner_sensor, setup.contact, place)
+            yield from self.follow(with_sensor, None, adapted)
 
     def follow(
         self, state: ContactEquilibrium, event: Event[ContactEquilibrium] | None, adapted: Adapted
@@ -128,7 +128,7 @@ class DisplacementPath:
         first, more, headway = control.first, True, Headway(state.load, target, control.unit)
         while more:
             more, before = False, state.load
-            follower = PathFollower(self.model.advance, replace(control, first=first))
+            follower = PathFollower(self.model.equilibrium, replace(control, first=first))
             for reached, happened in follower.follow(state, target, event, headway=headway):
                 first, before = max(control.first, RESTART * (reached.load - before)), reached.load
                 self.rejected += follower.rejected

@@ -6,8 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
-import numpy as np
-
 from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
@@ -17,7 +15,14 @@ from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.solid_model import SolidModel
 from tactsim.mechanics.outcome.contact_history import LAST
-from tactsim.mechanics.outcome.contact_record import ERROR_IN_TIME, UNPRINTED, ContactRecord, FollowedPath
+from tactsim.mechanics.outcome.contact_record import (
+    ERROR_IN_TIME,
+    UNPRINTED,
+    ContactRecord,
+    FollowedPath,
+    penetration_allowed,
+    solver_report,
+)
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
@@ -57,11 +62,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         self._comparison = None if self._clock is None or self._clock.compare is None else Comparison(setup, self._clock)
 
     def adapted(self, model: PressedModel, split: Refinement) -> None:
-        """Go on with a refined model: a child has left ellipticity where the nearest point of its parent has."""
-        old = model.body.points.pressure_values.T
-        new = np.einsum("ekv,kq->evq", split.barycentric, old)
-        nearest = np.linalg.norm(new[:, :, :, None] - old[None, :, None, :], axis=1).argmin(axis=2)
-        self._unstable = np.take_along_axis(self._unstable[split.parents], nearest, axis=1)
+        """Go on with a refined model."""
+        self.quality.refined(self.model.body, split)
         self.model = model
         self.adaptations += 1
 
@@ -78,7 +80,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "base_force": float(model.base_force(contact.unknowns, state.relaxation)[-1]),
             "max_penetration": max(0.0, *(float(-touch.gap.min()) for touch in touches)),
             "max_pressure": max(float(touch.pressure.max()) for touch in touches),
-            **self.body_values(contact),
+            **self.quality.values(model.body, contact),
         }
         if isinstance(model, SolidModel):
             moment = model.moment(contact.contacts[0], contact.unknowns)
@@ -159,7 +161,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def assumptions(self) -> list[str]:
         """What the thesis does not print and the case chose."""
-        assumptions = [*specimen_assumptions(self.setup), self.penetration_allowed()]
+        assumptions = [*specimen_assumptions(self.setup), penetration_allowed(self.tolerance)]
         if self._drive.stops_at_touch:
             assumptions += energy_assumptions(self.setup)
         if self._clock is not None:
@@ -170,7 +172,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def warnings(self) -> list[str]:
         """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
-        warnings = [*self.quality.warnings(), *self.setup.doubts(), *self.unstable()]
+        warnings = [*super().warnings(), *self.setup.doubts()]
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])
         return warnings
@@ -202,7 +204,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "body": self._posed.body,
             "starting_height": float(self._start.contacts[0].place[-1]),
             "recess": self.setup.recess,
-            "solver": self.solver_report(mesh_adaptations=self.adaptations),
+            "solver": solver_report(self, mesh_adaptations=self.adaptations),
         }
 
 

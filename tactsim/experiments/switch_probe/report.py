@@ -143,7 +143,7 @@ class SwitchProbeReport:
                 height = format_quantity(float(touch.true.contact_height.max()), "m")
                 warnings.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
             if touch.quality is not None:
-                warnings += [f"{where}: {warning}" for warning in touch.quality.warnings()]
+                warnings += [f"{where}: {warning}" for warning in touch.quality.warnings(touch.states)]
             if touch.saturated:
                 warnings.append(f"{where}: {touch.saturated} samples were outside of the converter's range")
         materials = {f"tissue {tissue.name}": tissue.material for tissue in setup.tissues}

@@ -15,6 +15,7 @@ from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Equilibrium, Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
+from tactsim.mechanics.contact.contact_steps import accepted, augmented, begun_from, expected, grown, held
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.snap_through import after_snap
 
@@ -146,7 +147,7 @@ def _equilibrium(
     """
     regularisation, iterations, before = state.regularisation, 0, state.contacts
     if regularisation.augments:
-        before = tuple(contact.expected(load - state.load) for contact in before)
+        before = tuple(expected(contact, load - state.load) for contact in before)
     coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
@@ -171,15 +172,15 @@ def _equilibrium(
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
         if excess <= 1 and not coarse:
             both = zip(contacts, displacements, state.contacts, strict=True)
-            committed = tuple(contact.committed(d).grown(start, load - state.load) for contact, d, start in both)
+            grown_contacts = tuple(grown(accepted(contact, d), start, load - state.load) for contact, d, start in both)
             return ContactEquilibrium(
-                load, solved.unknowns, iterations, solved.history[-1], committed, regularisation, solved.kinematics
+                load, solved.unknowns, iterations, solved.history[-1], grown_contacts, regularisation, solved.kinematics
             )
         if excess <= 1:
             coarse = 0.0
         if regularisation.augments:
             share = AVERAGED if overshot and attempt >= UNAVERAGED else 1.0
-            before = tuple(old.augmented(result, share) for old, result in zip(before, results, strict=True))
+            before = tuple(augmented(old, result, share) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
     limit = regularisation.tolerance
     raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {limit:.2e} m", solutions=iterations)
@@ -201,7 +202,7 @@ def _solved(
     def warm_started() -> list[PosedContact]:
         """The contacts with the forces that belong to the guess."""
         moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
-        return [contact.warm_started(contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
+        return [begun_from(contact, contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
 
     def solve(interfaces: Sequence[PosedContact]) -> Equilibrium:
         """From the guess, with what acts."""
@@ -224,8 +225,7 @@ def _solved(
             if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
         moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
-        held = [contact.holding(move) for contact, move in zip(contacts, moves, strict=True)]
-        between = solve(held)
+        between = solve([held(contact, move) for contact, move in zip(contacts, moves, strict=True)])
         guess, rigid_displacement = between.unknowns, between.rigid_displacement
         begun = warm_started()
     raise AssertionError("the last round returns or raises")
@@ -236,6 +236,6 @@ def _moved(
 ) -> list[PosedContact]:
     """The contacts with their bodies moved on by ``distance`` in m."""
     return [
-        contact.moved(contact.place + distance * direction, regularisation.applied(contact.pair, contact.state))
+        replace(contact, place=contact.place + distance * direction, pair=regularisation.applied(contact.pair, contact.state))
         for contact, direction in zip(contacts, directions, strict=True)
     ]

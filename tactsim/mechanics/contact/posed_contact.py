@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,58 +37,6 @@ class PosedContact:
         """A pair whose surfaces have not met yet."""
         points = reference - place[:, None]
         return cls(surface, reference, pair, place, ContactState.untouched(points, pair.body.signed_distance(points)[1]))
-
-    def moved(self, place: Array, pair: ContactPair) -> PosedContact:
-        """The same history with the body at another place and another regularisation."""
-        return replace(self, place=place, pair=pair)
-
-    def committed(self, displacement: Array) -> PosedContact:
-        """The pair after a step was accepted at displacements (d, n) of the points."""
-        return replace(self, state=self.at(displacement).commit(self.state, self.pair), begin=None)
-
-    def grown(self, start: PosedContact, distance: float) -> PosedContact:
-        """The pair after a step from ``start`` along ``distance`` in m, with the growth of its forces."""
-        if distance == 0.0:
-            return replace(self, growth=None, grown_over=0.0)
-        pressure, tangential = self.state.pressure - start.state.pressure, self.state.tangential - start.state.tangential
-        return replace(self, growth=ContactIterate(pressure / distance, tangential / distance), grown_over=distance)
-
-    def expected(self, distance: float) -> PosedContact:
-        """The pair with the multipliers that it should have further on by ``distance`` in m."""
-        pressure, tangential = self.state.pressure, self.state.tangential
-        if self.growth is not None:
-            pressure = np.maximum(0.0, pressure + distance * self.growth.pressure)
-            tangential = np.where(pressure > 0, tangential + distance * self.growth.tangential, 0.0)
-        return replace(self, state=replace(self.state, pressure=pressure, tangential=tangential, multiplier=pressure))
-
-    def warm_started(self, now: ContactTraction) -> PosedContact:
-        """The pair for a solution whose first iterate has these forces."""
-        return replace(self, begin=now.iterate())
-
-    def holding(self, displacement: Array) -> PosedContact:
-        """The pair with its forces and limits of friction at displacements (d, n) of the points: Newton starts from the forces,
-        the limits stay."""
-        now = self.at(displacement)
-        return replace(self.warm_started(now), pair=self.pair.with_held_limit(now.pressure))
-
-    def augmented(self, now: ContactTraction, share: float = 1.0) -> PosedContact:
-        """The pair before the step, with a ``share`` of the forces ``now`` in its multipliers."""
-        return replace(self, state=self.state.augmented(now, share))
-
-    def on(self, surface: SurfaceAssembly, reference: Array, displacement: Array) -> PosedContact:
-        """The same contact on the finer points of another mesh: forces interpolated along the surface, by the undeformed radius.
-
-        ``displacement`` (2, m) are those of the new points at the accepted state.
-        """
-        old = np.argsort(self.reference[0])
-        fields = np.vstack([self.state.pressure, self.state.tangential, self.state.creep + np.zeros_like(self.reference)])
-        pressure, *others = (np.interp(reference[0], self.reference[0, old], values[old]) for values in fields)
-        tangential, creep = np.split(np.array(others), 2)
-        points = reference + displacement - self.place[:, None]
-        normals = self.pair.body.signed_distance(points)[1]
-        traction = tangential - np.einsum("in,in->n", tangential, normals) * normals
-        state = ContactState(pressure, traction, points, normals, creep=creep)
-        return replace(self, surface=surface, reference=reference, state=state)
 
     def gap(self, displacement: Array) -> Array:
         """Gap (n,) in m at displacements (d, n) of the points, negative where they are in the body."""

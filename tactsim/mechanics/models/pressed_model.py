@@ -100,28 +100,15 @@ class PressedModel(ABC):
     def start(self, body: RigidBody, place: Array, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
         """The undeformed tissue under a body with its reference point at ``place`` (d,) in m."""
         unknowns = np.zeros(self.space.size)
-        contacts = (self.contact(body, law, place),)
+        contacts = (PosedContact.apart(self.surface, self.reference, ContactPair(body, law), place),)
         return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
 
-    def contact(self, body: RigidBody, law: ContactLaw, place: Array) -> PosedContact:
-        """A body above the tissue that has not touched it."""
-        return PosedContact.apart(self.surface, self.reference, ContactPair(body, law), place)
-
-    def with_contact(self, state: ContactEquilibrium, contact: PosedContact) -> ContactEquilibrium:
-        """A state with one more body, which starts from the points where the tissue is now."""
-        points = self.reference + self.displacement(state.unknowns) - contact.place[:, None]
-        untouched = ContactState.untouched(points, contact.pair.body.signed_distance(points)[1])
-        return replace(state, contacts=(*state.contacts, replace(contact, state=untouched)))
-
-    def advance(self, state: ContactEquilibrium, load: float, guess: Array) -> ContactEquilibrium:
-        """Equilibrium with the bodies moved down by ``load`` in m, their penetration below the tolerance.
-
-        Raises
-        ------
-        ConvergenceError
-            If Newton fails, or no penalty keeps the tissue out of the bodies.
-        """
-        return self.equilibrium(state, load, guess)
+    def with_body(self, state: ContactEquilibrium, body: RigidBody, law: ContactLaw, place: Array) -> ContactEquilibrium:
+        """A state with one more body at ``place`` (d,) in m, clear of where the tissue is now."""
+        points = self.reference + self.displacement(state.unknowns) - place[:, None]
+        untouched = ContactState.untouched(points, body.signed_distance(points)[1])
+        contact = PosedContact(self.surface, self.reference, ContactPair(body, law), place, untouched)
+        return replace(state, contacts=(*state.contacts, contact))
 
     def equilibrium(
         self,
@@ -133,9 +120,18 @@ class PressedModel(ABC):
         relaxation: RelaxationStep | None = None,
         loads: Sequence[FollowerLoad] = (),
     ) -> ContactEquilibrium:
-        """As ``advance``; with a ``force`` in N the bodies move on from ``load`` until they press so hard.
+        """Equilibrium with the bodies moved down by ``load`` in m, their penetration below the tolerance.
 
-        ``relaxation`` holds the coefficients of the time step of materials that relax, ``loads`` what else acts on the tissue.
+        Parameters
+        ----------
+        force : in N; with it the bodies move on from ``load`` until they press so hard
+        relaxation : coefficients of the time step of materials that relax
+        loads : what else acts on the tissue
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton fails, or no penalty keeps the tissue out of the bodies.
         """
         directions = (self.down,) * len(state.contacts)
         return guaranteed_equilibrium(self.problem, state, load, guess, Action(directions, force, relaxation, loads))

@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.fem.assembly.space import Measure
 from tactsim.interfaces import Material
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_steps import transferred
 from tactsim.mechanics.fields.point_values import cauchy_stress
 from tactsim.mechanics.fields.section_fields import section_frame
 from tactsim.mechanics.models.pressed_model import PressedModel
@@ -69,7 +70,7 @@ class SectionModel(PressedModel):
         model = SectionModel(split.mesh, self.body.materials, base=self.base, top=top, measure=self.space.measure)
         unknowns = np.concatenate([(split.nodal @ u).ravel(), split.corner @ p])
         displacement = model.displacement(unknowns)
-        contacts = tuple(contact.on(model.surface, model.reference, displacement) for contact in state.contacts)
+        contacts = tuple(transferred(contact, model.surface, model.reference, displacement) for contact in state.contacts)
         kinematics = model.body.kinematics(unknowns)
         return model, replace(state, unknowns=unknowns, contacts=contacts, kinematics=kinematics), split
 

@@ -1,45 +1,95 @@
-"""How good the accepted states of a run with contact are: what penetration costs, and how volumes are kept."""
+"""How good the accepted states of a run with contact are: what penetration costs, how volumes are kept, where material fails."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+import numpy as np
+
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.penetration_effect import PenetrationEffect
+from tactsim.mechanics.fields.ellipticity import elliptic_in
 from tactsim.mechanics.fields.volume_ratios import VolumeRatios
+from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
+from tactsim.units import format_quantity
+
+FINER = "take smaller elements"
+"""How most cases make their mesh finer, in their own words."""
+UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
+
+
+def displacement_reached(step: StepRecord) -> str:
+    """How far a step has come, in words."""
+    return f"a displacement of {format_quantity(step.values['displacement'], 'm')}"
 
 
 class ContactQuality:
-    """Follows the accepted states of one run; ``stiffest`` as in ``PenetrationEffect``, ``finer`` says what refines the mesh."""
+    """Follows the accepted states of one run.
 
-    def __init__(self, stiffest: float = math.inf, *, finer: str = "take smaller elements"):
-        self._effect, self._volumes = PenetrationEffect(stiffest), VolumeRatios(finer)
+    Parameters
+    ----------
+    stiffest : as in ``PenetrationEffect``
+    finer : what makes the mesh finer, in the words of the case
+    reached : how far a step has come, in words
+    """
+
+    def __init__(
+        self,
+        stiffest: float = math.inf,
+        *,
+        finer: str = FINER,
+        reached: Callable[[StepRecord], str] = displacement_reached,
+    ):
+        self._effect, self._volumes, self._reached = PenetrationEffect(stiffest), VolumeRatios(finer), reached
+        self._unstable: Array | None = None
+
+    def refined(self, before: Body, split: Refinement) -> None:
+        """Go on with a finer mesh: a child has left ellipticity where the nearest point of its parent has."""
+        old = before.points.pressure_values.T
+        new = np.einsum("ekv,kq->evq", split.barycentric, old)
+        nearest = np.linalg.norm(new[:, :, :, None] - old[None, :, None, :], axis=1).argmin(axis=2)
+        if self._unstable is not None:
+            self._unstable = np.take_along_axis(self._unstable[split.parents], nearest, axis=1)
 
     def values(self, body: Body, state: ContactEquilibrium) -> dict[str, float]:
-        """History values of a state."""
+        """History values of a state: how volumes are kept, what has left ellipticity until now, what penetration costs."""
+        unstable, weights = ~elliptic_in(body, state.kinematics), body.points.weights
+        self._unstable = unstable if self._unstable is None else self._unstable | unstable
         return {
+            "min_volume_ratio": float(state.kinematics.J.min()),
+            "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
             "penetration_force_error": self._effect.share(state),
             "poor_volume_fraction": self._volumes.poor_share(body, state),
         }
 
     def quantities(self, steps: Sequence[StepRecord]) -> dict[str, Quantity]:
-        """Quantities of the accepted steps."""
-        if not steps:
-            return {}
-        error = steps[-1].values["penetration_force_error"]
+        """Quantities of at least one accepted step."""
+        last = steps[-1].values
+        deepest = max(step.values["max_penetration"] for step in steps)
+        least = min(step.values["min_volume_ratio"] for step in steps)
+        effect = "part of the largest force that the penetration left takes away, estimated, at the last accepted step"
+        poor = "largest part of the volume with local volume ratios off by more than a tenth, any step"
         return {
-            "penetration_force_error": Quantity(
-                error, "1", "part of the largest force that the penetration left takes away, estimated, at the last accepted step"
-            ),
-            "poor_volume_fraction": Quantity(
-                self._volumes.worst, "1", "largest part of the volume with local volume ratios off by more than a tenth, any step"
-            ),
+            "min_volume_ratio": Quantity(least, "1", "least local volume ratio in any step"),
+            "max_penetration": Quantity(deepest, "m", "largest penetration at any surface point in any step"),
+            "unstable_volume_fraction": Quantity(last["unstable_volume_fraction"], "1", UNSTABLE),
+            "penetration_force_error": Quantity(last["penetration_force_error"], "1", effect),
+            "poor_volume_fraction": Quantity(self._volumes.worst, "1", poor),
         }
 
-    def warnings(self) -> list[str]:
-        """Warnings for the user."""
-        return self._volumes.warnings()
+    def warnings(self, steps: Sequence[StepRecord]) -> list[str]:
+        """Warnings about the accepted steps: volumes that are not kept, and material that left strong ellipticity."""
+        unstable = [step for step in steps if step.values["unstable_volume_fraction"] > 0]
+        if not unstable:
+            return self._volumes.warnings()
+        share = steps[-1].values["unstable_volume_fraction"]
+        return [
+            *self._volumes.warnings(),
+            f"{share:.1%} of the volume left strong ellipticity, first at {self._reached(unstable[0])}: "
+            "there the answer depends on the mesh; take a stable material set",
+        ]

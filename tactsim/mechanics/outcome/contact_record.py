@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import Generic, Protocol, TypeVar
-
-import numpy as np
+from collections.abc import Callable, Sequence
+from typing import Any, Generic, Protocol, TypeVar
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
@@ -15,8 +13,7 @@ from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.interfaces.run import Findings
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.ellipticity import elliptic_in
-from tactsim.mechanics.outcome.contact_quality import ContactQuality
+from tactsim.mechanics.outcome.contact_quality import FINER, ContactQuality, displacement_reached
 from tactsim.mechanics.outcome.success import judged
 from tactsim.mechanics.paths.history_path import TimedState
 from tactsim.results.quantity import Quantity
@@ -26,7 +23,6 @@ from tactsim.units import format_quantity
 
 UNPRINTED = "(from the case; the thesis prints none)"
 """Said of a size that the case chose, or its default, where the thesis leaves it open."""
-UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
 ERROR_IN_TIME = "estimated error of the stress in time below {:g} of its size"
 """Assumption of a path in time, by its tolerance."""
 
@@ -61,8 +57,7 @@ class ContactRecord(ABC, Generic[Model]):
     model : on which the states are
     path : through them
     tolerance : largest penetration in m
-    stiffest : as in `PenetrationEffect`
-    finer : what makes the mesh finer, in the words of the case
+    stiffest, finer, reached : as in `ContactQuality`
     """
 
     def __init__(
@@ -72,14 +67,14 @@ class ContactRecord(ABC, Generic[Model]):
         *,
         tolerance: float,
         stiffest: float = math.inf,
-        finer: str = "take smaller elements",
+        finer: str = FINER,
+        reached: Callable[[StepRecord], str] = displacement_reached,
     ):
         self.model, self.path, self.tolerance = model, path, tolerance
         self.steps: list[StepRecord] = []
         self.event: StepRecord | None = None
         """The step at which what the run looks for happened; None if it did not."""
-        self.quality = ContactQuality(stiffest, finer=finer)
-        self._unstable = np.zeros(model.body.points.weights.shape, bool)
+        self.quality = ContactQuality(stiffest, finer=finer, reached=reached)
         self._kept: dict[str, tuple[Model, TimedState]] = {}
 
     def accept(self, state: TimedState, *, event: bool = False) -> StepRecord:
@@ -106,16 +101,6 @@ class ContactRecord(ABC, Generic[Model]):
     @abstractmethod
     def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
         """Names under which the fields of a state are kept, each until another state takes it."""
-
-    def body_values(self, state: ContactEquilibrium) -> dict[str, float]:
-        """How far the material has left ellipticity at any state until now, how volumes are kept, and what penetration costs."""
-        self._unstable |= ~elliptic_in(self.model.body, state.kinematics)
-        weights = self.model.body.points.weights
-        return {
-            "min_volume_ratio": float(state.kinematics.J.min()),
-            "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
-            **self.quality.values(self.model.body, state),
-        }
 
     def findings(self) -> Findings:
         """What everything that was accepted says; no success if a reported state, the event or the last one, is none."""
@@ -145,40 +130,13 @@ class ContactRecord(ABC, Generic[Model]):
     def assumptions(self) -> list[str]:
         """What was chosen."""
 
-    def penetration_allowed(self) -> str:
-        """How closely contact is kept."""
-        return f"penetration below {format_quantity(self.tolerance, 'm')}, elastic slip below ten times that"
-
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step: those of every run with contact."""
-        deepest = max(step.values["max_penetration"] for step in self.steps)
-        share = self.steps[-1].values["unstable_volume_fraction"]
-        least = min(step.values["min_volume_ratio"] for step in self.steps)
-        return {
-            "min_volume_ratio": Quantity(least, "1", "least local volume ratio in any step"),
-            "max_penetration": Quantity(deepest, "m", "largest penetration at any surface point in any step"),
-            "unstable_volume_fraction": Quantity(share, "1", UNSTABLE),
-            **self.quality.quantities(self.steps),
-        }
+        return self.quality.quantities(self.steps)
 
     def warnings(self) -> list[str]:
         """Warnings about at least one step."""
-        return [*self.quality.warnings(), *self.unstable()]
-
-    def reached(self, step: StepRecord) -> str:
-        """How far a step has come, in words."""
-        return f"a displacement of {format_quantity(step.values['displacement'], 'm')}"
-
-    def unstable(self) -> list[str]:
-        """That material left strong ellipticity, if it did."""
-        share = self.steps[-1].values["unstable_volume_fraction"] if self.steps else 0.0
-        if share == 0:
-            return []
-        first = next(step for step in self.steps if step.values["unstable_volume_fraction"] > 0)
-        return [
-            f"{share:.1%} of the volume left strong ellipticity, first at {self.reached(first)}: "
-            "there the answer depends on the mesh; take a stable material set"
-        ]
+        return self.quality.warnings(self.steps)
 
     def _frames(self) -> list[FieldFrame]:
         """Fields of the kept states, by time, each state once."""
@@ -196,14 +154,20 @@ class ContactRecord(ABC, Generic[Model]):
     def scene(self) -> Scene:
         """What figures and other stages read beside the quantities."""
 
-    def solver_report(self, *, mesh_adaptations: int = 0) -> SolverReport:
-        """What the solution took until now."""
-        space = self.model.space
-        return SolverReport(
-            unknowns=space.size,
-            elements=len(space.elements),
-            linear_solver=self.model.problem.solver.name,
-            rejected_steps=self.path.rejected,
-            newton_iterations=sum(step.newton_iterations for step in self.steps),
-            mesh_adaptations=mesh_adaptations,
-        )
+
+def penetration_allowed(tolerance: float) -> str:
+    """How closely contact is kept, by the largest penetration in m."""
+    return f"penetration below {format_quantity(tolerance, 'm')}, elastic slip below ten times that"
+
+
+def solver_report(record: ContactRecord[Any], *, mesh_adaptations: int = 0) -> SolverReport:
+    """What the solution took until now."""
+    space = record.model.space
+    return SolverReport(
+        unknowns=space.size,
+        elements=len(space.elements),
+        linear_solver=record.model.problem.solver.name,
+        rejected_steps=record.path.rejected,
+        newton_iterations=sum(step.newton_iterations for step in record.steps),
+        mesh_adaptations=mesh_adaptations,
+    )

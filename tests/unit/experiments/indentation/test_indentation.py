@@ -116,7 +116,7 @@ def test_refined_state_is_the_same_state():
     assert len(finer.mesh.elements) > len(model.mesh.elements)
     np.testing.assert_allclose(finer.base_force(same.unknowns), model.base_force(state.unknowns), rtol=0.02)
     assert finer.highest(same.unknowns, 1.5e-3) == pytest.approx(model.highest(state.unknowns, 1.5e-3), abs=1e-15)
-    solved = finer.advance(same, same.load, same.unknowns)
+    solved = finer.equilibrium(same, same.load, same.unknowns)
     assert finer.base_force(solved.unknowns)[1] == pytest.approx(model.base_force(state.unknowns)[1], rel=0.02)
 
 
