@@ -42,6 +42,11 @@ def check_environment(variables: Mapping[str, str], folder: Path) -> None:
             )
 
 
+def own_cores() -> list[int]:
+    """Numbers of the cores that this process may use; none where the system does not say."""
+    return sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
+
+
 def usable_cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """How many cores this process may use."""
+    return len(own_cores()) or os.cpu_count() or 1

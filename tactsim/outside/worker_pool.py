@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections import deque
 from collections.abc import Hashable, Sequence
@@ -10,7 +11,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import wait
 from typing import Generic, TypeVar
 
-from tactsim.outside.environment import ONE_THREAD
+from tactsim.outside.environment import ONE_THREAD, own_cores, usable_cores
 from tactsim.outside.processes import Worker
 
 Key = TypeVar("Key", bound=Hashable)
@@ -28,7 +29,8 @@ class Answer(Generic[Key]):
 class WorkerPool(Generic[Key]):
     """Starts workers of one thread each as requests come, ``count`` at most.
 
-    The first begins at once, the others ``patience`` in s later: what it answers meanwhile need not pay for their beginning.
+    The first begins at once, the others ``patience`` in s later: what it answers meanwhile need not pay for their beginning. If
+    there are as many as cores, each keeps to one, with its caches; fewer are left to the system, which knows what else runs.
     """
 
     def __init__(self, module: str, arguments: Sequence[str], count: int, *, patience: float = 0.0):
@@ -37,6 +39,8 @@ class WorkerPool(Generic[Key]):
         self._waiting: deque[tuple[Key, bytes]] = deque()
         self._workers: list[Worker] = []
         self._busy: dict[Worker, Key] = {}
+        self._cores = own_cores() if count == usable_cores() else []
+        self._core: dict[Worker, int] = {}
 
     @property
     def processes(self) -> list[int]:
@@ -88,5 +92,9 @@ class WorkerPool(Generic[Key]):
         worker = Worker(self._module, self._arguments, environment=ONE_THREAD)
         if not self._workers:
             self._begun = time.monotonic()
+        taken = [self._core[other] for other in self._workers if other in self._core]
+        if free := [core for core in self._cores if core not in taken]:
+            self._core[worker] = free[0]
+            os.sched_setaffinity(worker.pid, {free[0]})
         self._workers.append(worker)
         return worker

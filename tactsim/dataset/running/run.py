@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, Outcome
 from tactsim.dataset.sampling.layout import Layout
@@ -28,6 +29,8 @@ FOLD_SAMPLES = 1024
 """The journal is folded into the arrays after so many seconds or samples, whichever is first."""
 LOSSES_IN_A_ROW = 30
 """Lost tasks without any that came back after which the workers themselves must be at fault."""
+SLOWEST, WORTH_A_LINE = 3, 1.0
+"""How many of the slowest samples are named, and the time in s that one of them must have taken."""
 MOST_LOSSES = 3
 """Lost workers after which a sample is marked failed."""
 
@@ -46,6 +49,16 @@ class Tally:
     """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
     again: int = 0
     """How many samples these are in all."""
+    seconds: list[Array] = field(default_factory=list)
+    """Wall times in s of the samples of each block."""
+    slowest: list[tuple[float, int]] = field(default_factory=list)
+    """The longest of them in s, longest first, each with the number of the sample."""
+
+    def timed(self, samples: Array, seconds: Array) -> None:
+        """Notes how long new samples took in s."""
+        self.seconds.append(seconds)
+        new = zip(seconds.tolist(), samples.tolist(), strict=True)
+        self.slowest = sorted([*self.slowest, *new], reverse=True)[:SLOWEST]
 
     def add(self, done: int, reasons: list[str]) -> None:
         """Counts new samples: those that are done, and the reasons of those that failed."""
@@ -66,11 +79,14 @@ class Tally:
         return so_far if left is None else f"{so_far}, {_duration(left)} left"
 
     def summary(self) -> list[str]:
-        """Lines at the end: counts, rate, and failures by reason."""
+        """Lines at the end: counts, rate, the slowest samples, and failures by reason."""
         seconds = time.monotonic() - self.begin
         lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             lines.append(f"{self.before} samples were there before")
+        if self.slowest and self.slowest[0][0] > WORTH_A_LINE:
+            slow = ", ".join(f"{seconds:.3g} s (sample {number})" for seconds, number in self.slowest)
+            lines.append(f"a sample took {np.median(np.concatenate(self.seconds)):.3g} s in the median; the slowest {slow}")
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
@@ -146,6 +162,7 @@ class SweepRun:
         block["code"] = np.full_like(block["code"], self.code)
         self.journal.append(content)
         self.blocks.append(block)
+        self.tally.timed(block["sample"], block["wall_time"])
         failed = block["status"] == FAILED
         self.tally.add(int((block["status"] == DONE).sum()), [str(reason) for reason in block["reason"][failed]])
         waiting = sum(len(block["sample"]) for block in self.blocks)

@@ -266,6 +266,16 @@ def test_progress_reports_rate_time_left_and_reasons() -> None:
     assert lines[2] == "  2 x stopped at # mm"
 
 
+def test_the_slowest_samples_are_named_at_the_end() -> None:
+    tally = Tally(samples=6)
+    tally.timed(np.array([3, 4, 5]), np.array([4.0, 63.0, 5.0]))
+    tally.timed(np.array([0, 1]), np.array([6.0, 31.0]))
+    assert "a sample took 6 s in the median; the slowest 63 s (sample 4), 31 s (sample 1), 6 s (sample 0)" in tally.summary()
+    quick = Tally(samples=2)
+    quick.timed(np.array([0, 1]), np.array([0.1, 0.2]))
+    assert len(quick.summary()) == 1, "of quick ones it says nothing"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Signals) -> None:

@@ -15,7 +15,7 @@ from tactsim.outside.worker_pool import WorkerPool
 class Pretended:
     """A worker that has begun and answers nothing."""
 
-    begun = 0
+    begun, pid = 0, 10**9
 
     def __init__(self, *arguments: object, **options: object):
         type(self).begun += 1
@@ -33,6 +33,7 @@ def test_others_than_the_first_wait_for_what_it_answers_meanwhile(
     clock = [100.0]
     monkeypatch.setattr(Pretended, "begun", 0)
     monkeypatch.setattr(worker_pool, "Worker", Pretended)
+    monkeypatch.setattr(worker_pool, "own_cores", list)
     monkeypatch.setattr(worker_pool.time, "monotonic", lambda: clock[0])
     waited: list[float | None] = []
     monkeypatch.setattr(worker_pool, "wait", lambda busy, seconds: waited.append(seconds) or [])
@@ -46,6 +47,22 @@ def test_others_than_the_first_wait_for_what_it_answers_meanwhile(
         clock[0] += 0.5
         pool.wait(1.0)
         assert Pretended.begun == 2, "no more than there may be"
+
+
+@pytest.mark.parametrize(("count", "kept"), [(2, [4, 7, 4]), (1, []), (3, [])], ids=["as many as cores", "fewer", "more"])
+def test_as_many_workers_as_cores_keep_to_one_each(count: int, kept: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that takes the place of a lost one gets its core."""
+    chosen = []
+    monkeypatch.setattr(worker_pool, "Worker", Pretended)
+    monkeypatch.setattr(worker_pool, "own_cores", lambda: [4, 7])
+    monkeypatch.setattr(worker_pool, "usable_cores", lambda: 2)
+    monkeypatch.setattr(worker_pool.os, "sched_setaffinity", lambda _, cores: chosen.extend(cores))
+    with closing(WorkerPool[int]("module", (), count)) as pool:
+        pool.submit(0, b"")
+        pool.submit(1, b"")
+        pool._workers.pop(0)
+        pool.submit(2, b"")
+    assert chosen == kept
 
 
 def test_a_sweep_has_no_more_processes_than_samples_and_as_many_as_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,7 +26,7 @@ from tactsim.units import format_quantity
 SHOWN_RADII = 2.4
 """Half width of the picture in radii of the body: farther out the tissue is at rest."""
 SENSOR_COLOUR = "#d62728"
-GRID = 700
+GRID = 250
 """Points per direction on which a body's outline is traced."""
 WORDS = 0.22
 """Height of the three lines above the inner sensor, over half the width of the picture."""
