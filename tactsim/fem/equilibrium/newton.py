@@ -22,6 +22,7 @@ from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.fem.solvers.linear import LinearSolver, is_exact, resolved, solved
 from tactsim.fem.solvers.solver_choice import section_solver
+from tactsim.fem.threads import one_vector_thread
 
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
@@ -68,6 +69,7 @@ class Problem:
         self._scales = Scales.of(body)
         self._factored: Factored | None = None
 
+    @one_vector_thread()
     def solve(
         self,
         guess: Array,
@@ -110,12 +112,6 @@ class Problem:
         """What measures how far a state under these forces is from equilibrium; ``relaxation`` as in `solve`."""
         body = self.body if relaxation is None else self.body.with_relaxation(relaxation)
         return Balance(body, self.constraints, forces, self._scales, self.options.tolerance)
-
-    def displacements(
-        self, unknowns: Array, interfaces: Sequence[AnyInterface], load_control: PrescribedForce | None, rigid_displacement: float
-    ) -> list[Array]:
-        """Displacement (d, n) in m of the points of each interface, relative to its rigid displacement under load control."""
-        return point_displacements(self.body, unknowns, interfaces, load_control, rigid_displacement)
 
 
 class _Solution:

@@ -12,6 +12,7 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.fem.assembly.body import Kinematics, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.equilibrium.balance import point_displacements
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Equilibrium, Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
@@ -201,7 +202,7 @@ def _solved(
 
     def warm_started() -> list[PosedContact]:
         """The contacts with the forces that belong to the guess."""
-        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        moves = point_displacements(problem.body, guess, contacts, load_control, rigid_displacement)
         return [begun_from(contact, contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
 
     def solve(interfaces: Sequence[PosedContact]) -> Equilibrium:
@@ -224,7 +225,7 @@ def _solved(
         except ConvergenceError as stalled:
             if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
-        moves = problem.displacements(guess, contacts, load_control, rigid_displacement)
+        moves = point_displacements(problem.body, guess, contacts, load_control, rigid_displacement)
         between = solve([held(contact, move) for contact, move in zip(contacts, moves, strict=True)])
         guess, rigid_displacement = between.unknowns, between.rigid_displacement
         begun = warm_started()
