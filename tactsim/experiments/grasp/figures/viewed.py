@@ -9,11 +9,11 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import shown_change
 from tactsim.interfaces.solid import Solid
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.results import Result
@@ -59,18 +59,13 @@ class ViewedGrasp:
     findings: tuple[str, ...] = BARE_FORCES
 
 
-def has_views(result: Result) -> bool:
-    """Whether a result has taxels."""
-    return "taxel_force_upper" in result.quantities
-
-
 def viewed(result: Result) -> ViewedGrasp:
     """The grasp that a result describes; with a reference, what the taxels read beyond it."""
     scene = result.scene_as(GraspScene)
-    name = "taxel_difference" if "taxel_difference_upper" in result.quantities else "taxel_force"
-    signal, meaning = np.array([result.quantities[f"{name}_{side}"].numbers for side in JAWS]), "force"
-    if name == "taxel_difference":
-        signal, meaning = shown_change(signal)
+    if has_taxels(result, TAXEL_DIFFERENCE):
+        signal, meaning = shown_change(jaws_at_end(result, TAXEL_DIFFERENCE))
+    else:
+        signal, meaning = jaws_at_end(result, TAXEL_FORCE), "force"
     return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(true_bodies(scene)))
 
 
