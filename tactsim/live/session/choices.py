@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -17,7 +17,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.live.sources.recorded import DAMAGE
 from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.localization.estimators.learned import LearnedEstimator
-from tactsim.localization.region import GaussianRegion, OutlinedRegion
+from tactsim.localization.region import GaussianRegion
 from tactsim.outside.text import one_line
 from tactsim.results.quantity import Quantity
 from tactsim.results.reading import read_result
@@ -119,6 +119,5 @@ def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> Estima
         covariance = np.diag(np.array([*quantities["center_deviation"].value, *others], dtype=float) ** 2)
         if (np.diag(covariance)[:3] > 0).all():
             region = GaussianRegion(np.array(shape.center), covariance[:3, :3])
-    if shape.region is not None:
-        region = OutlinedRegion({view: [np.array(line) for line in lines] for view, lines in shape.region.items()})
-    return EstimatedInclusion(shape.kind, shape.center, shape.radius, contrast, covariance, region, shape.line)
+    inclusion = shape.inclusion(contrast, covariance)
+    return replace(inclusion, region=inclusion.region or region)
