@@ -11,13 +11,10 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, jaws_over_time, over_time
-from tactsim.experiments.localization.source import readings_of, stored_grasp
+from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
-
-BEYOND = 1e-3
-"""Closing beyond that of the reference, as a share of the latter, that still counts as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +58,7 @@ class PlainGrasp:
         for other in readings[:-1]:
             check_same(other.block_size, other.layout, readings[-1], "one reference")
         closings, forces = (np.concatenate(parts) for parts in zip(*histories, strict=True))
-        if len(closings) < 2 or closings[0] <= 0 or not (np.diff(closings) > 0).all():
+        if len(closings) < 2 or not (np.diff(closings, prepend=0.0) > 0).all():
             known = ", ".join(format_quantity(float(closing), "m") for closing in closings)
             raise InputError(
                 f"the reference is known at closings of {known}; needed: two or more, rising: a plain grasp closed in "
@@ -79,7 +76,7 @@ class PlainGrasp:
             If a closing lies beyond the last of the reference.
         """
         wanted, most = np.asarray(closing, dtype=float), float(self.closings[-1])
-        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + BEYOND):
+        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + SAME_CLOSING):
             asked = format_quantity(float(wanted.max()), "m")
             raise InputError(
                 f"a sample closes by {asked}, the reference from 0 to {format_quantity(most, 'm')}; "

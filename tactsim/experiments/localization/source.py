@@ -43,6 +43,25 @@ def stored_grasp(folder: str) -> Result:
     return result
 
 
+def computed_grasp(folder: str) -> Grasp:
+    """The grasp that the result in a folder was computed from.
+
+    Raises
+    ------
+    StorageError
+        If there is no result.
+    InputError
+        If it does not keep the case of a grasp that this version can read.
+    """
+    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
+    if experiment.get("kind") != "grasp":
+        raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
+    try:
+        return Grasp.model_validate(experiment)
+    except ValidationError as error:
+        raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
+
+
 def readings_of(result: Result, source: Source = TAXEL_FORCE, *, noise: float, dead: Array | None = None) -> Readings:
     """What the matrices of a stored grasp read at its last accepted step.
 
@@ -99,12 +118,11 @@ def stiffness_ratios(folder: str, closing: float | None) -> tuple[tuple[float, f
     The working strain is the mean one of plain tissue, both jaws closed by ``closing`` in m. Empty if the grasp does not keep the
     case that it was computed from, or its closing is not known.
     """
-    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
-    if experiment.get("kind") != "grasp" or closing is None:
+    if closing is None:
         return ()
     try:
-        grasp = Grasp.model_validate(experiment)
-    except ValidationError:
+        grasp = computed_grasp(folder)
+    except InputError:
         return ()
     tissue, stretch = grasp.block.tissue, 1 - 2 * closing / float(grasp.block.size[2])
     return tuple(
