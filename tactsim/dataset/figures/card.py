@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from tactsim.array import Array
 from tactsim.dataset import load
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, Plot, despined, new_figure, scale_of, styled
 
@@ -35,8 +36,8 @@ def card_figures(store: str | Path) -> dict[str, Plot]:
     if not data.sizes["sample"]:
         return {}
     drawings: dict[str, Plot] = {SPREAD: Plot(lambda: spread(_numbers(data)))}
-    if "taxel_force" in data:
-        drawings[TAXELS] = Plot(lambda: taxels(data["taxel_force"].values[:, -1].mean(axis=0)))
+    if TAXEL_FORCE in data:
+        drawings[TAXELS] = Plot(lambda: taxels(data[TAXEL_FORCE].values[:, -1].mean(axis=0)))
     return drawings
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
@@ -51,7 +52,7 @@ def store_confusion(
     """
     data = _grasps(store, split)
     plain = readings_of(stored_grasp(reference), noise=noise)
-    forces = np.asarray(data["taxel_force"].values, dtype=float)[:, -1]
+    forces = np.asarray(data[TAXEL_FORCE].values, dtype=float)[:, -1]
     if forces.shape[1:] != plain.forces.shape:
         raise InputError(f"the samples have (jaw, row, column) = {forces.shape[1:]}, the reference {plain.forces.shape}")
     _check_closings(data["closing"].values, plain.closing)
@@ -73,7 +74,7 @@ def _grasps(store: str | Path, split: str | None) -> xarray.Dataset:
     data = load(store, split=split, verified=True)
     if not data.sizes["sample"]:
         raise InputError(f"{Path(store).name} has no sample that is done; run the sweep first")
-    missing = [name for name in ("taxel_force", "inclusion_kind", "inclusion_count", "closing") if name not in data]
+    missing = [name for name in (TAXEL_FORCE, "inclusion_kind", "inclusion_count", "closing") if name not in data]
     if missing:
         raise InputError(f"{Path(store).name} has no {missing[0]}; needed: a data set of grasps with taxels")
     return data

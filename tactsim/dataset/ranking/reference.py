@@ -10,14 +10,11 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.experiments.localization.source import readings_of, stored_grasp
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, jaws_over_time, over_time
+from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.results.result import Result
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.units import format_quantity
-
-BEYOND = 1e-3
-"""Closing beyond that of the reference, as a share of the latter, that still counts as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +50,7 @@ class PlainGrasp:
             raise InputError("no reference; needed: the folder of a grasp of the tissue without a lump")
         results = [stored_grasp(folder) for folder in folders]
         readings = [readings_of(result, noise=0.0) for result in results]
-        histories = [_history(result) for result in results]
+        histories = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results]
         if len(folders) > 1:
             histories = [(closings[-1:], forces[-1:]) for closings, forces in histories]
             order = np.argsort([closings[-1] for closings, _ in histories])
@@ -61,7 +58,7 @@ class PlainGrasp:
         for other in readings[:-1]:
             check_same(other.block_size, other.layout, readings[-1], "one reference")
         closings, forces = (np.concatenate(parts) for parts in zip(*histories, strict=True))
-        if len(closings) < 2 or closings[0] <= 0 or not (np.diff(closings) > 0).all():
+        if len(closings) < 2 or not (np.diff(closings, prepend=0.0) > 0).all():
             known = ", ".join(format_quantity(float(closing), "m") for closing in closings)
             raise InputError(
                 f"the reference is known at closings of {known}; needed: two or more, rising: a plain grasp closed in "
@@ -79,7 +76,7 @@ class PlainGrasp:
             If a closing lies beyond the last of the reference.
         """
         wanted, most = np.asarray(closing, dtype=float), float(self.closings[-1])
-        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + BEYOND):
+        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + SAME_CLOSING):
             asked = format_quantity(float(wanted.max()), "m")
             raise InputError(
                 f"a sample closes by {asked}, the reference from 0 to {format_quantity(most, 'm')}; "
@@ -101,13 +98,3 @@ def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str
         raise InputError(f"the block of {whose} measures {measured[0]}, that of the reference {measured[1]}; needed: the same")
     if layout != reference.layout:
         raise InputError(f"the matrix of {whose} is {layout}, that of the reference {reference.layout}; needed: the same")
-
-
-def _history(result: Result) -> tuple[Array, Array]:
-    """Closings (n,) in m and forces (n, jaw, row, column) in N of the steps of a stored grasp."""
-    many = "_history" if len(result.steps) > 1 else ""
-    names = [f"taxel_force_{side}{many}" for side in JAWS]
-    sides = [np.asarray(result.quantities[name].value, dtype=float) for name in names]
-    closings = np.asarray(result.quantities[f"displacement{many}"].value, dtype=float)
-    forces = np.stack(sides, axis=-3)
-    return np.atleast_1d(closings), forces if many else forces[None]

@@ -18,8 +18,8 @@ from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.experiments.localization.source import Source
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import one_line
@@ -80,7 +80,7 @@ class JudgedSamples:
     def references(self) -> Array:
         """What the plain tissue reads (n, jaw, row, column) at each sample's closing, in N; read with noise like the samples."""
         closings = np.array([truth.closing for truth in self.truths])
-        if self.source == "taxel_force":
+        if self.source == TAXEL_FORCE:
             return self.plain.at(closings)
         readout = _readout(self.experiment)
         steps, area = self.experiment.time.steps, self.experiment.matrix.area
@@ -116,7 +116,7 @@ def judged_samples(
     reference: Sequence[str],
     *,
     split: str | Sequence[str] | None = None,
-    source: Source = "read_force",
+    source: Source = READ_FORCE,
     noise: float | None = None,
 ) -> JudgedSamples:
     """The samples of a store, or of one of its parts, that estimators can be judged on.
@@ -140,8 +140,8 @@ def judged_samples(
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
-    electronic = _read_noise(plain, experiment, float(durations.max())) if source == "read_force" else 0.0
-    given = noise if noise is not None else 0.0 if source == "read_force" else ROUNDING_NOISE
+    electronic = _read_noise(plain, experiment, float(durations.max())) if source == READ_FORCE else 0.0
+    given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
     return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)
 
@@ -174,7 +174,7 @@ def _check_store(data: xarray.Dataset, source: Source, name: str, split: str | S
     if not data.sizes["sample"]:
         raise InputError(f"{name} has no sample that is done{part}; run the sweep, or take another split")
     if source not in data:
-        raise InputError(f"{name} has no {source}, its grasps have no readout; give --readings taxel_force")
+        raise InputError(f"{name} has no {source}, its grasps have no readout; give --readings {TAXEL_FORCE}")
     if "inclusion_count" not in data or "inclusion_center" not in data:
         raise InputError(f"{name} has no labels of inclusions; needed: grasps with a lump, as of cases/sweep_lumps.yaml")
     count = data["inclusion_count"].values
@@ -201,7 +201,7 @@ def _truths(data: xarray.Dataset, height: float) -> tuple[Truth, ...]:
 def _readout(experiment: Grasp) -> MatrixReadout:
     pieces = experiment.loading.pieces
     if experiment.readout is None or len(pieces) != 1 or pieces[0].kind != "ramp":
-        raise InputError("read forces need grasps with a readout that close in one ramp; give --readings taxel_force")
+        raise InputError(f"read forces need grasps with a readout that close in one ramp; give --readings {TAXEL_FORCE}")
     return experiment.readout
 
 

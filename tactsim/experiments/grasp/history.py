@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import QUALITY_UNITS
 
@@ -9,6 +10,14 @@ MOST_COLUMNS = 8
 """Rows and columns of a matrix up to which the history has a column for every taxel."""
 MOST_LUMENS = 32
 AXES = "xyz"
+
+
+def taxel_columns(side: str) -> dict[tuple[int, int], str]:
+    """Names in the history of the forces on a jaw's taxels, by row and column counted from 1; of the largest matrix in it."""
+    numbers = range(1, MOST_COLUMNS + 1)
+    return {(row, column): f"{TAXEL_FORCE}_{side}_{row}_{column}" for row in numbers for column in numbers}
+
+
 UNITS: dict[str, str] = {
     "time": "s",
     "displacement": "m",
@@ -20,10 +29,5 @@ UNITS: dict[str, str] = {
     "unstable_volume_fraction": "1",
     **QUALITY_UNITS,
     **{f"lumen_pressure_{number}": "Pa" for number in range(1, MOST_LUMENS + 1)},
-    **{
-        f"taxel_force_{side}_{row}_{column}": "N"
-        for side in JAWS
-        for row in range(1, MOST_COLUMNS + 1)
-        for column in range(1, MOST_COLUMNS + 1)
-    },
+    **{name: "N" for side in JAWS for name in taxel_columns(side).values()},
 }

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal, Self
-
-import numpy as np
+from typing import ClassVar, Literal, Self
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_over_time, over_time
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
 from tactsim.interfaces import Experiment
@@ -46,11 +45,10 @@ class MatrixReadoutRun(Experiment):
             If the stored result is damaged or not that of a grasp.
         """
         stored = read_result(self.grasp, fields=False).result
-        times, forces = _history(stored, self.grasp)
-        scene = _scene(stored, self.grasp)
+        scene, times, forces = _read(stored, self.grasp)
         reading = self.readout.read(times, forces, scene.matrix.area)
         voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
-        true = {name: stored.quantities[name] for side in JAWS for name in (f"taxel_force_{side}", f"taxel_pressure_{side}")}
+        true = {name: stored.quantities[name] for side in JAWS for name in (f"{TAXEL_FORCE}_{side}", f"{TAXEL_PRESSURE}_{side}")}
         return Course.computed(
             Findings(
                 "end of the grasp",
@@ -63,32 +61,18 @@ class MatrixReadoutRun(Experiment):
         )
 
 
-def _scene(stored: Result, folder: str) -> GraspScene:
-    try:
-        return stored.scene_as(GraspScene)
-    except TactsimError as error:
-        raise _incomplete(folder, error) from None
-
-
-def _incomplete(folder: str, error: Exception) -> StorageError:
-    return StorageError(f"{folder}/result.json is not a complete result of a grasp ({error!r:.200}); run the grasp again")
-
-
-def _history(stored: Result, folder: str) -> tuple[Array, Array]:
-    """Times (n,) in s and forces (n, jaw, row, column) in N of a stored grasp."""
+def _read(stored: Result, folder: str) -> tuple[GraspScene, Array, Array]:
+    """The scene of a stored grasp, the times (n,) of its steps in s, and the forces (n, jaw, row, column) of its taxels in N."""
     if stored.kind != "grasp" or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
-    names: Any = [f"taxel_force_{side}" for side in JAWS]
     try:
-        if len(stored.steps) > 1:
-            times = stored.quantities["time_history"].numbers
-            forces = [stored.quantities[f"{name}_history"].numbers for name in names]
-        else:
-            times = np.array([stored.quantities["time"].value], dtype=float)
-            forces = [stored.quantities[name].numbers[None] for name in names]
-    except KeyError as error:
-        raise _incomplete(folder, error) from None
-    return times, np.stack(forces, axis=1)
+        scene, times, forces = stored.scene_as(GraspScene), over_time(stored, "time"), jaws_over_time(stored, TAXEL_FORCE)
+        if not len(times) == len(forces) == len(stored.steps):
+            raise InputError(f"{len(stored.steps)} steps, {len(times)} times, {len(forces)} forces of every taxel")
+    except TactsimError as error:
+        what = f"{folder}/result.json is not a complete result of a grasp"
+        raise StorageError(f"{what} ({error!r:.200}); run the grasp again") from None
+    return scene, times, forces
 
 
 def _unfinished(stored: Result) -> tuple[str, ...]:

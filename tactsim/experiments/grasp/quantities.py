@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.mechanics.outcome.contact_history import LAST
@@ -29,11 +30,13 @@ def final_quantities(values: Values, readings: dict[str, JawReading], experiment
         of = f"of the {side} jaw{LAST}"
         quantities |= {
             f"jaw_force_{side}": Quantity(reading.force.tolist(), "N", f"force (x, y, z) of the tissue on the {side} jaw" + LAST),
-            f"taxel_force_{side}": Quantity(normal.tolist(), "N", f"force pressing on each taxel {of}; {BY_TAXEL}"),
+            f"{TAXEL_FORCE}_{side}": Quantity(normal.tolist(), "N", f"force pressing on each taxel {of}; {BY_TAXEL}"),
             f"taxel_shear_{side}": Quantity(
                 np.stack([x, y], axis=-1).tolist(), "N", f"force (x, y) along the face on each taxel {of}; {BY_TAXEL}"
             ),
-            f"taxel_pressure_{side}": Quantity((normal / area).tolist(), "Pa", f"force over area of each taxel {of}; {BY_TAXEL}"),
+            f"{TAXEL_PRESSURE}_{side}": Quantity(
+                (normal / area).tolist(), "Pa", f"force over area of each taxel {of}; {BY_TAXEL}"
+            ),
             f"gap_force_{side}": Quantity(float(reading.taxels.gaps[2]), "N", f"force pressing between the taxels {of}"),
             f"outside_force_{side}": Quantity(float(reading.taxels.outside[2]), "N", f"force pressing beside the matrix {of}"),
         }
@@ -62,7 +65,7 @@ def history_quantities(values: Values, readings: Sequence[dict[str, JawReading]]
     for side in readings[0]:
         forces = [reading[side].taxels.taxels[2].tolist() for reading in readings]
         text = f"force pressing on each taxel of the {side} jaw, [time]{BY_TAXEL}"
-        histories[f"taxel_force_{side}_history"] = Quantity(forces, "N", text)
+        histories[f"{TAXEL_FORCE}_{side}_history"] = Quantity(forces, "N", text)
     if experiment.lumens:
         pressures = [[step[f"lumen_pressure_{number}"] for number in experiment.lumens] for step in values]
         histories["lumen_pressure_history"] = Quantity(pressures, "Pa", "pressure in each lumen, [time][lumen]")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS
+from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS, taxel_columns
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.path import stiffest_block
 from tactsim.experiments.grasp.quantities import final_quantities, history_quantities
@@ -80,8 +80,9 @@ class GraspRecord(ContactRecord[GraspModel]):
         values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
         if max(layout.rows, layout.columns) <= MOST_COLUMNS:
             for side, reading in readings.items():
+                names = taxel_columns(side)
                 for (row, column), force in np.ndenumerate(reading.taxels.taxels[2]):
-                    values[f"taxel_force_{side}_{row + 1}_{column + 1}"] = float(force)
+                    values[names[row + 1, column + 1]] = float(force)
         return values
 
     def kept_as(self, state: TimedState, event: bool) -> list[str]:

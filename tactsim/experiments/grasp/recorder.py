@@ -8,12 +8,12 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.recording import history
 from tactsim.interfaces import Experiment, Inclusion, Recorder
 from tactsim.interfaces.recording import Values
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.registry import kinds
 from tactsim.results.result import Result
@@ -33,8 +33,8 @@ PER_SAMPLE = {
     "closing": ("m", "largest closing of each jaw from first touch; NaN if a force is prescribed"),
 }
 TAXELS = {
-    "taxel_force": ("N", "force pressing on each taxel, without noise"),
-    "taxel_pressure": ("Pa", "force over area of each taxel, without noise"),
+    TAXEL_FORCE: ("N", "force pressing on each taxel, without noise"),
+    TAXEL_PRESSURE: ("Pa", "force over area of each taxel, without noise"),
 }
 BESIDE = {
     "gap_force": ("N", "force between the taxels of each jaw, at the end"),
@@ -116,21 +116,18 @@ class GraspRecorder(Recorder):
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
         times, columns = history(result)
         at = self.settings.stored_times(float(times[-1]))
-        force = np.stack([_taxel_history(result, side) for side in JAWS], axis=1)
+        force = jaws_over_time(result, TAXEL_FORCE)
         if len(force) < len(times):
             force = np.concatenate([np.zeros_like(force[:1]), force])
         taxels = _interpolated(at, times, force)
-        readings = {"time_s": at, "taxel_force": taxels, "taxel_pressure": taxels / experiment.matrix.area}
+        readings = {"time_s": at, TAXEL_FORCE: taxels, TAXEL_PRESSURE: taxels / experiment.matrix.area}
         readings |= {name: np.interp(at, times, columns[name]) for name in MOTION}
-        readings |= {name: np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float) for name in BESIDE}
+        readings |= {name: jaws_at_end(result, name) for name in BESIDE}
         if experiment.readout is not None:
-            quantities = result.quantities
-            sample = latest(np.asarray(quantities["readout_time"].value), at)
-            for name in ("voltage", "read_force"):
-                sides = [np.asarray(quantities[f"{name}_{side}_history"].value) for side in JAWS]
-                readings[name] = np.stack(sides, axis=1)[sample]
+            sample = latest(result.quantities["readout_time"].numbers, at)
+            readings |= {name: jaws_over_time(result, name)[sample] for name in (VOLTAGE, READ_FORCE)}
             clean = experiment.readout.quiet.read(times, force, experiment.matrix.area)
-            readings |= {f"voltage{CLEAN}": clean.filtered[sample], f"read_force{CLEAN}": clean.force[sample]}
+            readings |= {f"{VOLTAGE}{CLEAN}": clean.filtered[sample], f"{READ_FORCE}{CLEAN}": clean.force[sample]}
         return readings
 
     def describe(self) -> str:
@@ -140,12 +137,6 @@ class GraspRecorder(Recorder):
             "strain, nearly or exactly incompressible tissue, unilateral contact with Coulomb friction, by finite elements. "
             "Row 1 is nearest the front (smallest y), column 1 has the smallest x, jaw 0 is the upper one."
         )
-
-
-def _taxel_history(result: Result, side: str) -> Array:
-    """Forces (step, row, column) in N."""
-    over_time = result.quantities.get(f"taxel_force_{side}_history")
-    return np.asarray(over_time.value if over_time else [result.quantities[f"taxel_force_{side}"].value], dtype=float)
 
 
 def _interpolated(at: Array, times: Array, values: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, VOLTAGE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.quantity import Quantity
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
@@ -21,23 +22,23 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
         of = f"of each taxel of the {side} jaw"
         voltage, force = reading.filtered[:, k], reading.force[:, k]
         quantities |= {
-            f"voltage_{side}": Quantity(voltage[-1].tolist(), "V", f"voltage after the low pass {of} {AT_END}"),
-            f"read_force_{side}": Quantity(force[-1].tolist(), "N", f"force by the calibration {of} {AT_END}"),
-            f"voltage_{side}_history": Quantity(voltage.tolist(), "V", f"voltage after the low pass {of} {OVER_TIME}"),
-            f"read_force_{side}_history": Quantity(force.tolist(), "N", f"force by the calibration {of} {OVER_TIME}"),
-            f"saturated_{side}": Quantity(
+            f"{VOLTAGE}_{side}": Quantity(voltage[-1].tolist(), "V", f"voltage after the low pass {of} {AT_END}"),
+            f"{READ_FORCE}_{side}": Quantity(force[-1].tolist(), "N", f"force by the calibration {of} {AT_END}"),
+            f"{VOLTAGE}_{side}_history": Quantity(voltage.tolist(), "V", f"voltage after the low pass {of} {OVER_TIME}"),
+            f"{READ_FORCE}_{side}_history": Quantity(force.tolist(), "N", f"force by the calibration {of} {OVER_TIME}"),
+            f"{SATURATED}_{side}": Quantity(
                 reading.saturated[:, k].mean(axis=0).tolist(),
                 "1",
                 f"part of the samples {of} outside the range of the converter, [row][column]",
             ),
-            f"saturated_{side}_history": Quantity(
+            f"{SATURATED}_{side}_history": Quantity(
                 reading.saturated[:, k].astype(int).tolist(), "1", f"1 for a sample {of} outside that range, else 0, {OVER_TIME}"
             ),
         }
     error = reading.force - reading.applied
     words = "read minus applied force, over all taxels and times"
-    quantities["read_force_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
-    quantities["read_force_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
+    quantities[f"{READ_FORCE}_rms_error"] = Quantity(root_mean_square(error), "N", f"root mean square of {words}")
+    quantities[f"{READ_FORCE}_largest_error"] = Quantity(float(np.abs(error).max()), "N", f"largest absolute value of {words}")
     return quantities
 
 

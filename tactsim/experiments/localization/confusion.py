@@ -11,10 +11,11 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
-from tactsim.experiments.localization.source import Source, folder_words, readings_of, stored_grasp, with_reference
+from tactsim.experiments.localization.source import folder_words, readings_of, stored_grasp, with_reference
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
@@ -42,7 +43,7 @@ class Confusion(Experiment):
     """Folders of results of grasps, beside the case or in the working folder; the shapes of their inclusions are the truth."""
     reference: InputPath
     """Folder of the same grasp of plain tissue at the same closing."""
-    readings: Source = "taxel_force"
+    readings: Source = TAXEL_FORCE
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""
     noise: Annotated[Force, Field(ge=0)] = ROUNDING_NOISE
     """Standard deviation of a reading; the default is what rounding to the sensor's resolution of 0.1 N (thesis 6.2) does."""

@@ -10,11 +10,11 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene, grasp_fields
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.experiments.localization.source import (
-    Source,
     away_from_truth,
     folder_words,
     readings_of,
@@ -62,7 +62,7 @@ class Localization(Experiment):
     """Folder of the result of a grasp, beside the case or in the working folder."""
     reference: InputPath | None = None
     """Folder of the same grasp without a lump at the same closing; null if there is none."""
-    readings: Source = "taxel_force"
+    readings: Source = TAXEL_FORCE
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""
     noise: Annotated[Force, Field(ge=0)] = ROUNDING_NOISE
     """Standard deviation of a reading; the default is what rounding to the sensor's resolution of 0.1 N (thesis 6.2) does."""
@@ -162,10 +162,10 @@ def _taxel_quantities(readings: Readings) -> dict[str, Quantity]:
     quantities = {}
     for jaw, side in enumerate(JAWS):
         of = f"of the {side} jaw; [row][column], row 1 nearest the front, column 1 the smallest x"
-        quantities[f"taxel_force_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
+        quantities[f"{TAXEL_FORCE}_{side}"] = Quantity(readings.filled[jaw].tolist(), "N", f"force on each taxel {of}")
         if readings.difference is not None:
             text = f"force on each taxel less that of the reference, {of}"
-            quantities[f"taxel_difference_{side}"] = Quantity(readings.difference[jaw].tolist(), "N", text)
+            quantities[f"{TAXEL_DIFFERENCE}_{side}"] = Quantity(readings.difference[jaw].tolist(), "N", text)
     return quantities
 
 

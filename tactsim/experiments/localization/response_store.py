@@ -7,20 +7,17 @@ import io
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from tactsim.code_identity import code_identity
-from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.errors import StorageError
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.experiments.localization.source import computed_grasp
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
 from tactsim.progress import elapsed_time
-from tactsim.results.reading import read_result
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 
@@ -44,7 +41,7 @@ def stored_response(folder: str, *, cache: Path | None = None) -> LumpResponse:
     """
     from tactsim.experiments.localization.lump_sensitivity import lump_response
 
-    setup = _plain(read_result(folder, fields=False).provenance, folder)
+    setup = computed_grasp(folder).model_copy(update={"inclusions": ()})
     return kept_response(setup, lambda: lump_response(setup), cache=cache)
 
 
@@ -60,17 +57,6 @@ def kept_response(
             stored = compute()
         _keep(stored, place)
     return stored
-
-
-def _plain(provenance: dict[str, Any], folder: str) -> Grasp:
-    """The grasp that a result was computed from, without inclusions."""
-    experiment = (provenance.get("case") or {}).get("experiment") or {}
-    if experiment.get("kind") != "grasp":
-        raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
-    try:
-        return Grasp.model_validate(experiment).model_copy(update={"inclusions": ()})
-    except ValidationError as error:
-        raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
 
 
 def _read(place: Path) -> LumpResponse | None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
+from tactsim.array import Array
 from tactsim.experiments.grasp.scene import GraspScene, Point
 from tactsim.interfaces.estimate import EstimatedInclusion
-from tactsim.localization.region import shadows
+from tactsim.localization.region import OutlinedRegion, shadows
 from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
 
@@ -33,6 +36,12 @@ class EstimatedShape(FrozenModel):
         region = None if inclusion.region is None else shadows(inclusion.region)
         known = {name: getattr(inclusion, name) for name in ("kind", "center", "radius", "line")}
         return cls.model_validate(known | {"region": region})
+
+    def inclusion(self, contrast: float | None = None, covariance: Array | None = None) -> EstimatedInclusion:
+        """The estimated inclusion, with the contrast and the covariance that are given: the quantities of a result hold them."""
+        kept = self.region
+        region = None if kept is None else OutlinedRegion({view: [np.array(line) for line in kept[view]] for view in kept})
+        return EstimatedInclusion(self.kind, self.center, self.radius, contrast, covariance, region, self.line)
 
 
 class LocalizedGrasp(GraspScene):

@@ -5,25 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from pydantic import ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source, has_taxels, jaws_at_end, saturated_taxels
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
 
-Source = Literal["taxel_force", "read_force"]
-"""Forces of the solution, or those read through film, electronics and calibration."""
 SAME_CLOSING = 1e-3
 """Largest relative difference of the closing of the reference."""
 
@@ -39,14 +36,33 @@ def stored_grasp(folder: str) -> Result:
         If it is not that of a grasp with taxels.
     """
     result = read_result(folder, fields=False).result
-    if not isinstance(result.scene, GraspScene) or "taxel_force_upper" not in result.quantities:
+    if not isinstance(result.scene, GraspScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(
             f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
         )
     return result
 
 
-def readings_of(result: Result, source: Source = "taxel_force", *, noise: float, dead: Array | None = None) -> Readings:
+def computed_grasp(folder: str) -> Grasp:
+    """The grasp that the result in a folder was computed from.
+
+    Raises
+    ------
+    StorageError
+        If there is no result.
+    InputError
+        If it does not keep the case of a grasp that this version can read.
+    """
+    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
+    if experiment.get("kind") != "grasp":
+        raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
+    try:
+        return Grasp.model_validate(experiment)
+    except ValidationError as error:
+        raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
+
+
+def readings_of(result: Result, source: Source = TAXEL_FORCE, *, noise: float, dead: Array | None = None) -> Readings:
     """What the matrices of a stored grasp read at its last accepted step.
 
     ``dead`` (jaw, row, column) marks taxels that are not to be trusted; of ``read_force`` a taxel whose voltage is outside the
@@ -57,16 +73,16 @@ def readings_of(result: Result, source: Source = "taxel_force", *, noise: float,
     InputError
         If the result was not read through sensors, or its matrices do not face each other.
     """
-    if f"{source}_upper" not in result.quantities:
-        raise InputError(f"the result has no {source}; give the grasp a readout, run matrix_readout on it, or take taxel_force")
+    if not has_taxels(result, source):
+        raise InputError(f"the result has no {source}; give the grasp a readout, run matrix_readout on it, or take {TAXEL_FORCE}")
     scene = result.scene_as(GraspScene)
     layout = scene.matrix
     valid = np.ones((2, layout.rows, layout.columns), bool) if dead is None else ~dead
-    if source == "read_force":
+    if source == READ_FORCE:
         valid = valid & ~saturated_taxels(result)[-1]
     closing = result.quantities.get("displacement")
     return Readings(
-        _taxels(result, source),
+        jaws_at_end(result, source),
         layout,
         scene.size,
         noise=noise,
@@ -102,32 +118,17 @@ def stiffness_ratios(folder: str, closing: float | None) -> tuple[tuple[float, f
     The working strain is the mean one of plain tissue, both jaws closed by ``closing`` in m. Empty if the grasp does not keep the
     case that it was computed from, or its closing is not known.
     """
-    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
-    if experiment.get("kind") != "grasp" or closing is None:
+    if closing is None:
         return ()
     try:
-        grasp = Grasp.model_validate(experiment)
-    except ValidationError:
+        grasp = computed_grasp(folder)
+    except InputError:
         return ()
     tissue, stretch = grasp.block.tissue, 1 - 2 * closing / float(grasp.block.size[2])
     return tuple(
         (stiffness_ratio(one.material, tissue, stretch), stiffness_ratio(one.material, tissue, 1.0))
         for one in grasp.unlike_tissue
     )
-
-
-def saturated_taxels(result: Result) -> Array:
-    """Which readings (time or 1, jaw, row, column) of a result are saturated; one without known times is so all the time.
-
-    Raises
-    ------
-    InputError
-        If what the result says of saturation are no matrices of one shape.
-    """
-    over_time = [f"saturated_{side}_history" for side in JAWS]
-    if all(name in result.quantities for name in over_time):
-        return np.stack([result.quantities[name].numbers for name in over_time], axis=1) > 0
-    return _taxels(result, "saturated")[None] > 0
 
 
 def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
@@ -146,15 +147,6 @@ def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:
     away = center - places
     nearest = int(np.hypot(*away[:, :2].T).argmin())
     return places[nearest], float(np.hypot(*away[nearest, :2])), float(away[nearest, 2])
-
-
-def _taxels(result: Result, name: str) -> Array:
-    try:
-        return np.array([result.quantities[f"{name}_{side}"].value for side in JAWS], dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{name} of the two jaws of the result are not numbers in matrices of one shape; run the grasp again"
-        ) from None
 
 
 def _middle(scene: GraspScene) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import StorageError, TactsimError
+from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.interfaces.estimate import PARAMETERS, Estimate, EstimatedInclusion, Region
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import DAMAGE
 from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.localization.estimators.learned import LearnedEstimator
-from tactsim.localization.region import GaussianRegion, OutlinedRegion
+from tactsim.localization.region import GaussianRegion
 from tactsim.outside.text import one_line
 from tactsim.results.quantity import Quantity
 from tactsim.results.reading import read_result
@@ -97,22 +97,13 @@ def stored_choice(folder: str | Path) -> Choice | None:
     try:
         inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(scene.estimates)]
         estimate = Estimate(bool(inclusions), tuple(inclusions), result.reason)
-        plain = _reference(result.quantities)
+        plain: Array | None = None
+        if has_taxels(result, TAXEL_DIFFERENCE):
+            plain = jaws_at_end(result, TAXEL_FORCE) - jaws_at_end(result, TAXEL_DIFFERENCE)
     except DAMAGE as error:
         where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
         raise StorageError(f"{where}; run it again") from None
     return Choice(STORED, f"As stored: {scene.estimator}"[:60], StoredEstimate(estimate), False, plain)
-
-
-def _reference(quantities: dict[str, Quantity]) -> Array | None:
-    """Forces (jaw, row, column) in N of the reference of a stored localization; None if it had none."""
-    if f"taxel_difference_{JAWS[0]}" not in quantities:
-        return None
-    forces, difference = (
-        np.array([quantities[f"{name}_{side}"].value for side in JAWS], dtype=float)
-        for name in ("taxel_force", "taxel_difference")
-    )
-    return forces - difference
 
 
 def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:
@@ -128,6 +119,5 @@ def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> Estima
         covariance = np.diag(np.array([*quantities["center_deviation"].value, *others], dtype=float) ** 2)
         if (np.diag(covariance)[:3] > 0).all():
             region = GaussianRegion(np.array(shape.center), covariance[:3, :3])
-    if shape.region is not None:
-        region = OutlinedRegion({view: [np.array(line) for line in lines] for view, lines in shape.region.items()})
-    return EstimatedInclusion(shape.kind, shape.center, shape.radius, contrast, covariance, region, shape.line)
+    inclusion = shape.inclusion(contrast, covariance)
+    return replace(inclusion, region=inclusion.region or region)

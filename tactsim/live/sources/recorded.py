@@ -8,9 +8,9 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError, shown
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, TAXEL_FORCE, has_taxels, jaws_over_time, saturated_taxels
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
-from tactsim.experiments.localization.source import saturated_taxels
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
@@ -19,9 +19,9 @@ from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
 from tactsim.results.scene import UnreadableScene
 
-SOURCES = {"taxel_force": "forces of the solution", "read_force": "forces read through the sensors"}
+SOURCES: dict[str, str] = {TAXEL_FORCE: "forces of the solution", READ_FORCE: "forces read through the sensors"}
 """Name of the forces -> what they are, in words."""
-_TIMES = {"taxel_force": "time_history", "read_force": "readout_time"}
+_TIMES: dict[str, str] = {TAXEL_FORCE: "time_history", READ_FORCE: "readout_time"}
 DAMAGE = (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, MemoryError, TactsimError)
 """What a result raises whose quantities no run writes: another type, a missing part, numbers that do not fit."""
 
@@ -38,7 +38,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     """
     stored = read_result(folder, fields=False)
     result = stored.result
-    if not isinstance(result.scene, GraspScene | UnreadableScene) or "taxel_force_upper" not in result.quantities:
+    if not isinstance(result.scene, GraspScene | UnreadableScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(
             f"{folder} holds the result of {result.kind}, which has no forces of taxels to show; "
             "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
@@ -52,7 +52,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
         raise StorageError(f"{incomplete}: {one_line(error)}") from None
     try:
         scene = _scene(result, grasp, title)
-        return {name: _recording(result, scene, name) for name in SOURCES if f"{name}_upper" in result.quantities}
+        return {name: _recording(result, scene, name) for name in SOURCES if has_taxels(result, name)}
     except DAMAGE as error:
         raise StorageError(f"{incomplete}: {one_line(error)}; run the grasp again") from None
 
@@ -74,14 +74,13 @@ def _notes(result: Result) -> tuple[str, ...]:
 
 
 def _recording(result: Result, scene: PageScene, name: str) -> Recording:
-    quantities = result.quantities
-    if f"{name}_upper_history" in quantities:
-        times = np.asarray(quantities[_TIMES[name]].value, dtype=float)
-        forces = np.stack([quantities[f"{name}_{side}_history"].numbers for side in JAWS], axis=1)
+    quantities, forces = result.quantities, jaws_over_time(result, name)
+    if has_taxels(result, name, history=True):
+        times = quantities[_TIMES[name]].numbers
     else:
         times = np.array([float(quantities["time"].value) if "time" in quantities else 0.0])
-        forces = np.array([[quantities[f"{name}_{side}"].value for side in JAWS]], dtype=float)
-    valid = checked_validity(forces, times, scene, _saturated(result, name))
+    saturated = saturated_taxels(result) if name == READ_FORCE and has_taxels(result, SATURATED) else None
+    valid = checked_validity(forces, times, scene, saturated)
     stored = scene.grasp.noise if isinstance(scene.grasp, LocalizedGrasp) else 0.0
     noise = ReadingNoise(stored, "as stored with the localization") if stored else source_noise(name, forces, valid)
     return Recording(scene, times, forces, valid, _closings(result, times), name, noise)
@@ -89,7 +88,7 @@ def _recording(result: Result, scene: PageScene, name: str) -> Recording:
 
 def source_noise(name: str, forces: Array, valid: Array) -> ReadingNoise:
     """Of simulated forces (n, jaw, row, column) in N by their name in ``SOURCES``."""
-    return solution_noise(np.where(valid, forces, 0.0)) if name == "taxel_force" else RESOLVED
+    return solution_noise(np.where(valid, forces, 0.0)) if name == TAXEL_FORCE else RESOLVED
 
 
 def checked_validity(forces: Array, times: Array, scene: PageScene, saturated: Array | None = None) -> Array:
@@ -107,12 +106,6 @@ def checked_validity(forces: Array, times: Array, scene: PageScene, saturated: A
         raise InputError(f"the times {shown(times.tolist())} do not increase, or not all are within {LATEST:g} s")
     valid = np.isfinite(forces) & (np.abs(np.nan_to_num(forces)) <= LARGEST_FORCE)
     return valid if saturated is None else valid & ~saturated
-
-
-def _saturated(result: Result, name: str) -> Array | None:
-    if name != "read_force" or "saturated_upper" not in result.quantities:
-        return None
-    return saturated_taxels(result)
 
 
 def _closings(result: Result, times: Array) -> Array | None:

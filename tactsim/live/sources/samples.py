@@ -17,6 +17,7 @@ from tactsim.dataset.store.arrays import DONE, PENDING, STATUS
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import EmbeddedShape, GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
@@ -50,7 +51,7 @@ class Samples:
             If the folder is not a data set.
         """
         data = opened(place)
-        if "taxel_force" not in data:
+        if TAXEL_FORCE not in data:
             raise InputError(f"{place} is a data set without forces of taxels; needed: a data set of grasps")
         if not (data["status"].values == DONE).any():
             raise InputError(

@@ -8,6 +8,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError, shown
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
 from tactsim.interfaces import Inclusion
@@ -134,7 +135,7 @@ class Frame:
     valid: Array
     time: float | None = None
     closing: float | None = None
-    source: str = "taxel_force"
+    source: str = TAXEL_FORCE
     noise: ReadingNoise = RESOLVED
 
     def notes(self) -> tuple[str, ...]:
@@ -190,7 +191,7 @@ class Recording:
     forces: Array
     valid: Array
     closings: Array | None
-    source: str = "taxel_force"
+    source: str = TAXEL_FORCE
     noise: ReadingNoise = RESOLVED
 
     def frame(self, step: int) -> Frame:

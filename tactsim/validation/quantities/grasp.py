@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import partial
 from typing import Annotated, Literal
 
@@ -13,6 +12,7 @@ from tactsim.array import Array
 from tactsim.case import load_case
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.history import taxel_columns
 from tactsim.interfaces import drawing, quantity
 from tactsim.interfaces.taxel_layout import JAWS, JawName
 from tactsim.localization.bands import band_intensities
@@ -38,13 +38,10 @@ def taxel_history(outcome: RunOutcome, side: str) -> Array:
     InputError
         If the run has no taxels.
     """
-    name = re.compile(rf"taxel_force_{side}_(\d+)_(\d+)")
-    forces = {(int(m[1]), int(m[2])): values for key, values in outcome.history.items() if (m := name.fullmatch(key))}
+    forces = {place: outcome.history[name] for place, name in taxel_columns(side).items() if name in outcome.history}
     if not forces:
         raise InputError(f"{outcome.id} has no taxels of the {side} jaw")
-    rows, columns = (max(place[k] for place in forces) for k in range(2))
-    matrix = [[forces[row, column] for column in range(1, columns + 1)] for row in range(1, rows + 1)]
-    return np.array(matrix).transpose(2, 0, 1)
+    return np.array(list(forces.values())).reshape(*max(forces), -1).transpose(2, 0, 1)
 
 
 def _taxels_at(inputs: Inputs, run: tuple[str, str], side: str, closing: float | None = None) -> Array:

@@ -6,14 +6,15 @@ from typing import Literal
 
 from matplotlib.figure import Figure
 
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, VOLTAGE, has_taxels
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
 from tactsim.experiments.grasp.figures.maps import draw_maps, draw_plan
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
-from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, has_voltages, voltages_figure
+from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure
-from tactsim.experiments.grasp.figures.viewed import has_views, viewed
+from tactsim.experiments.grasp.figures.viewed import viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces import Drawing, ResultFigures
@@ -41,9 +42,9 @@ class GraspFigures(ResultFigures):
             drawings["grasp_section.png"] = Plot(lambda: section_figure(moment))
         if has_history(result):
             drawings["grasp_history.png"] = Plot(lambda: history_figure(result))
-        if has_views(result):
+        if has_taxels(result, TAXEL_FORCE):
             drawings[VIEWS] = Plot(lambda: views_figure(moment, viewed(moment)))
-        if has_voltages(result):
+        if has_taxels(result, VOLTAGE, history=True):
             drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
             drawings[VIEW] = Plot(lambda: view_figure(result))

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels, jaws_over_time
 from tactsim.experiments.grasp.figures.parts import LETTERS
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
@@ -39,7 +40,7 @@ def panels(result: Result) -> list[str]:
     names = ["forces"]
     if _lumens(result):
         names.append("lumen")
-    if "taxel_force_upper_history" in result.quantities:
+    if has_taxels(result, TAXEL_FORCE, history=True):
         names.append("taxels")
     return names
 
@@ -113,10 +114,9 @@ def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
 
 def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     """The taxels of both jaws that ever carry the most."""
+    values = jaws_over_time(result, TAXEL_FORCE)
     forces: dict[Taxel, Array] = {
-        (side, place[0], place[1]): result.quantities[f"taxel_force_{side}_history"].numbers[:, place[0], place[1]]
-        for side in JAWS
-        for place in np.ndindex(np.shape(result.quantities[f"taxel_force_{side}_history"].value)[1:])
+        (JAWS[jaw], row, column): values[:, jaw, row, column] for jaw, row, column in np.ndindex(*values.shape[1:])
     }
     shown = sorted(forces, key=lambda taxel: -float(np.abs(forces[taxel]).max()))[:MOST_TAXELS]
     factor, unit = _scale([forces[shown[0]]], "N")

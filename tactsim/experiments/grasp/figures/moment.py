@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, has_taxels, jaws_over_time
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.results import Quantity, Result
@@ -18,7 +19,7 @@ def shown_moment(result: Result) -> Result:
     Steps are kept whole, so that histories can be drawn; the scene says in words which moment is shown.
     """
     lumens = sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
-    if not lumens or not result.frames or "taxel_force_upper_history" not in result.quantities:
+    if not lumens or not result.frames or not has_taxels(result, TAXEL_FORCE, history=True):
         return result
     pressure = np.sum([result.history_values(name) for name in lumens], axis=0)
     step = int(np.argmax(pressure))
@@ -41,10 +42,10 @@ def shown_moment(result: Result) -> Result:
 def _quantities(result: Result, step: int, closing: float) -> dict[str, Quantity]:
     area = result.scene_as(SimulatedGrasp).matrix.area
     quantities = {"displacement": replace(result.quantities["displacement"], value=closing)}
-    for side in JAWS:
-        force = result.quantities[f"taxel_force_{side}_history"].numbers[step]
-        quantities[f"taxel_force_{side}"] = replace(result.quantities[f"taxel_force_{side}"], value=force.tolist())
-        quantities[f"taxel_pressure_{side}"] = replace(result.quantities[f"taxel_pressure_{side}"], value=(force / area).tolist())
+    forces = jaws_over_time(result, TAXEL_FORCE)[step]
+    for name, values in ((TAXEL_FORCE, forces), (TAXEL_PRESSURE, forces / area)):
+        for side, value in zip(JAWS, values.tolist(), strict=True):
+            quantities[f"{name}_{side}"] = replace(result.quantities[f"{name}_{side}"], value=value)
     return quantities
 
 

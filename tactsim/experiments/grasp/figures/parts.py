@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from tactsim.array import Array
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_at_end
 from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
@@ -68,9 +69,7 @@ class LoadedTaxels:
 
 def loaded_taxels(result: Result) -> LoadedTaxels:
     """The taxels at the last accepted step, or at the moment that the scene names."""
-    pressures, forces = (
-        {side: result.quantities[f"taxel_{name}_{side}"].numbers for side in JAWS} for name in ("pressure", "force")
-    )
+    pressures, forces = (dict(zip(JAWS, jaws_at_end(result, name), strict=True)) for name in (TAXEL_PRESSURE, TAXEL_FORCE))
     return LoadedTaxels(result.scene_as(GraspScene), pressures, forces)
 
 

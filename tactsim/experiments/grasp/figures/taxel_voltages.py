@@ -9,6 +9,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tactsim.array import Array
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of
@@ -30,19 +32,16 @@ class MatrixReadoutFigures(ResultFigures):
         return {VOLTAGES: Plot(lambda: voltages_figure(result))}
 
 
-def has_voltages(result: Result) -> bool:
-    """Whether the matrices of a result were read."""
-    return "voltage_upper_history" in result.quantities
-
-
 def voltages_figure(result: Result) -> Figure:
     """Upper jaw in the upper row: its voltages over time, and the force of each taxel at the end, read and applied."""
     with result_figure(result, (10.5, 6.4), "Voltages of the matrices") as figure:
         axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
-        factor, unit = scale_of(max(float(result.quantities[f"voltage_{side}_history"].numbers.max()) for side in JAWS), "V")
-        for row, side in zip(axes, JAWS, strict=True):
-            _draw_voltages(row[0], result, side, factor)
-            _draw_forces(row[1], result, side)
+        voltages = jaws_over_time(result, VOLTAGE)
+        applied, read = (jaws_at_end(result, name) for name in (TAXEL_FORCE, READ_FORCE))
+        factor, unit = scale_of(float(voltages.max()), "V")
+        for jaw, (row, side) in enumerate(zip(axes, JAWS, strict=True)):
+            _draw_voltages(row[0], result, factor * voltages[:, jaw])
+            _draw_forces(row[1], applied[jaw], read[jaw])
             row[0].set_ylabel(f"voltage in {unit}")
             row[0].set_title(f"{side} jaw; straight between the {len(result.steps)} solved steps (dotted)", loc="left")
         axes[1, 0].set_xlabel("time in s")
@@ -54,9 +53,8 @@ def voltages_figure(result: Result) -> Figure:
     return figure
 
 
-def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None:
-    time, voltage = result.quantities["readout_time"].numbers, factor * result.quantities[f"voltage_{side}_history"].numbers
-    rows, columns = voltage.shape[1:]
+def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:
+    time, (rows, columns) = result.quantities["readout_time"].numbers, voltage.shape[1:]
     colours = colormaps["viridis"](np.linspace(0, 0.9, rows * columns))
     for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
         style = ("-", "--", "-.", ":")[column % 4]
@@ -67,8 +65,7 @@ def _draw_voltages(axis: Axes, result: Result, side: str, factor: float) -> None
         axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)
 
 
-def _draw_forces(axis: Axes, result: Result, side: str) -> None:
-    applied, read = result.quantities[f"taxel_force_{side}"].numbers, result.quantities[f"read_force_{side}"].numbers
+def _draw_forces(axis: Axes, applied: Array, read: Array) -> None:
     places = np.arange(applied.size)
     axis.bar(places, applied.ravel(), width=0.8, color="#fdd0a2", edgecolor=APPLIED, linewidth=0.6, label="applied")
     axis.plot(places, read.ravel(), "o", color=READ, markersize=4, label="read")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import TactsimError
+from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
+from tactsim.interfaces.estimate import EstimatedInclusion
 from tactsim.interfaces.readings import shown_change
 from tactsim.interfaces.solid import Solid
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.results import Result
@@ -40,10 +41,7 @@ class ViewedGrasp:
     meaning : what the signal is, in words
     valid : (jaw, row, column), False for interpolated taxels
     true : bodies of the true inclusions
-    estimates : (n, 3) of estimated centres in m
-    radii : (n,) of estimated radii in m, NaN where there is none
-    lines : (n, 2, 3) of both ends of the centre lines of estimated tubes in m, NaN of what is no tube
-    regions : by the axis of the view, closed lines (m, 2) in mm around where the estimated centres lie with a probability of 90 %
+    estimates : estimated inclusions
     findings : lines of text on the estimates
     """
 
@@ -52,25 +50,17 @@ class ViewedGrasp:
     meaning: str
     valid: Array
     true: tuple[Solid, ...]
-    estimates: Array = field(default_factory=lambda: np.empty((0, 3)))
-    radii: Array = field(default_factory=lambda: np.empty(0))
-    lines: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
-    regions: Mapping[int, list[Array]] = field(default_factory=dict)
+    estimates: tuple[EstimatedInclusion, ...] = ()
     findings: tuple[str, ...] = BARE_FORCES
-
-
-def has_views(result: Result) -> bool:
-    """Whether a result has taxels."""
-    return "taxel_force_upper" in result.quantities
 
 
 def viewed(result: Result) -> ViewedGrasp:
     """The grasp that a result describes; with a reference, what the taxels read beyond it."""
     scene = result.scene_as(GraspScene)
-    name = "taxel_difference" if "taxel_difference_upper" in result.quantities else "taxel_force"
-    signal, meaning = np.array([result.quantities[f"{name}_{side}"].numbers for side in JAWS]), "force"
-    if name == "taxel_difference":
-        signal, meaning = shown_change(signal)
+    if has_taxels(result, TAXEL_DIFFERENCE):
+        signal, meaning = shown_change(jaws_at_end(result, TAXEL_DIFFERENCE))
+    else:
+        signal, meaning = jaws_at_end(result, TAXEL_FORCE), "force"
     return ViewedGrasp(scene, signal, meaning, np.ones(signal.shape, bool), tuple(true_bodies(scene)))
 
 
@@ -85,15 +75,13 @@ def true_bodies(scene: GraspScene) -> Iterator[Solid]:
 
 def estimated_bodies(grasp: ViewedGrasp, unknown: float | None = None) -> Iterator[Solid]:
     """Balls and tubes as estimated; one of unknown radius is a ball of the radius ``unknown`` in m, or left out."""
-    for center, radius, line in zip(grasp.estimates, grasp.radii, grasp.lines, strict=True):
-        size = float(radius) if np.isfinite(radius) else unknown
+    for estimate in grasp.estimates:
+        size = unknown if estimate.radius is None else estimate.radius
         if size is None:
             continue
-        x, y, z = map(float, center)
-        body: Inclusion = Sphere(center=(x, y, z), radius=size)
-        if np.isfinite(line).all():
-            first, last = (tuple(map(float, end)) for end in line)
-            body = Tube(centre_line=(first, last), inner_radius=size / 2, wall=size / 2)
+        body: Inclusion = Sphere(center=estimate.center, radius=size)
+        if estimate.line is not None:
+            body = Tube(centre_line=estimate.line, inner_radius=size / 2, wall=size / 2)
         yield body.solids(grasp.scene.size)[0]
 
 

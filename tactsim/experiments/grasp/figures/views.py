@@ -225,11 +225,12 @@ def _draw_estimates(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         first, second, distance = outline(body, grasp.scene.size, view.away)
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=3.4, zorder=7)
         axis.contour(first, second, distance, levels=[0.0], colors=[ESTIMATE], linewidths=1.4, zorder=8)
-    for line in grasp.regions.get(view.away, ()):
+    regions = [estimate.region for estimate in grasp.estimates if estimate.region is not None]
+    for line in (1e3 * line for region in regions for line in region.shadow(view.away)):
         axis.plot(*line.T, color="w", linewidth=2.4, zorder=7)
         axis.plot(*line.T, color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, zorder=8)
-    for center in 1e3 * grasp.estimates:
-        place = center[view.horizontal], center[view.vertical]
+    for estimate in grasp.estimates:
+        place = 1e3 * estimate.center[view.horizontal], 1e3 * estimate.center[view.vertical]
         axis.plot(*place, "+", color=ESTIMATE, markersize=13, markeredgewidth=1.8, zorder=8, path_effects=rim)
 
 
@@ -244,11 +245,11 @@ def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
         handles.append(Rectangle((0, 0), 1, 1, fill=False, edgecolor=INK, linewidth=0.5, hatch="xxx", label="dead or saturated"))
     if grasp.true:
         handles.append(Line2D([], [], color="k", linewidth=1.1, linestyle="--", label="true inclusions"))
-    if len(grasp.estimates):
+    if grasp.estimates:
         handles.append(
             Line2D([], [], color=ESTIMATE, marker="+", markersize=11, markeredgewidth=1.8, linestyle="", label="estimated")
         )
-    if any(grasp.regions.values()):
+    if any(estimate.region is not None for estimate in grasp.estimates):
         words = "its centre lies in here with a probability of 90 %"
         handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
     axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tactsim.experiments.grasp.figures.viewed import has_views
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.figures.space import SPACE, space_figure
@@ -20,7 +20,7 @@ class LocalizationFigures(ResultFigures):
 
     def drawings(self, result: Result) -> dict[str, Drawing]:
         """``views.png`` and ``space.png``; the last needs a renderer."""
-        if not has_views(result):
+        if not has_taxels(result, TAXEL_FORCE):
             return {}
         drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(result, localized(result)))}
         drawings[SPACE] = Plot(lambda: space_figure(result))

@@ -7,32 +7,22 @@ from textwrap import wrap
 
 import numpy as np
 
-from tactsim.array import Array
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
 from tactsim.experiments.localization.scene import LocalizedGrasp
-from tactsim.localization.views import AWAY
 from tactsim.results import Result
 
 LINE = 70
 """Characters of a line of what was found."""
-NO_LINE = [[np.nan] * 3] * 2
 
 
 def localized(result: Result) -> ViewedGrasp:
     """The grasp that was read, with the estimates."""
     grasp, scene = viewed(result), result.scene_as(LocalizedGrasp)
-    centers = np.array([estimate.center for estimate in scene.estimates], dtype=float).reshape(-1, 3)
     return replace(
         grasp,
         valid=grasp.valid if scene.valid is None else np.array(scene.valid),
-        estimates=centers,
-        radii=np.array([np.nan if estimate.radius is None else estimate.radius for estimate in scene.estimates], dtype=float),
-        lines=np.array([estimate.line or NO_LINE for estimate in scene.estimates], dtype=float).reshape(-1, 2, 3),
-        regions={
-            away: [1e3 * np.array(line) for estimate in scene.estimates for line in (estimate.region or {}).get(view, ())]
-            for view, away in AWAY.items()
-        },
-        findings=_findings(centers, result) if "present" in result.quantities else grasp.findings,
+        estimates=tuple(estimate.inclusion() for estimate in scene.estimates),
+        findings=_findings(scene, result) if "present" in result.quantities else grasp.findings,
     )
 
 
@@ -46,12 +36,12 @@ def _contrast(result: Result) -> str:
     return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: contrast {value:+.2g}{spread}, 0 is tissue"
 
 
-def _findings(centers: Array, result: Result) -> tuple[str, ...]:
-    """The result in words, of estimates centred at ``centers`` (n, 3) in m."""
+def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
+    """The result in words."""
     quantities = result.quantities
     if not quantities["present"].value:
         return ("Nothing there.",)
-    places = [f"({', '.join(f'{value:.1f}' for value in 1e3 * center)}) mm" for center in centers]
+    places = [f"({', '.join(f'{1e3 * value:.1f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
     lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities or len(places) > 1 else []
     lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]

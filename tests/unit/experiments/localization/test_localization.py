@@ -98,7 +98,7 @@ def test_the_views_show_the_true_and_the_estimated_place(folders, monkeypatch):
     result = run(folders)
     grasp_seen = localized(result)
     np.testing.assert_allclose(grasp_seen.signal, BALL, atol=1e-12)
-    np.testing.assert_allclose(grasp_seen.estimates[0], value(result, "estimated_center"))
+    np.testing.assert_allclose(grasp_seen.estimates[0].center, value(result, "estimated_center"))
     first, second, distance = outline(grasp_seen.true[0], SIZE, away=1)
     row, column = np.unravel_index(distance.argmin(), distance.shape)
     np.testing.assert_allclose([first[column], second[row]], [28, 12], atol=0.2)
