@@ -17,6 +17,12 @@ from tactsim.units import Length, format_quantity
 LEAST_STEP = 1e-9
 """First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""
 
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 1e-3, 0.05, 1e-4
+"""First and largest step over the body's radius, smallest over the first.
+
+Contact begins at a rim, at which longer first steps save nothing: `annulus_icf` takes 128 systems in 22 steps; with a first step
+seven times as long 133 in 20, fifty times as long 119 in 19 after three that failed, all in the same time.
+"""
 FEW_ITERATIONS, MANY_ITERATIONS = 10, 15
 """Under a round tip: its contact spreads over new points in every step, so that Newton takes 7 to 10 iterations however short the
 step is, and with the usual limits (7 and 12) steps of a ball stay an eighth of the largest."""
@@ -111,9 +117,10 @@ class DisplacedSetup(IndentationSetup):
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""
-        first = self.steps.first or 1e-3 * self.contact_radius
-        largest = self.steps.largest or 0.05 * self.contact_radius
-        control = StepControl(first=first, largest=max(largest, first), smallest=self.steps.smallest or 1e-4 * first, unit="m")
+        first = self.steps.first or FIRST_STEP * self.contact_radius
+        largest = self.steps.largest or LARGEST_STEP * self.contact_radius
+        smallest = self.steps.smallest or SMALLEST_STEP * first
+        control = StepControl(first=first, largest=max(largest, first), smallest=smallest, unit="m")
         if self.body.contact_shape.tip is None:
             return control
         return replace(control, few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
