@@ -10,7 +10,7 @@ from tactsim.case import load_case
 from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.record import IndentationRecord
 
-MESH_TOLERANCE = 0.01
+MESH_TOLERANCE = 1e-3
 STEP_TOLERANCE = 0.005
 RECESS = 0.8e-3
 RADIUS = 3e-3
