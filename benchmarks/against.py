@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from data_sets import STANDARD
+from data_sets import STANDARD, samples_done
 
 ROOT = Path(__file__).parents[1]
 BASE = "26a5475"
@@ -32,15 +32,17 @@ STANDARD_OPTIONS = tuple(part for value in STANDARD for part in ("--set", value)
 
 @dataclass(frozen=True)
 class Job:
-    """A command, how many answers it gives, and what is asked: seconds for a run, answers per hour for a sweep."""
+    """A command and what is asked: seconds for a run, whole or without its figures, samples done per hour for a sweep."""
 
     arguments: tuple[str, ...]
     asked: float
-    answers: int = 0
+    without_figures: bool = False
+    most_repeats: int = REPEATS
 
-    def figure(self, seconds: float) -> float:
-        """Seconds, or answers per hour."""
-        return 3600 * self.answers / seconds if self.answers else seconds
+    @property
+    def is_sweep(self) -> bool:
+        """Whether it makes a data set."""
+        return self.arguments[0] == "sweep"
 
 
 def _run(case: str) -> tuple[str, ...]:
@@ -53,47 +55,60 @@ def _sweep(case: str, *options: str) -> tuple[str, ...]:
 
 JOBS = {
     "annulus_icf": Job(_run("annulus_icf"), 5.0),
-    "grasp_lump_icf": Job(_run("grasp_lump_icf"), 5.0),
+    "grasp_lump_icf": Job(_run("grasp_lump_icf"), 5.0, without_figures=True),
     "atrial_annulus": Job(_run("atrial_annulus"), 15.0),
-    "sweep_lumps": Job(_sweep("sweep_lumps", *STANDARD_OPTIONS), 4000.0, SAMPLES),
-    "sweep_classes": Job(_sweep("sweep_classes"), 1000.0, SAMPLES),
+    "sweep_lumps": Job(_sweep("sweep_lumps", *STANDARD_OPTIONS), 4000.0),
+    # At the base many of its meshes are tetrahedra, and a turn takes many minutes.
+    "sweep_classes": Job(_sweep("sweep_classes"), 1000.0, most_repeats=1),
 }
 
 
 @dataclass(frozen=True)
 class Spent:
-    """What a command took in s: by the clock, of processors, and of the clock without figures where its result tells."""
+    """What a command took in s: by the clock, of processors, and of the clock without figures where its result tells.
+
+    ``done`` are the samples of a sweep that have a result.
+    """
 
     seconds: float
     processor_seconds: float
-    solving_seconds: float | None
+    solving_seconds: float | None = None
+    done: int | None = None
+
+    @property
+    def figure(self) -> float:
+        """Seconds, or samples done per hour."""
+        return self.seconds if self.done is None else 3600 * self.done / self.seconds
 
 
 def measure(names: Sequence[str] = tuple(JOBS), base: str = BASE, repeats: int = REPEATS) -> dict[str, dict[str, float]]:
-    """Medians of each job here and at the base, which take turns, after a run of each that compiles and fills its caches."""
+    """Medians of each job here and at the base, which take turns, after a run of each that compiles and makes its meshes."""
     figures: dict[str, dict[str, float]] = {}
     with _checkout(base) as earlier, tempfile.TemporaryDirectory() as work:
         for name in names:
             job = JOBS[name]
             taken: dict[str, list[Spent]] = {"base": [], "here": []}
-            for turn in range(repeats + 1):
+            for turn in range(min(repeats, job.most_repeats) + 1):
                 for side, place in (("base", earlier), ("here", ROOT)):
                     spent = _spent(job, place, Path(work) / side, f"{name}_{turn}")
                     if turn:
                         taken[side].append(spent)
-            figures[name] = _summed_up(job, taken)
+            figures[name] = _summed_up(taken)
     return figures
 
 
-def _summed_up(job: Job, taken: dict[str, list[Spent]]) -> dict[str, float]:
-    figures = {"asked": job.asked}
+def _summed_up(taken: dict[str, list[Spent]]) -> dict[str, float]:
+    """Medians of both sides, and how many times as fast this commit is."""
+    figures: dict[str, float] = {}
     for side, runs in taken.items():
-        seconds = median(spent.seconds for spent in runs)
-        figures |= {side: job.figure(seconds), f"{side}_seconds": seconds}
+        figures |= {side: median(spent.figure for spent in runs), f"{side}_seconds": median(spent.seconds for spent in runs)}
         figures[f"{side}_processor_seconds"] = median(spent.processor_seconds for spent in runs)
-        if all(spent.solving_seconds is not None for spent in runs):
-            figures[f"{side}_solving_seconds"] = median(spent.solving_seconds or 0.0 for spent in runs)
-    figures["ratio"] = figures["base_seconds"] / figures["here_seconds"]
+        for name in ("solving_seconds", "done"):
+            values = [getattr(spent, name) for spent in runs]
+            if None not in values:
+                figures[f"{side}_{name}"] = float(median(values))
+    faster = figures["base"] / figures["here"]
+    figures["ratio"] = 1 / faster if "here_done" in figures else faster
     return figures
 
 
@@ -124,30 +139,34 @@ def _spent(job: Job, place: Path, work: Path, name: str) -> Spent:
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(command, cwd=place, env=environment, check=False, capture_output=True, text=True)
     seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode not in ((0, 3) if job.answers else (0,)):  # samples that failed are counted in the store
+    if done.returncode not in ((0, 3) if job.is_sweep else (0,)):  # samples that failed are counted in the store
         raise RuntimeError(f"{' '.join(command)} in {place} ended with {done.returncode}: {done.stderr[-500:]}")
     used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    if job.is_sweep:
+        return Spent(seconds, used, done=samples_done(out))
     return Spent(seconds, used, _solving_seconds(out / "result.json"))
 
 
-def _solving_seconds(result: Path) -> float | None:
-    """Seconds from the case to the last state, figures not counted, if this is the result of a run."""
-    if not result.exists():
-        return None
-    timing = json.loads(result.read_text())["timing"]
-    return float(timing["total"])
+def _solving_seconds(result: Path) -> float:
+    """Seconds from the case to the last state, figures not counted."""
+    return float(json.loads(result.read_text())["timing"]["total"])
 
 
 def rows(figures: dict[str, dict[str, float]]) -> list[tuple[str, str, str]]:
     """Rows of the performance table: what, what is asked, what was measured here and at the base."""
-    made = []
-    for name, taken in figures.items():
-        per_hour = JOBS[name].answers > 0
-        unit = " per hour" if per_hour else " s"
-        solving = "" if "here_solving_seconds" not in taken else f" ({taken['here_solving_seconds']:.1f} s without figures)"
-        measured = f"{taken['here']:.3g}{unit}{solving}, {taken['ratio']:.1f} times as fast as {BASE} ({taken['base']:.3g}{unit})"
-        made.append((f"`{name}.yaml`, {'samples' if per_hour else 'whole command'}", f"{taken['asked']:g}{unit}", measured))
-    return made
+    return [_row(name, JOBS[name], taken) for name, taken in figures.items()]
+
+
+def _row(name: str, job: Job, taken: dict[str, float]) -> tuple[str, str, str]:
+    if job.is_sweep:
+        what = f"`{name}.yaml` by turns, {taken['here_done']:.0f} of {SAMPLES} samples done"
+        rates = [f"{taken[side]:.0f} per hour" for side in ("here", "base")]
+        return what, f"{job.asked:.0f} per hour", f"{rates[0]}, {taken['ratio']:.1f} times as many as {BASE} ({rates[1]})"
+    whole, solving = ([taken[f"{side}{kind}_seconds"] for side in ("here", "base")] for kind in ("", "_solving"))
+    (here, base), beside = (solving, whole) if job.without_figures else (whole, solving)
+    what, other = ("to the last state", "with") if job.without_figures else ("whole command", "without")
+    measured = f"{here:.2f} s ({beside[0]:.1f} s {other} figures), {base / here:.1f} times as fast as {BASE} ({base:.1f} s)"
+    return f"`{name}.yaml`, {what}", f"{job.asked:g} s", measured
 
 
 def main() -> None:
@@ -155,7 +174,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", metavar="NAME", nargs="*", default=list(JOBS), help=f"of {', '.join(JOBS)}; all by default")
     parser.add_argument("--base", default=BASE, help="commit to compare with; default: %(default)s")
-    parser.add_argument("--repeats", type=int, default=REPEATS, help="runs of each; default: %(default)s")
+    parser.add_argument("--repeats", type=int, default=REPEATS, help="runs of each at most; default: %(default)s")
     arguments = parser.parse_args()
     figures = measure(arguments.names, arguments.base, arguments.repeats)
     table = "\n".join(f"| {' | '.join(row)} |" for row in rows(figures))

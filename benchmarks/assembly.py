@@ -47,3 +47,9 @@ def measure(cells: int = 24) -> dict[str, float]:
         "seconds": seconds,
         "tetrahedra_per_second": len(mesh.elements) / seconds,
     }
+
+
+def rows(taken: dict[str, float]) -> list[tuple[str, str, str]]:
+    """The row of the performance table: what, what is asked, what was measured."""
+    rate = f"{round(taken['tetrahedra_per_second'], -3):,.0f} per second".replace(",", " ")
+    return [("assembly, residual and tangent, P2/P1 tetrahedra", "80 000 per second", rate)]

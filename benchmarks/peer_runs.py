@@ -30,7 +30,7 @@ SYSTEM_PYTHON = "/usr/bin/python3"
 MODULES = {"getfem": "getfem", "fenicsx": "dolfinx"}
 """Programs of the system's Python, and the module each needs there."""
 OPTIONAL = ("calculix", *MODULES)
-ABSENT = "not present"
+ABSENT = "not installed"
 REASON_LENGTH = 160
 """Characters of an error message that fit into a table."""
 

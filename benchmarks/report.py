@@ -1,156 +1,118 @@
 """Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
 
-python benchmarks/report.py [--readme] [--peers [FILE]] [--history] [--kept FILE]
+python benchmarks/report.py [PART ...] [--all] [--readme] [--history] [--kept FILE]
+
+Without names all parts but the long ones are measured; with ``--all``, which ``--readme`` implies, those too.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import os
-import platform
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import against
 import assembly
 import commands
 import data_sets
-import figures as pictures
+import figures
 import grasp
 import history
 import localization
 import peers
+import scale
 import sensor_chain
 import stretch
+import taxels
+import validate
 import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
 START = "<!-- performance table: written by `python benchmarks/report.py --readme` -->"
 END = "<!-- end of performance table -->"
-PARTS = (assembly, viscoelasticity, commands, pictures, grasp, sensor_chain, localization, data_sets, against, stretch)
+PARTS = {
+    part.__name__: part
+    for part in (
+        commands,
+        against,
+        grasp,
+        taxels,
+        assembly,
+        viscoelasticity,
+        sensor_chain,
+        localization,
+        figures,
+        data_sets,
+        validate,
+        scale,
+        stretch,
+        peers,
+    )
+}
+"""Modules with ``measure`` and ``rows``, in the order of the table."""
+LONG = ("validate", "scale", "peers")
+"""Eight minutes, half an hour, and one to two hours with every other program installed."""
+Figures = dict[str, dict[str, Any]]
 
 
-def table(figures: dict[str, dict[str, float]]) -> str:
-    """Markdown table of what was asked and what was measured."""
-    job, speed, closed = figures["commands"], figures["assembly"], figures["viscoelasticity"]
-    rows = [
-        ("first run of the main job, compilation included", "under 60 s", f"{job['first_run_seconds']:.1f} s"),
-        ("later runs of the main job", "under 20 s", f"{job['later_run_seconds']:.1f} s"),
-        ("`tactsim --help`", "under 0.3 s", f"{job['help_seconds']:.2f} s"),
-        (
-            "assembly, residual and tangent, P2/P1 tetrahedra",
-            "80 000 per second",
-            f"{round(speed['tetrahedra_per_second'], -3):,.0f} per second".replace(",", " "),
-        ),
-        (
-            "force-displacement pairs of the exact annulus, one core",
-            "1 000 000 per second",
-            f"{round(closed['pairs_per_second'], -5):,.0f} per second".replace(",", " "),
-        ),
-        (
-            "one step of the atrial model, compiled / from Python",
-            "under 5 µs",
-            f"{closed['step_compiled_microseconds']:.2f} / {closed['step_from_python_microseconds']:.2f} µs",
-        ),
-        *(
-            (f"`{name}.yaml`", "under 120 s", f"{job[f'{name}_seconds']:.1f} s (exit {job[f'{name}_exit_code']:.0f})")
-            for name in commands.CASES[1:]
-        ),
-        (
-            f"`grasp_lump_icf.yaml`, {figures['grasp']['unknowns']:.0f} unknowns",
-            "under 30 s, 2 GB",
-            f"{figures['grasp']['total_seconds']:.1f} s to the taxels, {figures['grasp']['seconds']:.1f} s with all figures, "
-            f"{figures['grasp']['peak_megabytes'] / 1000:.2f} GB",
-        ),
-        (
-            "18 sensors at 1 kHz, conductance to force, in chunks of 10 ms / at once",
-            "100 times real time",
-            f"{figures['sensor_chain']['stream_real_time_factor']:.0f} / "
-            f"{figures['sensor_chain']['record_real_time_factor']:.0f} times",
-        ),
-        (
-            "three views of two 32 x 32 matrices at 60 x 100 pixels",
-            "under 1 ms",
-            f"{1e3 * figures['localization']['views_32_seconds']:.2f} ms",
-        ),
-        *pictures.rows(figures["figures"]),
-        *_data_sets(figures["data_sets"]),
-        *against.rows(figures["against"]),
-        *stretch.rows(figures["stretch"]),
-        *_against_peers(figures.get("peers")),
-    ]
+def table(measured: Figures) -> str:
+    """Markdown table of what is asked and what was measured, with the machine, the day and the commit."""
+    rows = [row for name, part in PARTS.items() if name in measured for row in part.rows(measured[name])]
     lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
-    return "\n".join([*lines, "", f"On {os.cpu_count()} cores, Python {platform.python_version()}, {platform.machine()}."])
+    return "\n".join([*lines, "", f"On {history.machine()}; {history.today()}, commit {history.commit()}."])
 
 
-def _data_sets(taken: dict[str, float]) -> list[tuple[str, str, str]]:
-    """Rows of the data sets."""
-    return [
-        (
-            f"samples of `sweep_lumps.yaml` at 1 mm and friction 0.6, {taken['grasps_done']:.0f} of {taken['grasps']:.0f} done",
-            "1 500 per hour",
-            f"{taken['grasps_per_hour']:.0f} per hour",
-        ),
-        (f"{taken['fast_samples']:.0f} samples of `sweep_closed_form.yaml`", "under 120 s", f"{taken['fast_seconds']:.0f} s"),
-        ("opening that store with xarray", "under 1 s", f"{taken['open_seconds']:.2f} s"),
-    ]
+def measure(names: Sequence[str], kept: Path | None = None) -> Figures:
+    """The figures of each part by its name; hours of figures outlive a part that fails.
 
-
-def _against_peers(taken: dict[str, float] | None) -> list[tuple[str, str, str]]:
-    """Rows of the comparison with FElupe, if it was asked for."""
-    if taken is None:
-        return []
-    rows = [
-        (
-            f"block of {size} displacement unknowns, faster than FElupe by",
-            f"{asked:g} times",
-            f"{taken[f'{size}_ratio']:.1f} times",
-        )
-        for size, asked in peers.TARGETS.items()
-    ]
-    agreement = taken["agreement_largest_difference"]
-    return [*rows, ("reaction and nine pressures, difference from FElupe, both mixed", "0.1 %", f"{100 * agreement:.4f} %")]
-
-
-def _printed(path: Path) -> dict[str, float]:
-    """The figures at the beginning of what ``peers.py`` printed in an earlier run."""
-    return json.JSONDecoder().raw_decode(path.read_text())[0]
-
-
-def _measured(kept: Path | None) -> dict[str, dict]:
-    """The figures of every part by its name; half an hour's figures outlive a part that fails."""
-    figures: dict[str, dict] = json.loads(kept.read_text()) if kept is not None and kept.exists() else {}
-    for part in PARTS:
-        if part.__name__ not in figures:
-            figures[part.__name__] = part.measure()
+    Figures of another machine or of another state of the package do not stand beside those of this run.
+    """
+    origin = {"machine": history.machine(), "package": history.package()}
+    before = json.loads(kept.read_text()) if kept is not None and kept.exists() else {"of": origin, "parts": {}}
+    if before["of"] != origin:
+        raise SystemExit(f"{kept} was measured on {before['of']}, this is {origin}")
+    parts: Figures = before["parts"]
+    for name in names:
+        if name not in parts:
+            sys.stderr.write(f"{name}\n")
+            parts[name] = PARTS[name].measure()
             if kept is not None:
-                kept.write_text(json.dumps(figures, indent=2) + "\n")
-    return figures
+                kept.write_text(json.dumps({"of": origin, "parts": parts}, indent=2) + "\n")
+    return {name: parts[name] for name in names}
+
+
+def with_table(readme: str, text: str) -> str:
+    """The README with another table."""
+    before, rest = readme.split(START)
+    return f"{before}{START}\n{text}\n{END}{rest.split(END)[1]}"
 
 
 def main() -> None:
     """Measure, print, and on request rewrite the table of the README."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--readme", action="store_true", help="write the table into README.md")
-    parser.add_argument(
-        "--peers", nargs="?", const="", help="also solve one block with other programs (minutes), or take what peers.py printed"
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", metavar="PART", nargs="*", help=f"of {', '.join(PARTS)}")
+    parser.add_argument("--all", action="store_true", help=f"also {', '.join(LONG)}")
+    parser.add_argument("--readme", action="store_true", help="write the table of all parts into README.md")
     parser.add_argument("--history", action="store_true", help=f"add the figures to {history.HISTORY.name}")
     parser.add_argument(
         "--kept", type=Path, metavar="FILE", help="keep the figures of each part here, and take those that stand here"
     )
     arguments = parser.parse_args()
-    figures = _measured(arguments.kept)
-    if arguments.peers is not None:
-        figures["peers"] = peers.measure() if arguments.peers == "" else _printed(Path(arguments.peers))
-    if arguments.history:
-        history.append(figures)
-    text = table(figures)
-    sys.stdout.write(f"{json.dumps(figures, indent=2)}\n\n{text}\n")
+    unknown = set(arguments.parts) - set(PARTS)
+    if unknown or (arguments.readme and arguments.parts):
+        parser.error(f"no such part: {', '.join(unknown)}" if unknown else "--readme writes the table of all parts")
+    every = arguments.all or arguments.readme
+    names = [name for name in PARTS if name in arguments.parts or (not arguments.parts and (every or name not in LONG))]
+    measured = measure(names, arguments.kept)
+    text = table(measured)
+    sys.stdout.write(f"{json.dumps(measured, indent=2)}\n\n{text}\n")
     if arguments.readme:
-        before, rest = README.read_text().split(START)
-        README.write_text(f"{before}{START}\n{text}\n{END}{rest.split(END)[1]}")
+        README.write_text(with_table(README.read_text(), text))
+    if arguments.history:
+        history.append(measured)
 
 
 if __name__ == "__main__":

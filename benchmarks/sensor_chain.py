@@ -36,6 +36,13 @@ def measure() -> dict[str, float]:
     return figures | {"probe_samples_per_second": _probe_samples_per_second()}
 
 
+def rows(taken: dict[str, float]) -> list[tuple[str, str, str]]:
+    """The row of the performance table: what, what is asked, what was measured."""
+    what = "18 sensors at 1 kHz, conductance to force, in chunks of 10 ms / at once"
+    factors = " / ".join(f"{taken[f'{how}_real_time_factor']:.0f}" for how in ("stream", "record"))
+    return [(what, "100 times real time", f"{factors} times")]
+
+
 def _probe_samples_per_second() -> float:
     """Samples of the switch probe per second: 10 s at 1 kHz on one tissue; 2000 are asked for."""
     material = NeoHookean(c10=5e3, relaxation=Relaxation(fractions=(0.9,), times=(6.0,)))

@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import platform
 import resource
 import subprocess
 import sys
 import time
 from collections.abc import Sequence
 
+import history
 import numpy as np
 from scipy.optimize import brentq
 
@@ -136,7 +136,8 @@ def rows(figures: dict[str, dict[str, float]]) -> list[tuple[str, str, str]]:
             (
                 f"neo-Hookean plate pulled to ten times its thickness, {size} displacement unknowns",
                 f"published: {seconds} s ({where})" if seconds else "-",
-                f"{taken['seconds']:.1f} s, {taken['systems']:.0f} systems, force off by {taken['force_error']:.0e}",
+                f"{taken['seconds']:.1f} s ({history.machine()}, {history.today()}), {taken['systems']:.0f} systems, "
+                f"force off by {taken['force_error']:.0e}",
             )
         )
     return made
@@ -148,7 +149,7 @@ def main() -> None:
     parser.add_argument("--cells", type=int, nargs="+", default=list(CELLS))
     figures = measure(parser.parse_args().cells)
     table = "\n".join(f"| {' | '.join(row)} |" for row in rows(figures))
-    sys.stdout.write(f"{json.dumps({'machine': platform.machine(), **figures}, indent=2)}\n\n{table}\n")
+    sys.stdout.write(f"{json.dumps({'machine': history.machine(), 'date': history.today(), **figures}, indent=2)}\n\n{table}\n")
 
 
 if __name__ == "__main__":

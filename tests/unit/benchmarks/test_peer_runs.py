@@ -43,18 +43,18 @@ def test_program_that_measures_is_read(runs, tmp_path):
 
 def test_absent_module_is_reported(runs, monkeypatch, tmp_path):
     monkeypatch.setattr(runs, "MODULES", {"getfem": "module_that_nobody_has"})
-    assert outcome(runs, tmp_path, "raise SystemExit('must not run')") == "not present"
+    assert outcome(runs, tmp_path, "raise SystemExit('must not run')") == "not installed"
 
 
 @pytest.mark.parametrize("program", ["getfem", "fenicsx"])
 def test_absent_system_python_is_reported(peers, monkeypatch, tmp_path, program):
     monkeypatch.setattr(peers.peer_runs, "SYSTEM_PYTHON", str(tmp_path / "python3"))
-    assert peers.peer_runs.optional(tmp_path, program, tmp_path / "problem.npz", LIMIT) == "not present"
+    assert peers.peer_runs.optional(tmp_path, program, tmp_path / "problem.npz", LIMIT) == "not installed"
 
 
 def test_absent_command_is_reported(peers, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert peers.peer_runs.optional(tmp_path, "calculix", tmp_path / "problem.npz", LIMIT) == "not present"
+    assert peers.peer_runs.optional(tmp_path, "calculix", tmp_path / "problem.npz", LIMIT) == "not installed"
 
 
 def test_failure_is_reported_with_its_reason_in_a_line_and_whole_beside_it(runs, tmp_path, capsys):
@@ -74,10 +74,10 @@ def test_halt_is_reported_with_its_limit(runs, tmp_path):
 def test_table_has_a_row_for_every_program(peers):
     columns = ("seconds", "processor_seconds", "setup_seconds", "iterations", "factorisations", "peak_megabytes")
     figures = {f"9_{program}_{column}": 1.0 for program in ("tactsim", "felupe", "fenicsx") for column in columns}
-    figures |= {"9_calculix": "stopped after 5 s", "9_getfem": "not present", "9_fenicsx_difference_from_felupe": 2e-9}
+    figures |= {"9_calculix": "stopped after 5 s", "9_getfem": "not installed", "9_fenicsx_difference_from_felupe": 2e-9}
     figures |= {"9_ratio": 4.0, "agreement_largest_difference": 1e-5, "agreement_unknowns": 9.0}
     text = peers.table(figures | {"load_average_before": 0.0, "load_average_after": 0.0})
     assert "| 9 | calculix | stopped after 5 s |" in text
-    assert "| 9 | getfem | not present |" in text
+    assert "| 9 | getfem | not installed |" in text
     assert "| 9 | fenicsx | 1 | 1 | 1 | 1 | 1 | 1 |" in text
     assert "9: fenicsx and FElupe, displacement forms, differ by 2.0e-09" in text
