@@ -101,7 +101,8 @@ class GradedSource(BlockMeshSettings):
     inclusion_size: Positive = 2e-3
     """Edge length at the inclusion, about; three to five cells across it at least, by its size and place."""
     edge_size: Positive | None = 1.6e-3
-    """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
+    """Thickness of cells at the faces, from which they grow at once; null means a third of size. Where a jaw is smaller than the
+    block, they are three quarters as thick, and thin also on both sides of its edges."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
@@ -111,7 +112,7 @@ class GradedSource(BlockMeshSettings):
         return GAP_SHARE * self.inclusion_size
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m around its inclusions, if any; thin also at the edges of ``flats`` (2, 2) in m."""
+        """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_block
 
         block = graded_block(size, inclusions, _sizes(self), flats)
@@ -241,7 +242,7 @@ def _tag(name: str) -> int | str:
 
 
 class AutomaticSource(FrozenModel):
-    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and around bodies below the edge of a jaw."""
+    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
 
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()

@@ -1,12 +1,11 @@
-"""Tissue beside jaws that are smaller than the block: cells that grow away from the edges of their flats, around what is between.
+"""Tissue beside jaws that are smaller than the block: cells that grow away from the edges of their flats.
 
-Under the edge of a stiff flat the pressure has its peak, as at the free edges of a block that the jaws cover. Therefore the part of
-the block between the flats of all jaws is meshed as a block of its own, thin cells at its sides, and its cells go on straight from
-there to the faces of the whole block::
+Under the edge of a stiff flat the pressure has its peak, as at the free faces of a block that the jaws cover. Therefore the part
+of the block between the flats of all jaws is meshed as a block of its own, with thin cells at its sides, and from there its cells
+go on straight to the faces of the whole block::
 
-    +----+--+-+-+--+----+----+--+-+-+--+----+
-    |    |  | | |  |    |    |  | | |  |    |      the columns between the bars lie between the flats
-    +----+--+-|-+--+----+----+--+-|-+--+----+
+    face      edge of a flat         edge of a flat      face
+      +------+---+--+--+---+----+----+---+--+--+---+------+
 """
 
 from __future__ import annotations
@@ -25,9 +24,9 @@ from tactsim.mesh.graded.lines import NEAREST, edge_thickness, mirrored_line, sp
 from tactsim.mesh.structured_block import SIDES
 
 THINNER = 0.75
-"""Thickness of the cells at the edges of flats, and at all that is pressed with them, over that at the faces of a block that the jaws
-cover. Pressure under the edge of a flat grows faster than at a free face; the same number of cells read the taxels there 0.4 % low
-instead of 1.4 %."""
+"""Thickness of the cells at the edges of flats, and at all faces with them, over that at the faces of a block that the jaws
+cover. Pressure grows faster towards the edge of a flat than towards a free face: as many cells read taxels there 0.4 % low, and
+1.4 % with the usual thickness."""
 ON_SIDE = 1e-9
 """Distance from a side of the part between the flats that counts as on it, over the longest side of the block."""
 
@@ -73,8 +72,8 @@ class Footprint:
 def footprint_of(flats: Sequence[Array], extent: Array, settings: BlockMeshSettings) -> Footprint:
     """What lies between flats (2, 2), each given by its low and its high corner in m, of a block of size (3,) in m.
 
-    An edge of a flat that is less than half a thin cell from a face of the block, or from another edge, is taken to be there. Without
-    flats it is the whole block.
+    An edge of a flat that is less than half a thin cell from a face of the block, or from another edge, is taken to be there.
+    Without flats it is the whole block.
 
     Raises
     ------
@@ -130,7 +129,7 @@ def widened(cells: Cells, footprint: Footprint) -> Cells:
 
 
 def _continued(cells: Cells, axis: int, on: Array, planes: Array) -> Cells:
-    """The same with a row of cells to each of the planes in m across an axis, from the sides whose corners are all ``on`` (n,)."""
+    """The same with rows of cells up to ``planes`` in m across an axis, from the sides whose corners are all ``on`` (n,)."""
     if not len(planes):
         return cells
     sides = cells.cells[:, SIDES]

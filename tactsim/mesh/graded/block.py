@@ -48,8 +48,8 @@ def graded_block(
     A sphere or an ellipsoid may lie anywhere in the block, several where boxes along its axes hold them apart; tubes lead along
     one axis side by side, one lump among them at most. Cells are wanted ``edge_size`` thick at the faces (by default a third of
     ``size``), each next one longer by ``growth`` up to ``size``; on an inclusion they are at most about ``inclusion_size`` long,
-    shorter where longer ones would be badly curved. Where the ``flats`` of jaws, each given by its low and its high corner (2, 2) in m,
-    end within the block, cells are thin on both sides of their edges instead; inclusions must lie between all of them.
+    shorter where longer ones would be badly curved. Where the ``flats`` of jaws, each by its low and its high corner (2, 2) in m,
+    end within the block, cells are thin on both sides of their edges; inclusions must lie between all of them.
 
     Raises
     ------

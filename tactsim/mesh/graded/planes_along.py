@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded.lines import REACH, ROOM, box_shares, edge_thickness, mirrored_line
+from tactsim.mesh.graded.lines import REACH, ROOM, box_shares, edge_thickness, mirrored_line, spaced
 from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.sections import Hollow
 
@@ -56,12 +56,17 @@ def planes_along(
         return mirrored_line(length, settings), (0, 0)
     lines = [np.zeros(1)]
     for low, high in itertools.pairwise(sorted(knots)):
+        ends = knots[low], knots[high]
         if len(box) and low == box[0]:
             lines.append(box[1:])
-        elif np.isclose(low + high, length) and np.isclose(knots[low], knots[high]):
-            lines.append(low + mirrored_line(high - low, settings.model_copy(update={"edge_size": knots[low]}))[1:])
+        elif low == 0 and low not in thin and high in thin:
+            lines.append((high - spaced(high, settings))[-2::-1])
+        elif high == length and high not in thin and low in thin:
+            lines.append(low + spaced(length - low, settings)[1:])
+        elif np.isclose(low + high, length) and np.isclose(*ends):
+            lines.append(low + mirrored_line(high - low, settings.model_copy(update={"edge_size": ends[0]}))[1:])
         else:
-            lines.append(low + _between(high - low, (knots[low], knots[high]), settings)[1:])
+            lines.append(low + _between(high - low, ends, settings)[1:])
         lines[-1][-1] = high
     places = np.concatenate(lines)
     return places, (int(np.searchsorted(places, box[0])), int(np.searchsorted(places, box[-1]))) if len(box) else (0, 0)

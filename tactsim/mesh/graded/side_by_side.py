@@ -69,8 +69,8 @@ def bundle_of(
 ) -> tuple[Bundle, Array]:
     """The lines around tubes and a ball in a block of size (3,) in m, and the numbers of the tubes in their order.
 
-    ``finer`` counts how often cells across the boxes were added; cells along the tubes are thin at the places ``thin``, for x, y and
-    z, in m.
+    ``finer`` counts how often cells across the boxes were added; cells along the tubes are thin at the places ``thin`` in m,
+    given for x, y and z.
 
     Raises
     ------
