@@ -19,7 +19,7 @@ EQUAL = 3e-3
 SHARE = 8e-3
 """Difference allowed of a taxel from that of a finer mesh over the largest: that of a default mesh around an artery."""
 FINE = np.array([[77.226, 76.596, 77.226], [76.596, 78.849, 76.596], [77.226, 76.596, 77.226]]) * 1e-3
-"""Forces in N on the taxels of either jaw by 110 754 unknowns of ``{kind: graded, size: 3 mm, edge_size: 0.933 mm, growth: 0.6}``;
+"""Forces in N on the taxels of either jaw by 110 754 unknowns: ``{kind: graded, size: 3 mm, edge_size: 0.933 mm, growth: 0.6}``;
 58 140 unknowns, cells at the edges half as thick again, differ by 0.35 %."""
 CONVERGED = 4e-3
 """Difference allowed of the finer of two meshes, of which the finest differs by less."""
