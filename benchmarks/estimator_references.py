@@ -68,6 +68,7 @@ COLUMNS = (
 def overrides(reference: str, closing: str) -> list[str]:
     """What distinguishes a plain grasp from ``cases/grasp_plain.yaml``."""
     changed = {
+        "experiment.time.steps": "1",
         "experiment.mesh": "{kind: graded, size: 8 mm, inclusion_size: 4 mm, edge_size: 2.2 mm, growth: 1}",
         "experiment.loading.pieces": f"[{{kind: ramp, to: {closing} mm, duration: 1 s}}]",
     }

@@ -94,7 +94,7 @@ def test_an_option_that_names_a_missing_file_is_blamed(case: Path, capsys: pytes
 
 def test_a_missing_result_is_reported_with_file_line_and_key(capsys: pytest.CaptureFixture[str], case: Path) -> None:
     assert main(["run", str(CASES / "localize_lump.yaml")]) == 5
-    assert "localize_lump.yaml:12: experiment.grasp: cannot read the file results/grasp_lump_icf" in capsys.readouterr().err
+    assert "localize_lump.yaml:11: experiment.grasp: cannot read the file results/grasp_lump_icf" in capsys.readouterr().err
 
 
 def test_a_shipped_case_says_what_to_run_before_it(

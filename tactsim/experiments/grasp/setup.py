@@ -15,7 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
-from tactsim.experiments.grasp.mesh_choice import check_served, chosen_source, grasp_mesh
+from tactsim.experiments.grasp.mesh_choice import PlacedJaw, check_served, chosen_source, grasp_mesh
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.solid import Positive
@@ -206,24 +206,28 @@ class GraspSetup(FrozenModel):
     @property
     def source(self) -> AnySource:
         """Where the mesh comes from, as far as the case says without making it."""
-        return chosen_source(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS])
+        return chosen_source(self.mesh, self.block.size, self.shapes, self._placed)
 
     def sourced(self) -> SourcedBlock:
-        """The mesh; tetrahedra are finer at the edges of jaws that are smaller than the block and in its middle."""
-        centred = not any(self.upper.offset + self.lower.offset)
-        return grasp_mesh(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS], centred=centred)
+        """The mesh, finer at the edges of jaws that are smaller than the block."""
+        return grasp_mesh(self.mesh, self.block.size, self.shapes, self._placed)
+
+    @property
+    def _placed(self) -> list[PlacedJaw]:
+        """Both jaws where they stand."""
+        middle = np.array(self.block.size[:2]) / 2
+        return [PlacedJaw(self.jaw(side), middle + getattr(self, side).offset) for side in JAWS]
 
     def model(self, sourced: SourcedBlock) -> GraspModel:
         """The finite element model on a mesh."""
         from tactsim.mechanics.models.block_model import GraspModel
 
-        middle = np.array(self.block.size[:2]) / 2
         return GraspModel(
             sourced.block.mesh,
             self.materials,
             sourced.block.facets,
-            jaws=[self.jaw(side) for side in JAWS],
-            offsets=np.array([middle + self.upper.offset, middle + self.lower.offset]),
+            jaws=[placed.jaw for placed in self._placed],
+            offsets=np.array([placed.middle for placed in self._placed]),
         )
 
     @model_validator(mode="after")
@@ -239,7 +243,7 @@ class GraspSetup(FrozenModel):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
-        check_served(self.mesh, self.block.size, self.shapes)
+        check_served(self.mesh, self.block.size, self.shapes, self._placed)
         return self
 
     @model_validator(mode="after")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Positive
@@ -100,7 +101,8 @@ class GradedSource(BlockMeshSettings):
     inclusion_size: Positive = 2e-3
     """Edge length at the inclusion, about; three to five cells across it at least, by its size and place."""
     edge_size: Positive | None = 1.6e-3
-    """Thickness of cells at the faces, from which they grow at once; null means a third of size."""
+    """Thickness of cells at the faces, from which they grow at once; null means a third of size. Where a jaw is smaller than the
+    block, they are three quarters as thick, and thin also on both sides of its edges."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
@@ -109,11 +111,11 @@ class GradedSource(BlockMeshSettings):
         """Least distance in m between the inclusion and the faces."""
         return GAP_SHARE * self.inclusion_size
 
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m around its inclusions, if any."""
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
+        """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_block
 
-        block = graded_block(size, inclusions, _sizes(self))
+        block = graded_block(size, inclusions, _sizes(self), flats)
         origin = "graded cells"
         if block.fewer_layers:
             origin += f", layers fewer than usual around inclusions close to each other or to a face: {block.fewer_layers}"
@@ -240,8 +242,7 @@ def _tag(name: str) -> int | str:
 
 
 class AutomaticSource(FrozenModel):
-    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and for jaws smaller than the block, at
-    whose edges they are refined."""
+    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
 
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()
@@ -249,11 +250,11 @@ class AutomaticSource(FrozenModel):
     tetrahedra: TetrahedraSource = TetrahedraSource()
     """The tetrahedra otherwise."""
 
-    def chosen(self, size: Size, inclusions: Sequence[Inclusion], *, covered: bool) -> GradedSource | TetrahedraSource:
-        """What suits these inclusions in a block of this size in m, and jaws that cover it or not."""
+    def chosen(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> GradedSource | TetrahedraSource:
+        """What suits these inclusions in a block of this size in m, and jaws with these ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_misfit
 
-        return self.graded if covered and graded_misfit(size, inclusions) is None else self.tetrahedra
+        return self.graded if graded_misfit(size, inclusions, flats) is None else self.tetrahedra
 
 
 AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -22,13 +22,14 @@ from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import fitted
+from tactsim.mesh.graded.beside_jaws import Footprint, footprint_of, widened
 from tactsim.mesh.graded.bricks import brick_cells, bricks_of, check_apart
 from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
 from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
 from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
-from tactsim.mesh.graded.sections import Hollow, as_hollow
-from tactsim.mesh.graded.side_by_side import bundle_of
+from tactsim.mesh.graded.sections import Hollow, as_hollow, leading_axis
+from tactsim.mesh.graded.side_by_side import Bundle, bundle_of
 from tactsim.mesh.structured_block import SIDES, grid, product, ranks
 from tactsim.mesh.tetrahedra import mesh_key
 
@@ -37,14 +38,18 @@ ATTEMPTS = 3
 
 
 def graded_block(
-    size: Sequence[float], inclusions: Sequence[Inclusion] = (), settings: BlockMeshSettings | None = None
+    size: Sequence[float],
+    inclusions: Sequence[Inclusion] = (),
+    settings: BlockMeshSettings | None = None,
+    flats: Sequence[Array] = (),
 ) -> BlockMesh:
     """A block of ``size`` (3,) in m, each cell split into six tetrahedra; curved onto the inclusions.
 
     A sphere or an ellipsoid may lie anywhere in the block, several where boxes along its axes hold them apart; tubes lead along
     one axis side by side, one lump among them at most. Cells are wanted ``edge_size`` thick at the faces (by default a third of
     ``size``), each next one longer by ``growth`` up to ``size``; on an inclusion they are at most about ``inclusion_size`` long,
-    shorter where longer ones would be badly curved.
+    shorter where longer ones would be badly curved. Where the ``flats`` of jaws, each by its low and its high corner (2, 2) in m,
+    end within the block, cells are thin on both sides of their edges; inclusions must lie between all of them.
 
     Raises
     ------
@@ -56,17 +61,16 @@ def graded_block(
     """
     started, extent, settings = time.perf_counter(), np.asarray(size, float), settings or BlockMeshSettings()
     check_inclusions(extent, inclusions, 0.0)
-    key = f"graded-{mesh_key(size, inclusions, settings)}"
+    footprint = footprint_of(flats, extent, settings)
+    shape = (*size, *np.concatenate(footprint.thin[:2]).tolist()) if footprint.more.any() else size
+    key = f"graded-{mesh_key(shape, inclusions, settings)}"
     finished = partial(fitted, size=extent, inclusions=inclusions, key=key, started=started, slide=False, smooth=False)
     if not inclusions:
-        lines = [mirrored_line(float(length), settings) for length in extent]
-        _check_size([len(line) - 1 for line in lines])
-        corners, plain = product(lines), grid([len(line) - 1 for line in lines])
-        simplices = _sixths(plain, _order(np.abs(corners - extent / 2)))
-        return finished(corners, simplices, np.zeros(len(simplices), np.int64))
+        cells = widened(_plain(footprint), footprint)
+        return finished(cells.corners, _sixths(cells.cells, _order(cells.places)), np.zeros(6 * len(cells.cells), np.int64))
     reason: ConvergenceError | None = None
     for finer, fewer in itertools.product(range(ATTEMPTS), range(LEAST_LAYERS)):
-        cells = _cells(inclusions, extent, settings, finer, partial(layer_ends, settings=settings, fewer=fewer))
+        cells = _cells(inclusions, footprint, finer, partial(layer_ends, settings=settings, fewer=fewer))
         simplices = _sixths(cells.cells, _order(cells.places))
         try:
             mesh = finished(cells.corners, simplices, np.repeat(cells.regions, 6), layers=cells.layers)
@@ -78,18 +82,57 @@ def graded_block(
     raise ConvergenceError(f"no graded cells {verb} {names}: {reason}; take mesh.kind: tetrahedra")
 
 
-def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion]) -> str | None:
-    """Why inclusions cannot have graded cells; None if they may."""
-    extent = np.asarray(size, float)
+def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+    """Why inclusions between these ``flats`` cannot have graded cells; None if they may."""
     try:
-        lumps, tubes = _sorted(inclusions, extent)
-        if tubes:
-            bundle_of(tubes, lumps[0] if lumps else None, extent, BlockMeshSettings(), 0)
-        elif len(lumps) > 1:
-            check_apart(lumps)
+        between = _between(inclusions, footprint_of(flats, np.asarray(size, float), BlockMeshSettings()))
+        if between.tubes:
+            _bundle(between, 0)
+        elif len(between.lumps) > 1:
+            check_apart(between.lumps)
     except InputError as error:
         return str(error)
     return None
+
+
+@dataclass(frozen=True)
+class _Between:
+    """The part of a block that is meshed around its inclusions, and these by coordinates from its low corner."""
+
+    footprint: Footprint
+    lumps: list[Lump]
+    tubes: list[Hollow]
+
+    @property
+    def ball(self) -> Lump | None:
+        """The first lump."""
+        return self.lumps[0] if self.lumps else None
+
+
+def _between(inclusions: Sequence[Inclusion], footprint: Footprint) -> _Between:
+    """The inclusions in the footprint of the jaws, which goes from face to face along tubes.
+
+    Raises
+    ------
+    InputError
+        If inclusions are neither lumps nor tubes, or reach beyond an edge of a jaw.
+    """
+    lumps, tubes = _sorted(inclusions, footprint.block)
+    if tubes:
+        footprint = footprint.from_face_to_face(axis := leading_axis(tubes, footprint.block))
+    lumps, tubes = [lump.moved(-footprint.low) for lump in lumps], [tube.moved(-footprint.low) for tube in tubes]
+    held = all((lump.bounds[0] >= 0).all() and (lump.bounds[1] <= footprint.size).all() for lump in lumps)
+    if not held or not all(tube.leads(axis, footprint.size) for tube in tubes):
+        raise InputError(
+            "graded cells serve inclusions that lie between the flats of both jaws, or lead from there along an axis"
+        )
+    return _Between(footprint, lumps, tubes)
+
+
+def _bundle(between: _Between, finer: int) -> tuple[Bundle, Array]:
+    """What `bundle_of` gives for tubes between flats."""
+    footprint = between.footprint
+    return bundle_of(between.tubes, between.ball, footprint.size, footprint.settings, finer, thin=footprint.thin)
 
 
 def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump], list[Hollow]]:
@@ -115,15 +158,27 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
     return lumps, tubes
 
 
-def _cells(inclusions: Sequence[Inclusion], extent: Array, settings: BlockMeshSettings, finer: int, layering: Layering) -> Cells:
+def _cells(inclusions: Sequence[Inclusion], footprint: Footprint, finer: int, layering: Layering) -> Cells:
     """Cells around the inclusions, their regions numbered as these."""
-    lumps, tubes = _sorted(inclusions, extent)
-    if tubes:
-        bundle, order = bundle_of(tubes, lumps[0] if lumps else None, extent, settings, finer)
-        _check_size([count - 1 for count in bundle.grid.shape[:3]])
+    between = _between(inclusions, footprint)
+    footprint = between.footprint
+    if between.tubes:
+        bundle, order = _bundle(between, finer)
+        _check_size(footprint, [count - 1 for count in bundle.grid.shape[:3]], bundle.sections.axes)
         cells = swept_cells(bundle, layering)
-        return replace(cells, regions=_numbered(cells.regions, order, inclusions, extent))
-    return _cells_of_lumps(lumps, extent, settings, finer, layering)
+        cells = replace(cells, regions=_numbered(cells.regions, order, inclusions, footprint.block))
+    else:
+        cells = _cells_of_lumps(between, finer, layering)
+    return widened(cells, footprint)
+
+
+def _plain(footprint: Footprint) -> Cells:
+    """Cells between the flats without inclusions."""
+    lines = [mirrored_line(float(length), footprint.settings) for length in footprint.size]
+    counts = [len(line) - 1 for line in lines]
+    _check_size(footprint, counts)
+    corners = product(lines)
+    return Cells.plain(corners, grid(counts), np.abs(corners - footprint.size / 2))
 
 
 def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], extent: Array) -> Array:
@@ -136,20 +191,22 @@ def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], ext
     return labels
 
 
-def _cells_of_lumps(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int, layering: Layering) -> Cells:
+def _cells_of_lumps(between: _Between, finer: int, layering: Layering) -> Cells:
     """Cells around one lump, or around several."""
+    lumps, size, settings = between.lumps, between.footprint.size, between.footprint.settings
     if len(lumps) == 1:
-        around = lines_around(lumps[0].ball, lumps[0].bounds, extent, settings, finer)
-        _check_size([len(line.near) - 1 for line in around])
+        around = lines_around(lumps[0].ball, lumps[0].bounds, size, settings, finer)
+        _check_size(between.footprint, [len(line.near) - 1 for line in around])
         return _around(lumps[0].ball, around, layering)
-    bricks = bricks_of(lumps, extent, settings, finer)
-    _check_size([len(away) - 1 for away in bricks.away])
+    bricks = bricks_of(lumps, size, settings, finer)
+    _check_size(between.footprint, [len(away) - 1 for away in bricks.away])
     return brick_cells(bricks, layering)
 
 
-def _check_size(cells: Sequence[int]) -> None:
-    """Refuse a grid of too many cells (3,)."""
-    check_unknowns(unknowns_of_cells(cells), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
+def _check_size(footprint: Footprint, cells: Sequence[int], axes: Sequence[int] = (0, 1, 2)) -> None:
+    """Refuse a grid of too many cells (3,) along ``axes`` of the footprint, with those beside it."""
+    more = footprint.more[list(axes)]
+    check_unknowns(unknowns_of_cells((more + cells).tolist()), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
 
 
 def _around(ball: BallImage, lines: Sequence[Line], layering: Layering) -> Cells:

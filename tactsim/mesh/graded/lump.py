@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,3 +26,7 @@ class Lump:
     def center(self) -> Array:
         """Its middle (3,) in m."""
         return self.ball.center
+
+    def moved(self, way: Array) -> Lump:
+        """The same, moved by a way (3,) in m."""
+        return Lump(replace(self.ball, center=self.ball.center + way), self.bounds + way)

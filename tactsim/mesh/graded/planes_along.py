@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded.lines import REACH, ROOM, box_shares, edge_thickness, mirrored_line
+from tactsim.mesh.graded.lines import REACH, ROOM, box_shares, edge_thickness, mirrored_line, spaced
 from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.sections import Hollow
 
@@ -23,21 +23,21 @@ TILT_ROOM = 1.5
 
 
 def planes_along(
-    tubes: Sequence[Hollow], ball: Lump | None, size: Array, settings: BlockMeshSettings, *, axis: int, across: int
+    tubes: Sequence[Hollow], ball: Lump | None, size: Array, settings: BlockMeshSettings, *, axis: int, across: int, thin: Array
 ) -> tuple[Array, tuple[int, int]]:
     """Ascending places in m from face to face, and the numbers of the first and the last across the box of the ball.
 
-    Cells grow from the faces, from the ends of tubes on the way, and from the ball.
+    Cells grow from the places ``thin`` (k,) in m, from the ends of tubes on the way, and from the ball.
 
     Raises
     ------
     InputError
-        If a tube ends beside the ball.
+        If a tube ends beside the ball, or cells are thin there.
     """
     length, edge = float(size[axis]), edge_thickness(settings)
     longest = min([settings.size, *(MOST_TURN * tube.tightest for tube in tubes)])
     settings = settings.model_copy(update={"size": longest, "edge_size": min(edge, longest)})
-    knots = {0.0: min(edge, longest), length: min(edge, longest)}
+    knots = {0.0: longest, length: longest} | {float(place): min(edge, longest) for place in thin}
     for tube in tubes:
         for end, parameter in zip(tube.ends(axis, size), np.sort(tube.line.limits), strict=True):
             if 0 < end < length:
@@ -45,20 +45,28 @@ def planes_along(
                 knots[end] = max(settings.inclusion_size, TILT_ROOM * tube.outer * float(np.sqrt(1 - tangent[axis] ** 2)))
     box: Array = np.zeros(0)
     if ball is not None:
-        gaps = np.array([ball.bounds[0, axis], length - ball.bounds[1, axis]])
+        low, high = ball.bounds[:, axis]
+        gaps = np.array([low - thin[thin <= low].max(initial=0.0), thin[thin >= high].min(initial=length) - high])
         begin, end = ball.bounds[:, axis] + np.array([-1, 1]) * np.minimum(ROOM * gaps, (REACH - 1) * ball.half[axis])
         if any(begin < place < end for place in knots):
-            raise InputError("graded cells serve a lump beside a tube, not beside the end of one")
+            raise InputError("graded cells serve a lump beside a tube, not beside the end of one or below the edge of a jaw")
         box = np.interp(box_shares(across, 0.0), [-1, 0, 1], [begin, ball.center[axis], end])
         knots |= {float(box[0]): float(box[1] - box[0]), float(box[-1]): float(box[-1] - box[-2])}
     if len(knots) == 2:
         return mirrored_line(length, settings), (0, 0)
     lines = [np.zeros(1)]
     for low, high in itertools.pairwise(sorted(knots)):
+        ends = knots[low], knots[high]
         if len(box) and low == box[0]:
             lines.append(box[1:])
+        elif low == 0 and low not in thin and high in thin:
+            lines.append((high - spaced(high, settings))[-2::-1])
+        elif high == length and high not in thin and low in thin:
+            lines.append(low + spaced(length - low, settings)[1:])
+        elif np.isclose(low + high, length) and np.isclose(*ends):
+            lines.append(low + mirrored_line(high - low, settings.model_copy(update={"edge_size": ends[0]}))[1:])
         else:
-            lines.append(low + _between(high - low, (knots[low], knots[high]), settings)[1:])
+            lines.append(low + _between(high - low, ends, settings)[1:])
         lines[-1][-1] = high
     places = np.concatenate(lines)
     return places, (int(np.searchsorted(places, box[0])), int(np.searchsorted(places, box[-1]))) if len(box) else (0, 0)

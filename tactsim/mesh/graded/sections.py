@@ -28,6 +28,10 @@ class Hollow:
     outer: float
     inner: float
 
+    def moved(self, way: Array) -> Hollow:
+        """The same, moved by a way (3,) in m."""
+        return replace(self, line=replace(self.line, points=self.line.points + way))
+
     def ends(self, axis: int, size: Array) -> tuple[float, float]:
         """First and last coordinate in m along an axis of the centre line in a block of size (3,) in m."""
         low, high = np.sort(self.line.derivatives(np.array(self.line.limits))[0][:, axis])

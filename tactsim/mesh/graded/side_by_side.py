@@ -65,11 +65,12 @@ class _Bodies:
 
 
 def bundle_of(
-    tubes: Sequence[Hollow], ball: Lump | None, size: Array, settings: BlockMeshSettings, finer: int
+    tubes: Sequence[Hollow], ball: Lump | None, size: Array, settings: BlockMeshSettings, finer: int, *, thin: Sequence[Array]
 ) -> tuple[Bundle, Array]:
     """The lines around tubes and a ball in a block of size (3,) in m, and the numbers of the tubes in their order.
 
-    ``finer`` counts how often cells across the boxes were added.
+    ``finer`` counts how often cells across the boxes were added; cells along the tubes are thin at the places ``thin`` in m,
+    given for x, y and z.
 
     Raises
     ------
@@ -81,7 +82,7 @@ def bundle_of(
     arc = np.pi / 2 * longest / settings.inclusion_size
     check_along(arc, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
     across = PAIRED * (-(-max(LEAST_ALONG, round(arc)) // PAIRED) + finer)
-    places, planes = planes_along(tubes, ball, size, settings, axis=axis, across=across)
+    places, planes = planes_along(tubes, ball, size, settings, axis=axis, across=across, thin=thin[axis])
     unordered = sections_of(tubes, axis, places, size)
     sections, bodies, numbers = _in_order(unordered, ball, planes)
     seen = _bodies(sections, ball, bodies, planes, size)

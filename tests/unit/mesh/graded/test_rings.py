@@ -99,6 +99,11 @@ def test_a_centred_tube_has_a_mirrored_mesh_and_another_has_none():
     assert [same_mirrored(aside, axis) for axis in range(3)] == [True, True, False]
 
 
+def test_a_tube_that_ends_as_far_from_either_face_has_a_mirrored_mesh():
+    mesh = graded_block(SIZE, [tube((10, 20, 10), (30, 20, 10), bore=2)]).mesh
+    assert all(same_mirrored(mesh, axis) for axis in range(3))
+
+
 def test_the_same_tube_has_the_same_mesh():
     first, again = meshed("leaning"), GradedSource().sourced(SIZE, FORMS["leaning"]).block
     assert content_hash(first.mesh) == content_hash(again.mesh)
@@ -128,10 +133,11 @@ def test_what_rings_cannot_follow_is_told_and_gets_tetrahedra(inclusions, words)
     assert words in misfit
     with pytest.raises(InputError, match=words):
         graded_block(SIZE, inclusions)
-    assert AutomaticSource().chosen(SIZE, inclusions, covered=True).kind == "tetrahedra"
+    assert AutomaticSource().chosen(SIZE, inclusions).kind == "tetrahedra"
 
 
 @pytest.mark.parametrize("inclusions", [[CENTRED], [CURVED], FORMS["lump beside"]])
 def test_tubes_get_rings_by_themselves(inclusions):
-    assert AutomaticSource().chosen(SIZE, inclusions, covered=True).kind == "graded"
-    assert AutomaticSource().chosen(SIZE, inclusions, covered=False).kind == "tetrahedra"
+    assert AutomaticSource().chosen(SIZE, inclusions).kind == "graded"
+    beside = np.array([[2e-3, 2e-3], [4e-3, 38e-3]])
+    assert AutomaticSource().chosen(SIZE, inclusions, [beside]).kind == "tetrahedra"

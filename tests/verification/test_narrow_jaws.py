@@ -1,0 +1,76 @@
+"""Jaws smaller than the block, on the mesh that a grasp has by default: taxels that mirror each other are equal, and right.
+
+Mutants: cells without lines at the edges of the jaws, and cells that no plane mirrors.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mutants import assert_kills
+
+from tactsim.experiments.grasp import mesh_choice
+from tactsim.experiments.grasp.grasp import Grasp
+
+EQUAL = 3e-3
+"""Difference allowed of equal taxels over the largest, a fifth of what the least palpable lump changes one by."""
+SHARE = 8e-3
+"""Difference allowed of a taxel from that of a finer mesh over the largest: that of a default mesh around an artery."""
+FINE = np.array([[77.226, 76.596, 77.226], [76.596, 78.849, 76.596], [77.226, 76.596, 77.226]]) * 1e-3
+"""Forces in N on the taxels of either jaw by 110 754 unknowns: ``{kind: graded, size: 3 mm, edge_size: 0.933 mm, growth: 0.6}``;
+58 140 unknowns, cells at the edges half as thick again, differ by 0.35 %."""
+CONVERGED = 4e-3
+"""Difference allowed of the finer of two meshes, of which the finest differs by less."""
+SMALLER = {"width": 24e-3, "depth": 24e-3, "fillet": 2e-3}
+
+
+def pressed(mesh: dict[str, Any]) -> np.ndarray:
+    """Forces (jaw, row, column) in N on taxels that reach to 0.75 mm from the edges of flats of 20 mm, closed by 1 mm."""
+    result = Grasp.model_validate(
+        {
+            "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
+            "upper": SMALLER,
+            "lower": SMALLER,
+            "matrix": {"rows": 3, "columns": 3, "pitch": 6.5e-3, "size": 5.5e-3},
+            "contact": {"kind": "coulomb", "friction": 0.6},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]},
+            "mesh": mesh,
+            "time": {"steps": 1},
+        }
+    ).run()
+    assert result.status == "converged"
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+
+
+def unlike(forces: np.ndarray) -> float:
+    """Largest difference of taxels that should be equal, over the largest taxel."""
+    images = [np.flip(forces, axis) for axis in (0, 1, 2)]
+    return float(max(np.abs(forces - image).max() for image in images) / forces.max())
+
+
+def test_taxels_of_jaws_smaller_than_the_block_are_equal_and_right(verification_record, monkeypatch):
+    forces = pressed({"kind": "automatic"})
+
+    def check_equal(forces):
+        assert unlike(forces) < EQUAL
+
+    def check_right(forces):
+        assert np.abs(forces - FINE).max() < SHARE * FINE.max()
+
+    check_equal(forces)
+    check_right(forces)
+    known = {"reference": "taxels that are images of each other", "kind": "invariance", "mesh": "default", "tolerance": EQUAL}
+    verification_record("equal taxels of jaws smaller than the block, difference", unlike(forces), 0.0, scale=1.0, **known)
+    known = {"reference": "110 754 unknowns", "kind": "invariance", "mesh": "default, 25 558 unknowns", "tolerance": SHARE}
+    verification_record("taxels of jaws smaller than the block", forces, np.stack([FINE, FINE]), **known)
+    assert_kills(check_equal, not_mirrored=(pressed({"kind": "structured", "cells": (10, 10, 6)}),))
+    monkeypatch.setattr(mesh_choice, "_flats", lambda size, jaws: [])
+    assert_kills(check_right, without_edges=(pressed({"kind": "graded"}),))
+
+
+@pytest.mark.slow
+def test_a_finer_mesh_reads_the_same():
+    forces = pressed({"kind": "graded", "size": 4e-3, "edge_size": 1.467e-3, "growth": 0.8})
+    assert np.abs(forces - FINE).max() < CONVERGED * FINE.max()
