@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import ConvergenceError
 from tactsim.interfaces import Inclusion
 from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource, Size, SourcedBlock, TetrahedraSource
-from tactsim.mesh.any_inclusion import inclusion_name
 
 
 def chosen_source(mesh: AnyBlockSource, size: Size, shapes: Sequence[Inclusion], jaws: Sequence[Jaw]) -> AnySource:
@@ -40,29 +37,6 @@ def grasp_mesh(
         if not isinstance(mesh, AutomaticSource) or source is mesh.tetrahedra:
             raise
     return mesh.tetrahedra.sourced(size, shapes)
-
-
-def check_served(mesh: AnyBlockSource, size: Size, shapes: Sequence[Inclusion]) -> None:
-    """Refuse a kind of mesh that cannot follow the inclusions.
-
-    Raises
-    ------
-    ValueError
-        With the kind, the inclusion and what to take instead.
-    """
-    from tactsim.mesh.graded.block import graded_misfit
-
-    for number, shape in enumerate(shapes, 1):
-        if shape.hollow and mesh.kind == "structured":
-            raise ValueError(
-                f"mesh.kind: structured cannot follow the wall of {inclusion_name(number, shape)}; take kind: tetrahedra"
-            )
-    one_ball = len(shapes) == 1 and shapes[0].solids(np.asarray(size, float))[0].ball_image() is not None
-    if mesh.kind == "layers" and not one_ball:
-        raise ValueError("mesh.kind: layers serves exactly one sphere or ellipsoid; take kind: tetrahedra")
-    misfit = graded_misfit(size, shapes) if mesh.kind == "graded" else None
-    if misfit is not None:
-        raise ValueError(f"mesh.kind: graded: {misfit}; take kind: tetrahedra")
 
 
 def _covered(size: Size, jaws: Sequence[Jaw]) -> bool:

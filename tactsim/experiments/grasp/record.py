@@ -17,7 +17,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import doubts, finer, ragged, smaller_elements, suction, uneven
+from tactsim.experiments.grasp.warnings import doubts, ragged, smaller_elements, suction, uneven
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
@@ -51,7 +51,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             path,
             tolerance=experiment.tolerance,
             stiffest=stiffest_block(experiment),
-            finer=finer(experiment.mesh.kind),
+            finer=experiment.mesh.finer,
             reached=_closing_reached,
         )
         self.experiment, self._sourced = experiment, sourced

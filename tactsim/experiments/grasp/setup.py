@@ -15,7 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
-from tactsim.experiments.grasp.mesh_choice import check_served, chosen_source, grasp_mesh
+from tactsim.experiments.grasp.mesh_choice import chosen_source, grasp_mesh
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.solid import Positive
@@ -239,7 +239,8 @@ class GraspSetup(FrozenModel):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
-        check_served(self.mesh, self.block.size, self.shapes)
+        if (misfit := self.mesh.misfit(self.block.size, self.shapes)) is not None:
+            raise ValueError(f"mesh.kind: {misfit}; take kind: tetrahedra")
         return self
 
     @model_validator(mode="after")

@@ -36,6 +36,10 @@ BALL = {"kind": "sphere", "center": (20e-3, 20e-3, 10e-3), "radius": 5e-3}
 PULSE = {"kind": "pulse", "beats": 1}
 
 
+def aside(y=34e-3):
+    return BALL | {"center": (20e-3, y, 10e-3), "radius": 3e-3}
+
+
 def grasp(**changes):
     given = {
         "block": {"size": SIZE, "tissue": SOFT},
@@ -243,6 +247,13 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
         ),
         ({"inclusions": [{"shape": TUBE, "material": "lump"}]}, "structured cannot follow the wall of tube 1; take kind: tetra"),
         ({"inclusions": [], "mesh": {"kind": "layers"}}, "exactly one sphere or ellipsoid"),
+        (
+            {
+                "inclusions": [{"shape": shape, "material": "lump"} for shape in (TUBE, aside(), aside(y=6e-3))],
+                "mesh": {"kind": "graded"},
+            },
+            "mesh.kind: graded: graded cells serve one lump beside tubes, .*; take kind: tetrahedra",
+        ),
         ({"loading": pressed({"kind": "ramp", "to": 10e-3, "duration": 1.0})}, "less than half the block's height 20 mm"),
         ({"loading": pressed({"kind": "ramp", "to": -1e-3, "duration": 1.0})}, "falls to -1 mm"),
         ({"loading": pressed({"kind": "hold", "duration": 1.0})}, "nothing happens"),
@@ -317,10 +328,6 @@ def test_a_ragged_lump_is_reported():
     lump = {"shape": BALL, "material": "lump"}
     result = run(mesh={"kind": "structured", "cells": (8, 8, 4)}, inclusions=[lump], loading=pressed(RAMP))
     assert any("the mesh gives sphere 1" in words for words in result.warnings)
-
-
-def aside():
-    return BALL | {"center": (20e-3, 34e-3, 10e-3), "radius": 3e-3}
 
 
 def test_another_mesh_source_carries_the_content():
