@@ -32,7 +32,6 @@ KEYS = {
 """Keys of files, which stay."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 LARGE_CLASSES = {
-    "tactsim/experiments/grasp/setup.py:GraspSetup": "fields of a case, and the values that follow from them",
     "tactsim/experiments/indentation/setup.py:IndentationSetup": "fields of a case, and the values that follow from them",
 }
 """Classes that may have more public methods, and why."""

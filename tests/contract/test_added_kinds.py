@@ -17,6 +17,7 @@ from tactsim.case.loading import load_case
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, UnknownName
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
 from tactsim.experiments.recording import RecordingSettings, recorder_for
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
@@ -245,7 +246,7 @@ def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None
     meshed = case(
         tmp_path, GRASP.rstrip() + "\n  mesh: {kind: graded}\n", {"MATERIAL": "icf_stable", "SHAPE": "added", "LAW": "coulomb"}
     )
-    assert (meshed.sourced().block.mesh.regions == 1).any()
+    assert (grasp_mesh(meshed).block.mesh.regions == 1).any()
     np.testing.assert_allclose(grasp.inclusions[0].shape.places(np.array(SIZE))[0], [20e-3, 20e-3, 10e-3], rtol=1e-12)
 
 

@@ -153,7 +153,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         assumptions.append(penetration_allowed(experiment.tolerance))
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
-        if experiment.relaxes:
+        if any(material.relaxation is not None for material in experiment.materials):
             assumptions.append(ERROR_IN_TIME.format(experiment.time.tolerance))
         if experiment.readout is not None:
             assumptions += readout_assumptions(experiment.readout, experiment.matrix.area)

@@ -3,40 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.analytic.histories import History
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
-from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
-from tactsim.experiments.grasp.mesh_choice import chosen_source, grasp_mesh
+from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.models.block_source import (
-    AnyBlockSource,
-    AnySource,
-    AutomaticSource,
-    SourcedBlock,
-)
+from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource
 from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, Length, format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.mechanics.models.block_model import GraspModel
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
@@ -44,10 +32,6 @@ PENETRATION = 2e-4
 """Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
 PENETRATION_OF_CLOSING = 1e-2
 """That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
-SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
-"""Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
-SWITCH_LENGTH = 1e-3
-"""Length in m over which the state of a surface point may change its mind."""
 
 
 class Block(FrozenModel):
@@ -155,11 +139,6 @@ class GraspSetup(FrozenModel):
         return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
 
     @property
-    def softness(self) -> float:
-        """Penetration in m that the contact would have without multipliers."""
-        return min(SOFTNESS * self.tolerance, SOFTNESS_OF_HEIGHT * self.block.size[2])
-
-    @property
     def shapes(self) -> tuple[Inclusion, ...]:
         """The bodies in the block."""
         return tuple(embedded.shape for embedded in self.inclusions)
@@ -175,11 +154,6 @@ class GraspSetup(FrozenModel):
         return (self.block.tissue, *(embedded.material for embedded in self.inclusions))
 
     @property
-    def relaxes(self) -> bool:
-        """Whether a material relaxes."""
-        return any(material.relaxation is not None for material in self.materials)
-
-    @property
     def lumens(self) -> dict[int, AnyLumenPressure]:
         """Pressure by the number of the inclusion, counted from 1."""
         return {k: embedded.lumen for k, embedded in enumerate(self.inclusions, 1) if embedded.lumen is not None}
@@ -189,42 +163,21 @@ class GraspSetup(FrozenModel):
         """Time in s at which the last of all histories ends."""
         return max([self.loading.duration, *(lumen.duration for lumen in self.lumens.values())])
 
-    def histories(self) -> list[History]:
-        """Closing in m or force in N, then the pressure in Pa of every lumen."""
-        return [self.loading.history(), *(lumen_history(lumen, self.duration) for lumen in self.lumens.values())]
-
     def jaw(self, side: str) -> Jaw:
         """The upper or the lower jaw."""
         settings: JawSettings = getattr(self, side)
         return settings.jaw(side, self.block.size)
 
-    def regularisation(self) -> Augmentation:
-        """How stiff the contact is."""
-        softest = shear_relaxation(self.block.tissue).instantaneous_modulus
-        return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=self.softness)
+    @property
+    def covered(self) -> bool:
+        """Whether both jaws are at least as large as the block."""
+        return all(jaw.width >= self.block.size[0] and jaw.depth >= self.block.size[1] for jaw in map(self.jaw, JAWS))
 
     @property
     def source(self) -> AnySource:
         """Where the mesh comes from, as far as the case says without making it."""
-        return chosen_source(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS])
-
-    def sourced(self) -> SourcedBlock:
-        """The mesh; tetrahedra are finer at the edges of jaws that are smaller than the block and in its middle."""
-        centred = not any(self.upper.offset + self.lower.offset)
-        return grasp_mesh(self.mesh, self.block.size, self.shapes, [self.jaw(side) for side in JAWS], centred=centred)
-
-    def model(self, sourced: SourcedBlock) -> GraspModel:
-        """The finite element model on a mesh."""
-        from tactsim.mechanics.models.block_model import GraspModel
-
-        middle = np.array(self.block.size[:2]) / 2
-        return GraspModel(
-            sourced.block.mesh,
-            self.materials,
-            sourced.block.facets,
-            jaws=[self.jaw(side) for side in JAWS],
-            offsets=np.array([middle + self.upper.offset, middle + self.lower.offset]),
-        )
+        mesh = self.mesh
+        return mesh.chosen(self.block.size, self.shapes, covered=self.covered) if isinstance(mesh, AutomaticSource) else mesh
 
     @model_validator(mode="after")
     def _embedded(self) -> Self:

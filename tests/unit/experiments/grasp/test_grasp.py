@@ -13,6 +13,7 @@ from tactsim.analytic.histories import History, Segment
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.readings import JawReading, check_sums
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.contact.surface_forces import TaxelForces
@@ -331,7 +332,7 @@ def test_a_ragged_lump_is_reported():
 
 
 def test_another_mesh_source_carries_the_content():
-    sourced = grasp(mesh={"kind": "layers"}, inclusions=[{"shape": BALL, "material": "lump"}]).sourced()
+    sourced = grasp_mesh(grasp(mesh={"kind": "layers"}, inclusions=[{"shape": BALL, "material": "lump"}]))
     assert sourced.origin == "built in layers"
     assert replace(sourced, origin="").content == sourced.content
     assert len(sourced.content) == 32
