@@ -19,6 +19,7 @@ from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, UnknownName
 from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
+from tactsim.experiments.localization.confusion import class_of
 from tactsim.experiments.recording import RecordingSettings, recorder_for
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
 from tactsim.interfaces import (
@@ -248,6 +249,15 @@ def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None
     )
     assert (grasp_mesh(meshed).block.mesh.regions == 1).any()
     np.testing.assert_allclose(grasp.inclusions[0].shape.places(np.array(SIZE))[0], [20e-3, 20e-3, 10e-3], rtol=1e-12)
+
+
+def test_a_hollow_inclusion_counts_as_an_artery_and_any_other_as_a_lump(added: Any) -> None:
+    groups = (["added"], ["added", "tube"], ["added", "sphere"])
+    assert added(Inclusion).hollow is False
+    assert [class_of(shapes) for shapes in groups] == ["lump", None, "two_lumps"]
+    forget(kind_class(Inclusion, "added"))
+    added(Inclusion, text=MODULES[Inclusion].replace("sphere", "tube").replace("Sphere", "Tube"))
+    assert [class_of(shapes) for shapes in groups] == ["artery", "two_arteries", None]
 
 
 def test_a_film_is_tested_by_a_case(added: Any, tmp_path: Path) -> None:
