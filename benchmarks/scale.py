@@ -19,6 +19,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.case.loading import load_case
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
@@ -85,7 +86,7 @@ def child(scale: float, settings: Sequence[str], *, factor: bool = False) -> dic
     mesh = f"experiment.mesh={{kind: graded, {sizes}, growth: {max(GROWTH * scale, LEAST_GROWTH):g}}}"
     experiment = load_case(CASE, [mesh, "experiment.time.steps=1", *settings]).experiment
     begin, begin_processor = time.perf_counter(), time.process_time()
-    model = experiment.model(experiment.sourced())
+    model = grasp_model(experiment, grasp_mesh(experiment))
     solver = Counting(model.body, factor=factor)
     model.problem.solver = solver
     figures = {"scale": scale, "unknowns": float(model.space.size), "finished": 1.0}

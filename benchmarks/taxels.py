@@ -11,6 +11,7 @@ from statistics import median
 
 from tactsim.case.loading import load_case
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.readings import jaw_readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -29,7 +30,7 @@ def measure() -> dict[str, float]:
     grasp = load_case(CASE).experiment
     assert isinstance(grasp, Grasp)
     begin = time.perf_counter()
-    model = grasp.model(grasp.sourced())
+    model = grasp_model(grasp, grasp_mesh(grasp))
     states = [state.contact for state, _ in grasp_path(grasp, model).states()]
     figures = {"solution_seconds": time.perf_counter() - begin, "states": float(len(states))}
     for side in SIDES:

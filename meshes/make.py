@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.case import load_case
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.mechanics.models.block_source import TetrahedraSource
 from tactsim.mesh.block import BlockMesh
 from tactsim.mesh.manifest import MANIFEST, ManifestEntry, add_entry, entries
@@ -73,7 +74,7 @@ def meshes_of_cases() -> dict[str, tuple[str, BlockMesh, str]]:
         experiment = load_case(path).experiment
         if not isinstance(experiment.source, TetrahedraSource):
             continue
-        sourced = experiment.sourced()
+        sourced = grasp_mesh(experiment)
         meshes.setdefault(sourced.block.key, (path.stem, sourced.block, sourced.origin))
         sys.stdout.write(f"{path.name}: {sourced.block.unknowns} unknowns, {sourced.origin}, {sourced.block.seconds:.1f} s\n")
     return meshes

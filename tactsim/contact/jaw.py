@@ -65,3 +65,8 @@ class Jaw(RigidBody):
     def face_coordinates(self, x: Array) -> Array:
         """Places (2, n) in m on the face, from its middle, of points (3, n)."""
         return (self.rotation.T @ x)[:2]
+
+    def flat(self, middle: Array) -> Array:
+        """Low and high corner (2, 2) in m of the face without its rounded edges, seen along z, its ``middle`` (2,) in m."""
+        half = np.abs(self.rotation[:2, :2]) @ (np.array([self.width, self.depth]) / 2 - self.fillet)
+        return np.stack([middle - half, middle + half])

@@ -17,7 +17,9 @@ from tactsim.case.loading import load_case
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, UnknownName
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
+from tactsim.experiments.localization.confusion import class_of
 from tactsim.experiments.recording import RecordingSettings, recorder_for
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
 from tactsim.interfaces import (
@@ -245,8 +247,17 @@ def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None
     meshed = case(
         tmp_path, GRASP.rstrip() + "\n  mesh: {kind: graded}\n", {"MATERIAL": "icf_stable", "SHAPE": "added", "LAW": "coulomb"}
     )
-    assert (meshed.sourced().block.mesh.regions == 1).any()
+    assert (grasp_mesh(meshed).block.mesh.regions == 1).any()
     np.testing.assert_allclose(grasp.inclusions[0].shape.places(np.array(SIZE))[0], [20e-3, 20e-3, 10e-3], rtol=1e-12)
+
+
+def test_a_hollow_inclusion_counts_as_an_artery_and_any_other_as_a_lump(added: Any) -> None:
+    groups = (["added"], ["added", "tube"], ["added", "sphere"])
+    assert added(Inclusion).hollow is False
+    assert [class_of(shapes) for shapes in groups] == ["lump", None, "two_lumps"]
+    forget(kind_class(Inclusion, "added"))
+    added(Inclusion, text=MODULES[Inclusion].replace("sphere", "tube").replace("Sphere", "Tube"))
+    assert [class_of(shapes) for shapes in groups] == ["artery", "two_arteries", None]
 
 
 def test_a_film_is_tested_by_a_case(added: Any, tmp_path: Path) -> None:

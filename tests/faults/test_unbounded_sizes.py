@@ -10,6 +10,7 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.fem.assembly.space import FACET_POINTS
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.mechanics.contact.surface_forces import taxel_forces
@@ -46,7 +47,7 @@ def test_meshes_too_large_are_refused_at_once(name: str, mesh: str, message: str
     experiment = load_case(CASES / f"{name}.yaml", [f"experiment.mesh={mesh}"]).experiment
     begin = time.process_time()
     with pytest.raises(InputError, match=message):
-        experiment.sourced()
+        grasp_mesh(experiment)
     assert time.process_time() - begin < 5
 
 

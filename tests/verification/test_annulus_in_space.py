@@ -12,9 +12,9 @@ from scipy.interpolate import PchipInterpolator
 from tactsim.case import load_case
 from tactsim.contact.annulus import Annulus
 from tactsim.experiments.indentation.course import DisplacementPath
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry

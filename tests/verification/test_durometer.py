@@ -10,7 +10,7 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.indentation.displaced import StepSettings
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.models.specimen import Specimen
 

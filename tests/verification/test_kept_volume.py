@@ -10,6 +10,7 @@ from scipy.sparse import identity, kron
 from solids import body_of
 
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.solvers.block_preconditioner import pressure_mass
 from tactsim.fem.solvers.linear import direct_solver
@@ -38,7 +39,7 @@ def poor_volume(stiffness: float, monkeypatch) -> tuple[float, float]:
             "time": {"steps": 1},
         }
     )
-    model = grasp.model(grasp.sourced())
+    model = grasp_model(grasp, grasp_mesh(grasp))
     state = list(grasp_path(grasp, model).states())[-1][0].contact
     error, weights = np.abs(volume_error(model.body, state)), model.body.points.weights
     return float(weights[error > OFF].sum() / weights.sum()), float(state.kinematics.J.min())

@@ -9,6 +9,7 @@ import pytest
 from mutants import assert_kills
 
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.setup import Embedded
 from tactsim.experiments.localization import lump_sensitivity
 from tactsim.materials.library import named_material
@@ -60,7 +61,8 @@ def predicted(plain, monkeypatch):
     """Change of the forces by the adjoint; and the mutant, as if the density were the same everywhere in the block."""
     monkeypatch.setattr(lump_sensitivity, "CELLS", CELLS)
     computed = lump_sensitivity.sensitivity(plain)
-    mesh = plain.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)}).sourced().block.mesh
+    same = plain.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)})
+    mesh = grasp_mesh(same).block.mesh
     inside = np.linalg.norm(mesh.nodes[mesh.elements[:, :4]].mean(axis=1) - BALL.center, axis=1) < BALL.radius
     points = np.repeat(inside, len(computed.places) // len(inside))
     changes = computed.densities * computed.volumes

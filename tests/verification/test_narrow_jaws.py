@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from mutants import assert_kills
 
-from tactsim.experiments.grasp import mesh_choice
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.setup import GraspSetup
 
 EQUAL = 3e-3
 """Difference allowed of equal taxels over the largest, a fifth of what the least palpable lump changes one by."""
@@ -66,7 +66,7 @@ def test_taxels_of_jaws_smaller_than_the_block_are_equal_and_right(verification_
     known = {"reference": "110 754 unknowns", "kind": "invariance", "mesh": "default, 25 558 unknowns", "tolerance": SHARE}
     verification_record("taxels of jaws smaller than the block", forces, np.stack([FINE, FINE]), **known)
     assert_kills(check_equal, not_mirrored=(pressed({"kind": "structured", "cells": (10, 10, 6)}),))
-    monkeypatch.setattr(mesh_choice, "_flats", lambda size, jaws: [])
+    monkeypatch.setattr(GraspSetup, "flats", [])
     assert_kills(check_right, without_edges=(pressed({"kind": "graded"}),))
 
 

@@ -19,8 +19,8 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
 from tactsim.experiments.indentation.displaced import StepSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.mechanics.models.specimen import Specimen
 

@@ -12,9 +12,9 @@ from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
 from tactsim.experiments.indentation.displaced import StepSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.fem.paths.loading import Event
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course

@@ -17,8 +17,8 @@ from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.elastomer_report import RankingReport, ShapeFinding
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3, Elastomer, Reading, Shape
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, run_within_another
 from tactsim.materials.moduli import youngs_modulus

@@ -65,10 +65,11 @@ class Grasp(GraspSetup, Experiment):
 
     def _begun(self) -> tuple[TimedPath, GraspRecord]:
         """The path at its start, and what will record it."""
+        from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
         from tactsim.experiments.grasp.path import grasp_path
         from tactsim.experiments.grasp.record import GraspRecord
 
-        sourced = self.sourced()
-        model = self.model(sourced)
+        sourced = grasp_mesh(self)
+        model = grasp_model(self, sourced)
         path = grasp_path(self, model)
         return path, GraspRecord(self, model, sourced, path)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from tactsim.contact.penalty import Augmentation
+from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.materials.viscoelasticity import shear_relaxation
@@ -13,6 +15,10 @@ from tactsim.mechanics.models.pressed_body import PressedBody
 from tactsim.mechanics.outcome.sufficient_contact import SufficientContact
 from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, TimedState, smooth_intervals
 
+SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
+"""Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
+SWITCH_LENGTH = 1e-3
+"""Length in m over which the state of a surface point may change its mind."""
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
@@ -27,13 +33,20 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
     Without a tolerance of its own, a grasp gets one at its largest closing or force with which it misses as little force as a
     success may.
     """
-    course = smooth_intervals(experiment.histories(), experiment.duration)
-    contact = model.start(experiment.contact, experiment.regularisation())
-    start = TimedState.at_rest(model.body, contact, 1 + len(experiment.lumens))
+    duration, lumens = experiment.duration, experiment.lumens
+    histories = [experiment.loading.history(), *(lumen_history(lumen, duration) for lumen in lumens.values())]
+    start = TimedState.at_rest(model.body, model.start(experiment.contact, regularisation(experiment)), len(histories))
     problem: EquilibriumProblem = grasped_block(experiment, model)
     if experiment.penetration_tolerance is None:
         problem = SufficientContact(problem, experiment.loading.least_and_most()[1], stiffest_block(experiment))
-    return TimedPath(problem, experiment.time.policy(experiment.materials), course, start)
+    return TimedPath(problem, experiment.time.policy(experiment.materials), smooth_intervals(histories, duration), start)
+
+
+def regularisation(experiment: GraspSetup) -> Augmentation:
+    """How stiff the contact is."""
+    softest = shear_relaxation(experiment.block.tissue).instantaneous_modulus
+    softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * experiment.block.size[2])
+    return Augmentation(experiment.tolerance, softest, switch_length=SWITCH_LENGTH, softness=softness)
 
 
 def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:
@@ -47,7 +60,7 @@ def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:
     return PressedBody(
         model,
         by_force=experiment.loading.control == "force",
-        first_displacement=TOUCH * experiment.softness,
+        first_displacement=TOUCH * regularisation(experiment).softness,
         walls=[FollowerPressure(model.space, wall, model.body.pattern, 0.0) for wall in facets],
         first_guess=None if hollow else lambda closing: model.compressed(FIRST_PART * closing),
     )

@@ -17,7 +17,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import doubts, finer, ragged, smaller_elements, suction, uneven
+from tactsim.experiments.grasp.warnings import doubts, ragged, smaller_elements, suction, uneven
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
@@ -51,7 +51,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             path,
             tolerance=experiment.tolerance,
             stiffest=stiffest_block(experiment),
-            finer=finer(experiment.mesh.kind),
+            finer=experiment.mesh.finer,
             reached=_closing_reached,
         )
         self.experiment, self._sourced = experiment, sourced
@@ -153,7 +153,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         assumptions.append(penetration_allowed(experiment.tolerance))
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
-        if experiment.relaxes:
+        if any(material.relaxation is not None for material in experiment.materials):
             assumptions.append(ERROR_IN_TIME.format(experiment.time.tolerance))
         if experiment.readout is not None:
             assumptions += readout_assumptions(experiment.readout, experiment.matrix.area)

@@ -3,40 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.analytic.histories import History
+from tactsim.array import Array
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
-from tactsim.contact.penalty import Augmentation
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure, lumen_history
-from tactsim.experiments.grasp.mesh_choice import PlacedJaw, check_served, chosen_source, grasp_mesh
+from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.models.block_source import (
-    AnyBlockSource,
-    AnySource,
-    AutomaticSource,
-    SourcedBlock,
-)
+from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource
 from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, Length, format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.mechanics.models.block_model import GraspModel
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
@@ -44,10 +33,6 @@ PENETRATION = 2e-4
 """Largest penetration over the height of the block, where none is given: with both jaws, 0.4 % of a closing by a tenth each."""
 PENETRATION_OF_CLOSING = 1e-2
 """That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
-SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
-"""Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
-SWITCH_LENGTH = 1e-3
-"""Length in m over which the state of a surface point may change its mind."""
 
 
 class Block(FrozenModel):
@@ -155,11 +140,6 @@ class GraspSetup(FrozenModel):
         return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
 
     @property
-    def softness(self) -> float:
-        """Penetration in m that the contact would have without multipliers."""
-        return min(SOFTNESS * self.tolerance, SOFTNESS_OF_HEIGHT * self.block.size[2])
-
-    @property
     def shapes(self) -> tuple[Inclusion, ...]:
         """The bodies in the block."""
         return tuple(embedded.shape for embedded in self.inclusions)
@@ -175,11 +155,6 @@ class GraspSetup(FrozenModel):
         return (self.block.tissue, *(embedded.material for embedded in self.inclusions))
 
     @property
-    def relaxes(self) -> bool:
-        """Whether a material relaxes."""
-        return any(material.relaxation is not None for material in self.materials)
-
-    @property
     def lumens(self) -> dict[int, AnyLumenPressure]:
         """Pressure by the number of the inclusion, counted from 1."""
         return {k: embedded.lumen for k, embedded in enumerate(self.inclusions, 1) if embedded.lumen is not None}
@@ -189,46 +164,26 @@ class GraspSetup(FrozenModel):
         """Time in s at which the last of all histories ends."""
         return max([self.loading.duration, *(lumen.duration for lumen in self.lumens.values())])
 
-    def histories(self) -> list[History]:
-        """Closing in m or force in N, then the pressure in Pa of every lumen."""
-        return [self.loading.history(), *(lumen_history(lumen, self.duration) for lumen in self.lumens.values())]
-
     def jaw(self, side: str) -> Jaw:
         """The upper or the lower jaw."""
         settings: JawSettings = getattr(self, side)
         return settings.jaw(side, self.block.size)
 
-    def regularisation(self) -> Augmentation:
-        """How stiff the contact is."""
-        softest = shear_relaxation(self.block.tissue).instantaneous_modulus
-        return Augmentation(self.tolerance, softest, switch_length=SWITCH_LENGTH, softness=self.softness)
+    @property
+    def flats(self) -> list[Array]:
+        """Low and high corner (2, 2) in m of the flat of each jaw's face, seen along z in the block, whose corner is the origin;
+        none if both jaws are at least as large as the block."""
+        (x, y, _), jaws = self.block.size, {side: self.jaw(side) for side in JAWS}
+        if all(jaw.width >= x and jaw.depth >= y for jaw in jaws.values()):
+            return []
+        middle = np.array([x, y]) / 2
+        return [jaw.flat(middle + getattr(self, side).offset) for side, jaw in jaws.items()]
 
     @property
     def source(self) -> AnySource:
         """Where the mesh comes from, as far as the case says without making it."""
-        return chosen_source(self.mesh, self.block.size, self.shapes, self._placed)
-
-    def sourced(self) -> SourcedBlock:
-        """The mesh, finer at the edges of jaws that are smaller than the block."""
-        return grasp_mesh(self.mesh, self.block.size, self.shapes, self._placed)
-
-    @property
-    def _placed(self) -> list[PlacedJaw]:
-        """Both jaws where they stand."""
-        middle = np.array(self.block.size[:2]) / 2
-        return [PlacedJaw(self.jaw(side), middle + getattr(self, side).offset) for side in JAWS]
-
-    def model(self, sourced: SourcedBlock) -> GraspModel:
-        """The finite element model on a mesh."""
-        from tactsim.mechanics.models.block_model import GraspModel
-
-        return GraspModel(
-            sourced.block.mesh,
-            self.materials,
-            sourced.block.facets,
-            jaws=[placed.jaw for placed in self._placed],
-            offsets=np.array([placed.middle for placed in self._placed]),
-        )
+        mesh = self.mesh
+        return mesh.chosen(self.block.size, self.shapes, self.flats) if isinstance(mesh, AutomaticSource) else mesh
 
     @model_validator(mode="after")
     def _embedded(self) -> Self:
@@ -243,7 +198,8 @@ class GraspSetup(FrozenModel):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
                 raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
-        check_served(self.mesh, self.block.size, self.shapes, self._placed)
+        if (misfit := self.mesh.misfit(self.block.size, self.shapes, self.flats)) is not None:
+            raise ValueError(f"mesh.kind: {misfit}; take kind: tetrahedra")
         return self
 
     @model_validator(mode="after")

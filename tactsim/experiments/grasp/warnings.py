@@ -41,12 +41,6 @@ def smaller_elements(block: BlockMesh) -> list[str]:
     ]
 
 
-def finer(kind: str) -> str:
-    """What makes a mesh of a kind finer where its elements lose their volume, in the words of the case."""
-    edges = "take a smaller mesh.edge_size at the edges of the jaws, a smaller mesh.inclusion_size at an inclusion"
-    return {"structured": "take more mesh.cells", "file": "make smaller elements there in the file"}.get(kind, edges)
-
-
 def suction(readings: Sequence[Mapping[str, JawReading]]) -> list[str]:
     """Taxels that are pulled, which contact without adhesion cannot do."""
     forces = [reading[side].taxels.taxels[2] for reading in readings for side in JAWS]

@@ -80,7 +80,7 @@ class DisplacementPath:
 
     def __init__(self, setup: IndentationSetup, drive: Displaced, model: PressedModel):
         self.model, self.rejected, self._setup, self._drive = model, 0, setup, drive
-        self._size = setup.size()
+        self._size = setup.section().size()
         self._most = LARGEST_GROWTH * len(model.mesh.elements)
         self.start = started(setup, model, min(material.shear_modulus for material in setup.specimen.materials))
 

@@ -10,8 +10,9 @@ from pydantic import Field, model_validator
 
 from tactsim.contact.tilted import Tilt, Tilted
 from tactsim.experiments.indentation.displaced import DisplacedSetup
+from tactsim.experiments.indentation.graded_section import GradedSection, MeshSettings
 from tactsim.experiments.indentation.history import history_units
-from tactsim.experiments.indentation.setup import MeshSettings, Posed
+from tactsim.experiments.indentation.setup import Posed
 from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import Experiment
 from tactsim.mechanics.models.specimen import Specimen
@@ -98,8 +99,8 @@ class SpaceIndentation(DisplacedSetup, Experiment):
     def posed(self) -> Posed:
         """The body as it leans, off the axis."""
         tilts = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y}
-        body, punch = Tilted(body=self.body, **tilts), self.inner_punch
-        sensor = None if punch is None else Tilted(body=punch, **tilts)
+        body, upright = Tilted(body=self.body, **tilts), super().posed().inner_sensor
+        sensor = None if upright is None else Tilted(body=upright, **tilts)
         return Posed(body, body.rotation[:, 2], sensor, self.offset, 4 * self.mesh.sectors)
 
     def control(self) -> StepControl:
@@ -111,17 +112,18 @@ class SpaceIndentation(DisplacedSetup, Experiment):
         from tactsim.mechanics.models.solid_model import SolidModel
 
         section, symmetry = self.section(), self.symmetry
-        swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(section.nodes)
+        mesh = section.mesh()
+        swept_nodes = 2 * self.mesh.sectors * symmetry.quarters * len(mesh.nodes)
         check_unknowns(3 * swept_nodes, "mesh.finest, mesh.growth, mesh.refinement and mesh.sectors")
-        sweep = swept(section, self.mesh.sectors * symmetry.quarters, np.pi / 2 * symmetry.quarters)
-        top = sweep.facets_from(self.top_edges(section))
+        sweep = swept(mesh, self.mesh.sectors * symmetry.quarters, np.pi / 2 * symmetry.quarters)
+        top = sweep.facets_from(section.top_edges(mesh))
         nodes = sweep.mesh.nodes
         if self.offset != 0:
             rest = UNSHIFTED * self.contact_radius
             nodes = shifted_outside(nodes, -self.offset, radius=self.specimen.radius, rest=rest)
         return SolidModel(sweep.mesh.moved(nodes), self.specimen.materials, base=self.specimen.base, top=top, symmetry=symmetry)
 
-    def _focus(self) -> tuple[tuple[float, ...], float, float]:
-        """As in the section, with larger elements at the edges."""
-        rims, reach, finest = super()._focus()
-        return rims, reach, max(finest, min(COARSENING * finest, self._narrowest / LEAST_ACROSS))
+    def section(self) -> GradedSection:
+        """As that of a model in the section, with larger elements at the edges."""
+        section = super().section()
+        return replace(section, usual=max(section.usual, min(COARSENING * section.usual, self._narrowest / LEAST_ACROSS)))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
+from tactsim.analytic.annular_area import annular_area
 from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
@@ -112,6 +113,11 @@ class IndentationRecord(ContactRecord[PressedModel]):
             quantities |= self._around(self.model)
         return quantities | (self.threshold() if self._clock is None else self._over_time(self._clock))
 
+    @property
+    def _face_area(self) -> float:
+        """Area in m^2 of the face around the hole, which the thesis divides the threshold force by."""
+        return annular_area(self.setup.hole, self.setup.contact_radius)
+
     def threshold(self) -> dict[str, Quantity]:
         """What holds when the tissue touches the inner sensor, if it does."""
         if self.event is None:
@@ -119,7 +125,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         force, displacement = (self.event.values[name] for name in ("reaction_force", "displacement"))
         return {
             "threshold_force": Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor"),
-            "threshold_pressure": Quantity(force / self.setup.face_area, "Pa", "threshold force over the annular area"),
+            "threshold_pressure": Quantity(force / self._face_area, "Pa", "threshold force over the annular area"),
             "threshold_displacement": Quantity(displacement, "m", "displacement at the threshold"),
         }
 
@@ -137,7 +143,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         }
         if self.setup.hole:
             sectors = self._posed.sectors
-            around = model.surroundings(contact, unknowns, sectors) / (self.setup.face_area / sectors)
+            around = model.surroundings(contact, unknowns, sectors) / (self._face_area / sectors)
             text = "axial force over area, by equal sectors of the angle about the annulus's axis, from its x axis on [sector]"
             quantities["pressure_around"] = Quantity(around.tolist(), "Pa", text)
         return quantities

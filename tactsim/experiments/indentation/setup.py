@@ -1,4 +1,4 @@
-"""What every indentation is given, and what follows from it: the body, the specimen, the sizes of the elements, the model."""
+"""What every indentation is given, and what follows from it: the body as it stands, what moves it, the model."""
 
 from __future__ import annotations
 
@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tactsim.analytic.annular_area import annular_area
 from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.punch import Punch
+from tactsim.experiments.indentation.graded_section import GradedSection, MeshSettings
 from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import RigidBody
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.paths.step_policy import StepPolicy
-from tactsim.mesh.axisymmetric import Size, edge_graded, finer_at_surface, graded_to_peak
-from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
 from tactsim.results.result import Status
@@ -33,29 +31,8 @@ if TYPE_CHECKING:
     from tactsim.mechanics.models.pressed_model import PressedModel
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody, lambda cls: 2 in cls.dimensions)]
-PEAK_ELEMENTS = 12
-"""Elements over the radius of an annulus's hole that the size at the peak of the rise, on the axis, would allow.
-
-Why: that peak decides the threshold, whose pressure grows with nearly the third power of it, and on the axis a single height is
-known less well than its neighbours. In `annulus_icf` elements a sixth of the hole long made it 0.08 % too high, so that the
-threshold was 0.14 % too low; with these it is 0.06 % too high, with fewer unknowns in sum."""
 LARGEST_RATIO = 1e5
 """A specimen this many times larger than the body is a mistake in a unit."""
-
-
-class MeshSettings(FrozenModel):
-    """Size of the elements: finest at the edges of the body, growing with the distance from them."""
-
-    finest: Annotated[Length, Field(gt=0)] | None = None
-    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
-    growth: Annotated[float, Field(gt=0, le=2)] = 0.5
-    """Growth of the element size per distance from the edges, dimensionless."""
-    coarsest: Annotated[Length, Field(gt=0)] | None = None
-    """Largest element size; by default a fifth of the specimen's thickness."""
-    refinement: Annotated[float, Field(gt=0)] = 1.0
-    """Divides every size: 2 halves the elements."""
-    adaptive: bool = True
-    """Whether elements that sliding and stretching make too long are split on the way."""
 
 
 @dataclass(frozen=True)
@@ -157,13 +134,9 @@ class IndentationSetup(FrozenModel):
         return [*oddities(materials, tissue=tissue, bodies=bodies), *interpreted_warnings(materials)]
 
     def posed(self) -> Posed:
-        """The body as it stands: upright on the axis."""
-        return Posed(self.body, np.array([0.0, 1.0]), self.inner_punch)
-
-    @property
-    def inner_punch(self) -> Punch | None:
-        """The sensor that fills the hole of an annulus, as high as any tissue in it; None for a body without a hole."""
-        return Punch(radius=self.hole, height=self.specimen.thickness) if self.hole else None
+        """The body as it stands, upright on the axis; a sensor as high as any tissue in it fills the hole of an annulus."""
+        sensor = Punch(radius=self.hole, height=self.specimen.thickness) if self.hole else None
+        return Posed(self.body, np.array([0.0, 1.0]), sensor)
 
     @property
     def prescribed(self) -> float | None:
@@ -200,10 +173,12 @@ class IndentationSetup(FrozenModel):
         if recess >= self.specimen.thickness:
             given, thickness = (format_quantity(length, "m") for length in (recess, self.specimen.thickness))
             raise ValueError(f"recess: {given} must be smaller than the specimen's thickness {thickness} (thesis, end of 3.1.1)")
-        if self.rise_at_touch >= recess:
-            given, rise = format_quantity(recess, "m"), format_quantity(self.rise_at_touch, "m")
+        edge = self.hole + (self.body.contact_shape.fillet or 0.0)  # where the face begins, which a convex surface touches first
+        rise = float(self.specimen.depth_of_cap(edge)) if self.specimen.surface == "convex" else 0.0
+        if rise >= recess:
+            given, stands = (format_quantity(length, "m") for length in (recess, rise))
             raise ValueError(
-                f"recess: {given} is too shallow: the curved surface stands {rise} in the hole before it touches the annulus"
+                f"recess: {given} is too shallow: the curved surface stands {stands} in the hole before it touches the annulus"
             )
 
     @property
@@ -218,75 +193,33 @@ class IndentationSetup(FrozenModel):
         return float(self.body.contact_shape.hole)
 
     @property
-    def face_area(self) -> float:
-        """Area in m^2 of the face around the hole, which the thesis divides the threshold force by."""
-        return annular_area(self.hole, self.contact_radius)
-
-    @property
     def _narrowest(self) -> float:
         """Width in m of the contact that the mesh must resolve."""
         return self.contact_radius - self.hole
-
-    @property
-    def rise_at_touch(self) -> float:
-        """Rise in m of a convex surface into the hole when the annulus touches it, where the fillet meets the face."""
-        inner = self.hole + (self.body.contact_shape.fillet or 0.0) if self.specimen.surface == "convex" else 0.0
-        return float(self.specimen.depth_of_cap(inner))
 
     @property
     def tolerance(self) -> float:
         """Largest penetration in m."""
         return self.penetration_tolerance or default_penetration(1e-4 * self.contact_radius, self.prescribed)
 
-    def size(self) -> Size:
-        """Wanted element size in m, at points in the frame of the body at first touch.
-
-        Around a round tip, elements finer than usual are wanted at the surface only: in the depth, stresses vary over a distance
-        like the radius of the contact, which the usual size resolves.
-        """
-        settings, (rims, reach, usual) = self.mesh, self._focus()
-        finest, n = settings.finest or usual, settings.refinement
-        coarsest = settings.coarsest or max(self.specimen.thickness / 5, finest)
-        edges = np.array([(r, 0.0) for r in rims or [0.0]])
-        growth, shallow = settings.growth / n, self.body.contact_shape.tip is not None and finest < usual
-        around = usual if shallow else finest
-        size = edge_graded(edges, finest=around / n, growth=growth, coarsest=max(coarsest, around) / n, reach=reach)
-        return finer_at_surface(size, finest=finest / n, growth=growth, reach=reach) if shallow else size
-
-    def section(self) -> QuadraticMesh:
-        """The mesh of the specimen's section; in an annulus's hole, finer at the peak of the rise too."""
-        size, settings = self.size(), self.mesh
-        if self.hole:
-            n = settings.refinement
-            size = graded_to_peak(size, finest=self.hole / PEAK_ELEMENTS / n, growth=settings.growth / n)
-        return self.specimen.mesh(size, self._focus()[0])
-
-    def top_edges(self, section: QuadraticMesh) -> Array:
-        """Boundary edges (F, 3) of the section that the body may touch, by node numbers."""
-        facets, _ = section.boundary_facets()
-        return facets[self._on_top(section.nodes[facets])]
+    def section(self) -> GradedSection:
+        """The section of the specimen, its elements smallest at the edges of the body or around its tip."""
+        specimen, shape, radius = self.specimen, self.body.contact_shape, self.contact_radius
+        rims: tuple[float, ...] = ()
+        if shape.tip is None:
+            rims, reach = tuple(r for r in (shape.hole, radius) if 0 < r < specimen.radius), shape.fillet or 0.0
+            usual = reach / 3 if reach > 0 else radius / 50
+        else:
+            reach = 1.5 * float(np.sqrt(radius * self.depth))
+            if shape.tip.within_radius:
+                reach = min(reach, 1.5 * radius)
+            usual, reach = reach / shape.tip.elements, min(reach, specimen.radius)
+        return GradedSection(specimen, self.mesh, shape, rims=rims, reach=reach, usual=usual)
 
     def model(self) -> PressedModel:
         """The finite element model of the tissue."""
         from tactsim.mechanics.models.section_model import SectionModel
 
-        mesh, specimen = self.section(), self.specimen
-        top = self.top_edges(mesh)
-        return SectionModel(mesh, specimen.materials, base=specimen.base, top=top, measure=self.measure)
-
-    def _focus(self) -> tuple[tuple[float, ...], float, float]:
-        """Radii of the circles that the mesh is graded to, how far around them it is finest, and its finest size, in m."""
-        shape = self.body.contact_shape
-        if shape.tip is not None:
-            reach = 1.5 * float(np.sqrt(self.contact_radius * self.depth))
-            if shape.tip.within_radius:
-                reach = min(reach, 1.5 * self.contact_radius)
-            return (), min(reach, self.specimen.radius), reach / shape.tip.elements
-        rims, fillet = (shape.hole, self.contact_radius), shape.fillet or 0.0
-        finest = fillet / 3 if fillet > 0 else self.contact_radius / 50
-        return tuple(r for r in rims if 0 < r < self.specimen.radius), fillet, finest
-
-    def _on_top(self, corners: Array) -> Array:
-        sign = -1.0 if self.specimen.surface == "concave" else 1.0
-        top = -sign * self.specimen.depth_of_cap(corners[..., 0])
-        return (np.abs(corners[..., 1] - top) < 1e-9 * self.specimen.thickness).all(axis=1)
+        section, specimen = self.section(), self.specimen
+        mesh = section.mesh()
+        return SectionModel(mesh, specimen.materials, base=specimen.base, top=section.top_edges(mesh), measure=self.measure)

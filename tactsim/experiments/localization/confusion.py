@@ -16,7 +16,7 @@ from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
 from tactsim.experiments.localization.source import folder_words, readings_of, stored_grasp, with_reference
-from tactsim.interfaces import Experiment
+from tactsim.interfaces import Experiment, Inclusion
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.run import Course, Findings
@@ -24,11 +24,10 @@ from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.outside.input_path import InputPath
+from tactsim.registry import kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.units import Force, format_quantity
-
-TUBE = "tube"
 
 
 class Confusion(Experiment):
@@ -95,11 +94,11 @@ class Confusion(Experiment):
         readings = []
         for folder in self.grasps:
             stored = stored_grasp(folder)
-            kinds = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
-            true = class_of(kinds)
+            shapes = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
+            true = class_of(shapes)
             if true is None:
                 raise InputError(
-                    f"grasps: {folder_words(folder)} has {', '.join(kinds)}; allowed: at most two lumps, or at most two tubes"
+                    f"grasps: {folder_words(folder)} has {', '.join(shapes)}; allowed: at most two lumps, or at most two tubes"
                 )
             one = with_reference(readings_of(stored, self.readings, noise=self.noise), plain)
             readings.append((folder_words(folder), true, replace(one, response=response)))
@@ -122,11 +121,15 @@ def table_quantities(table: ConfusionTable) -> dict[str, Quantity]:
     return quantities
 
 
-def class_of(kinds: Sequence[str]) -> str | None:
-    """Class of inclusions by the names of their shapes; None for a lump beside an artery and for more than two."""
-    tubes = sum(kind == TUBE for kind in kinds)
+def class_of(shapes: Sequence[str]) -> str | None:
+    """Class of inclusions by the kinds of their shapes: a hollow one is an artery, any other a lump.
+
+    None for a lump beside an artery and for more than two.
+    """
+    known = kinds(Inclusion)
+    arteries = sum(shape in known and known[shape].hollow for shape in shapes)
     names = {(0, 0): "none", (1, 0): "lump", (2, 0): "two_lumps", (1, 1): "artery", (2, 2): "two_arteries"}
-    return names.get((len(kinds), tubes))
+    return names.get((len(shapes), arteries))
 
 
 def estimated_class(estimate: Estimate) -> str:

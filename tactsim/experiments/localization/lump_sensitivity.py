@@ -20,6 +20,7 @@ import scipy
 from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError, InputError
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.solvers.linear import direct_solver
@@ -81,7 +82,7 @@ def sensitivity(setup: GraspSetup) -> Sensitivity:
     if setup.inclusions:
         raise InputError("the response is that of plain tissue; give a grasp without inclusions")
     plain = setup.model_copy(update={"mesh": StructuredSource(kind="structured", cells=CELLS)})
-    model = plain.model(plain.sourced())
+    model = grasp_model(plain, grasp_mesh(plain))
     last = None
     for state, _ in grasp_path(plain, model).states():
         last = state.contact

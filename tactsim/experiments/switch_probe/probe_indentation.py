@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.course import HistoryPath
+from tactsim.experiments.indentation.graded_section import GradedSection
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.fem.assembly.space import Measure
@@ -33,9 +34,9 @@ class ProbeIndentation(TimedIndentation):
 
     measure: ClassVar[Measure] = "plane_strain"
 
-    def _focus(self) -> tuple[tuple[float, ...], float, float]:
-        rims, _, finest = super()._focus()
-        return rims, REACH * self.contact_radius, finest
+    def section(self) -> GradedSection:
+        """The section, its elements smallest in all that comes to lie on the face and beside its corners."""
+        return replace(super().section(), reach=REACH * self.contact_radius)
 
 
 @dataclass(frozen=True)

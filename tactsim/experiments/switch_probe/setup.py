@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation
 from tactsim.materials import AnyMaterial
 from tactsim.mechanics.contact.penetration_bounds import default_penetration

@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -18,6 +18,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
+from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
@@ -58,7 +59,19 @@ def _sizes(source: BlockMeshSettings) -> BlockMeshSettings:
     return BlockMeshSettings.model_validate(source.model_dump(exclude={"kind"}))
 
 
-class TetrahedraSource(BlockMeshSettings):
+class BlockSource(FrozenModel):
+    """What gives the mesh of a block."""
+
+    finer: ClassVar[str] = "take a smaller mesh.edge_size at the edges of the jaws, a smaller mesh.inclusion_size at an inclusion"
+    """What makes elements smaller where they lose their volume, in the words of the case."""
+
+    def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+        """The kind, and why its mesh cannot follow the inclusions in a block of this size in m, between jaws that have these
+        ``flats`` (2, 2) in m inside it; None if it can."""
+        return None
+
+
+class TetrahedraSource(BlockMeshSettings, BlockSource):
     """Tetrahedra that follow the inclusions, made once and kept."""
 
     kind: Literal["tetrahedra"] = "tetrahedra"
@@ -71,10 +84,15 @@ class TetrahedraSource(BlockMeshSettings):
         return SourcedBlock(stored.block, stored.content, stored.origin)
 
 
-class LayersSource(BlockMeshSettings):
+class LayersSource(BlockMeshSettings, BlockSource):
     """Layers of cells around one sphere or ellipsoid: lumps moved or turned have meshes of one topology."""
 
     kind: Literal["layers"]
+
+    def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+        """That there is no sphere or ellipsoid, or not only one."""
+        served = len(inclusions) == 1 and inclusions[0].solids(np.asarray(size, float))[0].ball_image() is not None
+        return None if served else "layers serves exactly one sphere or ellipsoid"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m around its only inclusion.
@@ -91,7 +109,7 @@ class LayersSource(BlockMeshSettings):
         return SourcedBlock.of(morphed_block(size, inclusions[0], _sizes(self)), "built in layers")
 
 
-class GradedSource(BlockMeshSettings):
+class GradedSource(BlockMeshSettings, BlockSource):
     """Few cells, thin at the faces, rounded around spheres and ellipsoids, in rings around tubes: the fastest for its accuracy.
     Several lumps are served where along x, y or z one of each two ends before the other begins."""
 
@@ -111,6 +129,13 @@ class GradedSource(BlockMeshSettings):
         """Least distance in m between the inclusion and the faces."""
         return GAP_SHARE * self.inclusion_size
 
+    def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+        """Which of the inclusions are of other forms, in each other's way, or below the edge of a jaw."""
+        from tactsim.mesh.graded.block import graded_misfit
+
+        reason = graded_misfit(size, inclusions, flats)
+        return reason and f"graded: {reason}"
+
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_block
@@ -122,9 +147,10 @@ class GradedSource(BlockMeshSettings):
         return SourcedBlock.of(block, origin)
 
 
-class StructuredSource(FrozenModel):
+class StructuredSource(BlockSource):
     """A grid of equal cells, six tetrahedra each; an inclusion takes those whose centre lies in it, so that it is ragged."""
 
+    finer: ClassVar[str] = "take more mesh.cells"
     kind: Literal["structured"]
     cells: tuple[Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)]]
     """Number of cells along x, y and z."""
@@ -133,6 +159,11 @@ class StructuredSource(FrozenModel):
     def least_gap(self) -> float:
         """Least distance in m between inclusions, and from faces."""
         return TOUCHING
+
+    def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+        """Which hollow inclusion its elements cannot follow."""
+        hollow = next((inclusion_name(k, one) for k, one in enumerate(inclusions, 1) if one.hollow), None)
+        return hollow and f"structured cannot follow the wall of {hollow}"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m.
@@ -154,9 +185,10 @@ class StructuredSource(FrozenModel):
         return SourcedBlock.of(block, "structured")
 
 
-class FileSource(FrozenModel):
+class FileSource(BlockSource):
     """A mesh made by another program, for the block and the inclusions that the case describes."""
 
+    finer: ClassVar[str] = "make smaller elements there in the file"
     kind: Literal["file"]
     path: InputPath
     """Any file of tetrahedra that meshio reads."""
@@ -241,7 +273,7 @@ def _tag(name: str) -> int | str:
     return int(name) if name.lstrip("-").isdigit() else name
 
 
-class AutomaticSource(FrozenModel):
+class AutomaticSource(BlockSource):
     """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
 
     kind: Literal["automatic"] = "automatic"
@@ -252,9 +284,7 @@ class AutomaticSource(FrozenModel):
 
     def chosen(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> GradedSource | TetrahedraSource:
         """What suits these inclusions in a block of this size in m, and jaws with these ``flats`` (2, 2) in m."""
-        from tactsim.mesh.graded.block import graded_misfit
-
-        return self.graded if graded_misfit(size, inclusions, flats) is None else self.tetrahedra
+        return self.graded if self.graded.misfit(size, inclusions, flats) is None else self.tetrahedra
 
 
 AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource

@@ -10,6 +10,7 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_source import TetrahedraSource
 from tactsim.mesh.inclusions.surface import read_surface
@@ -43,9 +44,9 @@ def test_the_mesh_is_shipped_or_repeats(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)  # from any folder
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     experiment = load_case(path).experiment
-    sourced = experiment.sourced()
+    sourced = grasp_mesh(experiment)
     if not isinstance(experiment.source, TetrahedraSource):
-        assert experiment.sourced().content == sourced.content
+        assert grasp_mesh(experiment).content == sourced.content
         return
     assert sourced.origin == "shipped"
     (entry,) = (entry for entry in entries(ROOT / "meshes") if entry.key == sourced.block.key)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
@@ -16,7 +17,7 @@ factored, there are more; it takes 17, 4 and 115."""
 
 def test_a_grasp_factors_rarely_and_solves_little(one_thread):
     grasp = Grasp.example()
-    model = grasp.model(grasp.sourced())
+    model = grasp_model(grasp, grasp_mesh(grasp))
     states = [state for state, _ in grasp_path(grasp, model).states()]
     if not isinstance(model.problem.solver, Relay):
         pytest.skip("without Pardiso every system is factored")

@@ -15,7 +15,7 @@ def coarse_default(monkeypatch: pytest.MonkeyPatch) -> None:
     """A default tolerance with which the example misses more of its force than a success may."""
     monkeypatch.setattr(setup, "PENETRATION", 5e-3)
     monkeypatch.setattr(setup, "PENETRATION_OF_CLOSING", 0.1)
-    monkeypatch.setattr(setup, "SOFTNESS_OF_HEIGHT", 0.05)  # or the contact would be stiffer than its tolerance asks
+    monkeypatch.setattr(path, "SOFTNESS_OF_HEIGHT", 0.05)  # or the contact would be stiffer than its tolerance asks
 
 
 def force(result: Result) -> float:

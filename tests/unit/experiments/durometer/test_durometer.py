@@ -9,7 +9,7 @@ from tactsim.contact.rod import Rod
 from tactsim.errors import CaseError
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.durometer.force_depth_curve import ForceDepthCurve
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen

@@ -13,6 +13,7 @@ from tactsim.analytic.histories import History, Segment
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import MMHG, PulsePressure
+from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.readings import JawReading, check_sums
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.contact.surface_forces import TaxelForces
@@ -34,6 +35,10 @@ RAMP = {"kind": "ramp", "to": 1e-4, "duration": 1.0}
 TUBE = {"kind": "tube", "centre_line": [(0.0, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)], "inner_radius": 4e-3, "wall": 3e-3}
 BALL = {"kind": "sphere", "center": (20e-3, 20e-3, 10e-3), "radius": 5e-3}
 PULSE = {"kind": "pulse", "beats": 1}
+
+
+def aside(y=34e-3):
+    return BALL | {"center": (20e-3, y, 10e-3), "radius": 3e-3}
 
 
 def grasp(**changes):
@@ -243,6 +248,13 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
         ),
         ({"inclusions": [{"shape": TUBE, "material": "lump"}]}, "structured cannot follow the wall of tube 1; take kind: tetra"),
         ({"inclusions": [], "mesh": {"kind": "layers"}}, "exactly one sphere or ellipsoid"),
+        (
+            {
+                "inclusions": [{"shape": shape, "material": "lump"} for shape in (TUBE, aside(), aside(y=6e-3))],
+                "mesh": {"kind": "graded"},
+            },
+            "mesh.kind: graded: graded cells serve one lump beside tubes, .*; take kind: tetrahedra",
+        ),
         ({"loading": pressed({"kind": "ramp", "to": 10e-3, "duration": 1.0})}, "less than half the block's height 20 mm"),
         ({"loading": pressed({"kind": "ramp", "to": -1e-3, "duration": 1.0})}, "falls to -1 mm"),
         ({"loading": pressed({"kind": "hold", "duration": 1.0})}, "nothing happens"),
@@ -319,12 +331,8 @@ def test_a_ragged_lump_is_reported():
     assert any("the mesh gives sphere 1" in words for words in result.warnings)
 
 
-def aside():
-    return BALL | {"center": (20e-3, 34e-3, 10e-3), "radius": 3e-3}
-
-
 def test_another_mesh_source_carries_the_content():
-    sourced = grasp(mesh={"kind": "layers"}, inclusions=[{"shape": BALL, "material": "lump"}]).sourced()
+    sourced = grasp_mesh(grasp(mesh={"kind": "layers"}, inclusions=[{"shape": BALL, "material": "lump"}]))
     assert sourced.origin == "built in layers"
     assert replace(sourced, origin="").content == sourced.content
     assert len(sourced.content) == 32

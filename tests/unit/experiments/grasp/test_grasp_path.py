@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.path import grasped_block
 
 CLOSING = 1e-3
@@ -29,7 +30,6 @@ class Model:
 
 @pytest.mark.parametrize(("facets", "first"), [(("upper", "lower"), 1.0), (("upper", "lower", "lumen:1"), 0.0)])
 def test_a_hollow_tube_is_not_squeezed_by_the_first_guess(facets, first):
-    experiment = SimpleNamespace(softness=5e-5, loading=SimpleNamespace(control="displacement"), lumens=())
     rest = SimpleNamespace(load=0.0, unknowns=np.zeros(4))
-    computed = grasped_block(experiment, Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
+    computed = grasped_block(Grasp.example(), Model(*facets)).equilibrium(rest, (CLOSING,), np.zeros(5), None)
     assert (computed == first).all()

@@ -10,9 +10,9 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
 from tactsim.experiments.indentation.course import DisplacementPath
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.record import energy_assumptions
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen

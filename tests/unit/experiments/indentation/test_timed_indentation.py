@@ -10,7 +10,7 @@ from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen

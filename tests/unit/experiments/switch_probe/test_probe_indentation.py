@@ -8,8 +8,8 @@ import pytest
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.course import HistoryPath
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.record import IndentationRecord
-from tactsim.experiments.indentation.setup import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation, probe_states, side_forces
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen

@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import CaseError, ConvergenceError
-from tactsim.experiments.indentation.setup import MeshSettings
+from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.switch_probe import run
 from tactsim.experiments.switch_probe.figures import switch_panel_figure
 from tactsim.experiments.switch_probe.run import force_noise, touched
