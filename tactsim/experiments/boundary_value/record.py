@@ -98,7 +98,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             posed.model,
             path,
             tolerance=problem.largest_penetration(size),
-            stiffest=3 * material.shear_modulus / size,
+            stiffest=math.inf if posed.model.conditions.only_contacts_act else 3 * material.shear_modulus / size,
             reached=_time_reached,
         )
         self.problem, self._probes, self._mirrors = problem, probes, posed.domain.mirrors

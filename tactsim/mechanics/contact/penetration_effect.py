@@ -88,6 +88,7 @@ def _missing(contact: PosedContact, growth: ContactIterate | None) -> float:
 
 
 def _force(contact: PosedContact) -> float:
-    """Force in N on the body along the axis in which bodies move, the last one."""
+    """Largest component in N of the force on the body: bodies move along an axis, and what acts around an axis of revolution adds
+    up to less."""
     state = contact.state
-    return abs(float(contact.surface.total(state.pressure * state.normals + state.tangential)[-1]))
+    return float(np.abs(contact.surface.total(state.pressure * state.normals + state.tangential)).max())

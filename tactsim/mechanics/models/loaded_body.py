@@ -67,6 +67,12 @@ class Conditions:
         """Number of factors."""
         return self.motion_count + len(self.loads) + len(self.contacts)
 
+    @property
+    def only_contacts_act(self) -> bool:
+        """Whether all that deforms the body are rigid bodies, each of which moves."""
+        still = not self.loads and not self.motions.values([1.0] * self.motion_count).any()
+        return still and bool(self.contacts) and all(contact.displacement.any() for contact in self.contacts)
+
     def split(self, factors: Sequence[float]) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
         """The factors of motions, of loads and of contacts."""
         first, second = self.motion_count, self.motion_count + len(self.loads)
