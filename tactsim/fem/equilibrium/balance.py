@@ -37,7 +37,8 @@ class ExternalForces:
 
 @dataclass(frozen=True)
 class Scales:
-    """What residuals are measured by: mean nodal ``volume`` in m^3, and ``rounding`` (n,) of the internal nodal forces in N."""
+    """What residuals are measured by: mean nodal ``volume`` in m^3, and ``rounding`` (n,) of the internal nodal forces in N
+    without deformation."""
 
     volume: float
     rounding: Array
@@ -47,6 +48,11 @@ class Scales:
         """Those of a body."""
         volume = body.points.weights.sum() / len(body.space.pressure_corners)
         return cls(volume, ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim))
+
+    def rounding_at(self, F: Array) -> Array:
+        """Round-off (n,) of the internal nodal forces in N at a deformation gradient (3, 3, ...): what cancels there, a pressure
+        against the stress of the shape, grows like the square of the stretch."""
+        return max(1.0, float(F.max()), -float(F.min())) ** 2 * self.rounding
 
 
 @dataclass(frozen=True)
@@ -90,24 +96,24 @@ class Balance:
         moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
         rounding = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
-        residual, unbalanced = self._norms(internal, largest, tractions, rounding)
+        residual, unbalanced = self._norms(internal, largest, tractions, self.scales.rounding_at(kinematics.F), rounding)
         if control is not None:
             surfaces = [interface.surface for interface in interfaces]
             residual = max(residual, control.error(surfaces, tractions, rounding, self.tolerance))
         return NewtonState(unknowns, kinematics, rigid_displacement, internal, moved, tractions, residual, unbalanced)
 
     def _norms(
-        self, internal: Array, largest: float, tractions: Sequence[Array], rounding: Sequence[Array]
+        self, internal: Array, largest: float, tractions: Sequence[Array], noise: Array, rounding: Sequence[Array]
     ) -> tuple[float, float]:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
         error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
         residual, split = internal.copy(), self.body.space.displacement_size
-        scale, noise = max(largest, float(np.abs(internal[:split]).max())), self.scales.rounding.copy()
+        scale = max(largest, float(np.abs(internal[:split]).max()))
         for interface, traction, lost in zip(self.forces.interfaces, tractions, rounding, strict=True):
             force = interface.surface.force(traction)
             scale = max(scale, float(np.abs(force).max()))
             residual -= force
-            noise += interface.surface.largest_force(lost)[:split]
+            noise = noise + interface.surface.largest_force(lost)[:split]
         residual = self.constraints.free(residual)
         unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.tolerance)).max()
         relative = float(max(unbalanced, np.abs(residual[split:]).max() / self.scales.volume))
