@@ -29,6 +29,12 @@ ROUND_OFF = 128 * np.finfo(float).eps
 """Round-off of the stress over the shear modulus: F is one plus small numbers."""
 NOISE_GROWTH = 8
 """Sum of the coefficients of the differences, on even steps."""
+LEAST_STRESS = 1e-7
+"""Size of the stress over the smallest shear modulus by which an error counts at least.
+
+Why: while a round body touches its first points the stress begins at nothing with a kink, beside which its error is as large
+however short the step is: all of 16 spheres pressed along a ramp failed there.
+"""
 MEAN_OF_CUBIC = 0.25
 """Bound of the mean error of the parabola, over the slope of the error at its end times the step."""
 LARGEST_GROWTH = 2.4
@@ -188,7 +194,7 @@ def step_error(body: Body, variables: HistoryVariables) -> float:
     moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
     noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * moduli[:, None]
     missed = np.where(np.abs(missed) > noise, missed, 0.0)
-    size = size_of(body, variables.stress)
+    size = max(size_of(body, variables.stress), LEAST_STRESS * float(moduli.min()))
     total = (variables.series.amplitudes * weight).sum(axis=0)
     return size_of(body, total[:, None] * missed) / size if size > 0 else 0.0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scenes import unmarked_figures
 
 from tactsim.contact.annulus import Annulus
@@ -70,6 +71,25 @@ def test_a_held_displacement_relaxes_by_the_series(held):
     assert not np.allclose(force / force[0], fading(times) ** 1.05, rtol=2e-3)
     assert history(held, "base_force") == pytest.approx(force, rel=1e-7)
     assert times[-1] == 10.0
+
+
+def test_a_ball_on_a_ramp_passes_its_first_touch_and_fades_as_its_growing_contact_should():
+    """Reference: the hereditary integral over the elastic force, exact while contact grows (Ting 1966, doi:10.1115/1.3625192).
+
+    Mutant: the elastic force.
+    """
+    ball = {"body": Sphere(radius=5e-3), "time": TimeSettings(tolerance=1e-3), "mesh": MeshSettings(finest=0.15e-3, growth=1.5)}
+    ball["loading"] = displaced({"kind": "ramp", "to": 0.1e-3, "duration": 1.0})
+    faded, elastic = thin(**ball).run(), thin(**ball, material=ELASTIC).run()
+    times = np.linspace(0.0, 1.0, 2001)
+    force = np.interp(times, [0.0, *history(elastic, "time")], [0.0, *history(elastic, "reaction_force")])
+    middles = (times[1:] + times[:-1]) / 2
+
+    def check(last):
+        assert history(faded, "reaction_force")[-1] == pytest.approx(last, rel=3e-3)
+
+    check(float(fading(1.0 - middles) @ np.diff(force)))
+    assert_kills(check, elastic=(force[-1],))
 
 
 def test_a_held_force_creeps():
