@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.asked import (
     AnyAsked,
     AskedContactForce,
@@ -19,7 +20,7 @@ from tactsim.experiments.boundary_value.asked import (
     AskedVolume,
 )
 from tactsim.experiments.boundary_value.geometry import AXES
-from tactsim.experiments.boundary_value.posing import PosedProblem, check_place, face_of
+from tactsim.experiments.boundary_value.posing import PosedProblem
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.assembly.history_variables import HistoryVariables
 from tactsim.mechanics.fields.point_values import BodyPoint, cauchy_stress, von_mises
@@ -43,12 +44,23 @@ Evaluation = Callable[[Present], float]
 
 
 class Probes:
-    """All that is asked of one problem."""
+    """All that is asked of one problem.
+
+    Raises
+    ------
+    InputError
+        If a point lies outside the body, or there is no such stress at it.
+    """
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem):
         self._problem, self._posed, self._model = problem, posed, posed.model
         self._axes = AXES[problem.dimension]
-        self._evaluations = {name: self._evaluation(one) for name, one in problem.asked.items()}
+        self._evaluations: dict[str, Evaluation] = {}
+        for name, one in problem.asked.items():
+            try:
+                self._evaluations[name] = self._evaluation(one)
+            except (InputError, ValueError) as error:
+                raise InputError(f"asked.{name}: {error}") from None
 
     def values(self, state: TimedState) -> dict[str, float]:
         """Every number in SI, by its name."""
@@ -65,10 +77,10 @@ class Probes:
         if isinstance(one, AskedStress):
             return self._stress(one)
         if isinstance(one, AskedForce):
-            nodes, axis = np.unique(face_of(self._posed.domain, one.face)), self._axes.index(one.component)
+            nodes, axis = np.unique(self._posed.parts.face(one.face)), self._axes.index(one.component)
             return lambda now: float(now.forces[nodes, axis].sum())
         if isinstance(one, AskedTorque):
-            return self._torque(np.unique(face_of(self._posed.domain, one.face)))
+            return self._torque(np.unique(self._posed.parts.face(one.face)))
         if isinstance(one, AskedContactForce):
             number, axis = one.contact - 1, self._axes.index(one.component)
             return lambda now: self._contact_force(now, number, axis)
@@ -79,7 +91,7 @@ class Probes:
         return lambda now: float((weights * now.timed.contact.kinematics.J).sum())
 
     def _point(self, place: tuple[float, ...]) -> BodyPoint:
-        check_place(place, self._axes)
+        self._posed.parts.check_place(place)
         return BodyPoint.at(self._model.body, np.array(place))
 
     def _stress(self, one: AskedStress) -> Evaluation:

@@ -93,7 +93,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     """Collects the accepted states of a problem."""
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
-        material, size = problem.material, posed.size
+        material, size = problem.material, posed.parts.size
         super().__init__(
             posed.model,
             path,
@@ -101,7 +101,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             stiffest=3 * material.shear_modulus / size,
             reached=_time_reached,
         )
-        self.problem, self._probes, self._mirrors = problem, probes, posed.domain.mirrors
+        self.problem, self._probes, self._mirrors = problem, probes, posed.parts.domain.mirrors
 
     def values(self, state: TimedState) -> dict[str, float]:
         """What is asked for, and what every step records."""

@@ -11,7 +11,9 @@ from pydantic import ValidationError
 from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.plotting import figures_for
+from tactsim.refusals import refusals_of
 from tactsim.results.result import Status
+from tactsim.units import written
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 C10, C01, SIDE = 1e3, 250.0, 0.01
@@ -167,33 +169,88 @@ def test_the_course_is_recorded_and_drawn():
     assert draw()[:4] == b"\x89PNG"
 
 
+HALF = {"x": [0.0, SIDE / 2]}
+
+
+@pytest.mark.parametrize(
+    ("fields", "place", "words"),
+    [
+        ({"conditions": [{"kind": "clamped", "face": "roof"}]}, "conditions.0.face", "no face 'roof'; it has left, right, front"),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top", "within": {"r": [0.0, 1.0]}}]},
+            "conditions.0.within",
+            "no coordinate r; allowed: x, y, z",
+        ),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [2 * SIDE, 3 * SIDE]}}]},
+            "conditions.0.within",
+            "no facet of top lies within",
+        ),
+        (
+            {"conditions": [{"kind": "pressure", "face": "top", "pressure": 1.0, "within": {**HALF, "y": [0.0, 0.7 * SIDE]}}]},
+            "conditions.0.within.y",
+            "from 5 mm to 10 mm, across the end at 7 mm; let cells end there",
+        ),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0, 0.0], "x": 0.0}]}, "conditions.0.at", "no node of the mesh lies at"),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0], "x": 0.0}]}, "conditions.0.at", "2 coordinates; needed: x, y, z"),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top"}, {"kind": "displacement", "face": "left", "x": 1e-3}]},
+            "conditions",
+            "condition 2 (displacement) and condition 1 (clamped) prescribe different displacements",
+        ),
+        (
+            {"asked": asked("displacement", at=(1.0, 0.0, 0.0), component="x")},
+            "asked.number.at",
+            "lies outside the body, where x",
+        ),
+        ({"asked": asked("force", face="roof", component="x")}, "asked.number.face", "no face 'roof'"),
+        ({"dimension": "axisymmetric", "asked": asked("volume")}, "geometry", "a block has no axis"),
+        ({"contacts": [{"face": "roof", "side": "top", "body": {"kind": "plane"}}]}, "contacts.0.face", "no face 'roof'"),
+    ],
+)
+def test_what_the_body_has_not_is_refused_with_its_key(fields, place, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    with pytest.raises(ValidationError) as caught:
+        BoundaryValueProblem.model_validate(fields)
+    ((path, message),) = refusals_of(caught.value, written(fields), BoundaryValueProblem).items()
+    assert ".".join(map(str, path)) == place
+    assert words in message
+
+
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"conditions": [{"kind": "clamped", "face": "roof"}]}, "no face 'roof'; it has left, right, front"),
-        ({"conditions": [{"kind": "clamped", "face": "top", "within": {"r": [0.0, 1.0]}}]}, "no coordinate r; allowed: x, y, z"),
-        ({"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [0.0, 1e-3]}}]}, "let cells end there"),
-        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0, 0.0], "x": 0.0}]}, "no node of the mesh lies at"),
-        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0], "x": 0.0}]}, "has 2 coordinates; needed: x, y, z"),
-        (
-            {"conditions": [{"kind": "clamped", "face": "top"}, {"kind": "displacement", "face": "left", "x": 1e-3}]},
-            r"condition 2 \(displacement\) and condition 1 \(clamped\) prescribe different displacements",
-        ),
-        ({"asked": asked("displacement", at=(1.0, 0.0, 0.0), component="x")}, "lies outside the body"),
-        ({"asked": asked("force", face="roof", component="x")}, "no face 'roof'"),
-        ({"asked": asked("stress", at=TOP, component="rz")}, "no rz stress"),
-        ({"dimension": "axisymmetric", "asked": asked("volume")}, "a block has no axis"),
+        ({"asked": asked("stress", at=TOP, component="rz")}, "asked.number: there is no rz stress"),
         (
             {"contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 1e-3}, "at": [1.0, 0.0, 0.0]}]},
-            "does not meet top",
+            "contacts.0: the sphere that comes from the top does not meet top",
         ),
     ],
 )
-def test_what_the_body_has_not_is_refused_with_what_it_has(fields, words):
+def test_what_the_posed_problem_has_not_is_refused_before_the_first_step(fields, words):
     held = [{"kind": "clamped", "face": "bottom"}]
     fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
     with pytest.raises(InputError, match=words):
         BoundaryValueProblem.model_validate(fields).begin()
+
+
+def test_a_load_within_a_part_that_ends_between_cells_is_that_of_the_part():
+    load = {"kind": "pressure", "face": "top", "pressure": 10.0, "within": {"r": [0.0, SIDE / 2]}}
+    held = {"kind": "clamped", "face": "bottom"}
+    question = asked("force", face="bottom", component="z")
+    force = number(dimension="axisymmetric", geometry=ROD, conditions=[held, load], asked=question)
+    assert force == pytest.approx(10 * pi * (SIDE / 2) ** 2, rel=1e-3)  # the bulk of the rest bulges, the loaded part widens
+
+
+@pytest.mark.parametrize(
+    ("moved", "words"), [({"at": [2e-3, SIDE]}, "r = 0, and not 2 mm away"), ({"r": 1e-3}, "along the axis only")]
+)
+def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
+    sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 3e-3}} | moved
+    fields = {"conditions": [{"kind": "clamped", "face": "bottom"}], "contacts": [sphere], "asked": asked("volume")}
+    with pytest.raises(ValidationError, match=words):
+        BoundaryValueProblem.model_validate({"dimension": "axisymmetric", "geometry": ROD, "material": RUBBER} | fields)
 
 
 @pytest.mark.parametrize(
