@@ -21,7 +21,7 @@ from tactsim.experiments.boundary_value.conditions import (
     TractionCondition,
 )
 from tactsim.experiments.boundary_value.geometry import AXES
-from tactsim.experiments.boundary_value.motions import motions_of
+from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.assembly.body import Body
@@ -45,16 +45,23 @@ FAR = 2.0
 """Distance from which a rigid body approaches, over the body's size."""
 
 
+Load = PressureCondition | TractionCondition | ForceCondition
+
+
 @dataclass(frozen=True)
 class PosedProblem:
-    """The model, the parts of its mesh, and for each factor the condition that it belongs to.
-
-    ``followed`` holds the conditions of the case in the order of the factors; None is one that nothing moves.
-    """
+    """The model, the parts of its mesh, the motions of their nodes, and the conditions that load them and touch them."""
 
     model: LoadedBody
     parts: Parts
-    followed: tuple[FaceCondition | PointCondition | None, ...]
+    held: tuple[Held, ...]
+    loads: tuple[Load, ...]
+    contacts: tuple[ContactCondition, ...]
+
+    @property
+    def followed(self) -> tuple[FaceCondition | PointCondition | None, ...]:
+        """The condition that each factor of the model belongs to, None if nothing moves it."""
+        return (*(one.condition for one in self.held), *self.loads, *self.contacts)
 
 
 def posed(problem: BoundaryValueSetup) -> PosedProblem:
@@ -82,17 +89,14 @@ class _Posing:
     def posed(self) -> PosedProblem:
         """The whole model."""
         held = motions_of(self._parts, self._problem.conditions)
-        forces = [
-            one for one in self._problem.conditions if isinstance(one, (PressureCondition, TractionCondition, ForceCondition))
-        ]
+        forces = tuple(one for one in self._problem.conditions if isinstance(one, Load))
         loads, units = zip(*map(self._load, forces), strict=True) if forces else ((), ())
         contacts = tuple(self._contact(*numbered) for numbered in enumerate(self._problem.contacts))
         prescribed = PrescribedMotions([one.motion for one in held], self._size)
         conditions = Conditions(prescribed, len(held), loads, units, contacts)
         options = PATIENCE if contacts else NewtonOptions()
         model = LoadedBody(self._mesh, self._body, conditions, self._regularisation(contacts), options=options)
-        followed = (*(one.condition for one in held), *forces, *self._problem.contacts)
-        return PosedProblem(model, self._parts, followed)
+        return PosedProblem(model, self._parts, tuple(held), forces, self._problem.contacts)
 
     def _regularisation(self, contacts: Sequence[MovedContact]) -> Regularisation:
         """A penalty as stiff as the penetration asks; a soft one and multipliers where a whole face is about to stick or slip.
@@ -111,7 +115,7 @@ class _Posing:
         gap = contact.pair.body.signed_distance(contact.reference - contact.place[:, None])[0]
         return float(np.ptp(gap)) <= AT_NODE * self._size
 
-    def _load(self, condition: PressureCondition | TractionCondition | ForceCondition) -> tuple[FactoredForce, float]:
+    def _load(self, condition: Load) -> tuple[FactoredForce, float]:
         """A load, and its size at the factor one."""
         facets = self._parts.facets(condition)
         if isinstance(condition, PressureCondition) and condition.follows:
