@@ -21,6 +21,7 @@ from tactsim.experiments.boundary_value.conditions import (
 from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
 from tactsim.experiments.boundary_value.motions import motions_of
 from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
@@ -126,6 +127,10 @@ class BoundaryValueSetup(FrozenModel):
             PrescribedMotions([one.motion for one in held], parts.size)
         except InputError as error:
             raise ValueError(f"conditions: {error}") from None
+        if not self.contacts and (free := free_motions(parts, held)):
+            raise ValueError(
+                f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
+            )
 
     def _check_time(self, name: str, time: float) -> None:
         """Check that there is a state at a time in s."""

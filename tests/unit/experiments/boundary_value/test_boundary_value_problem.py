@@ -352,13 +352,58 @@ def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
         BoundaryValueProblem.model_validate(fields)
 
 
-def test_a_body_that_nothing_holds_fails_with_the_reason():
-    load = {"kind": "traction", "face": "top", "z": NOMINAL}
-    result = BoundaryValueProblem.model_validate(
-        {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "conditions": [load], "asked": EXTENSION}
-    ).run()
-    assert result.status is Status.FAILED
-    assert "held against moving as a whole" in result.reason
+def point(*at, **prescribed):
+    return {"kind": "point", "at": at, **prescribed}
+
+
+CORNER = point(0.0, 0.0, 0.0, x=0.0, y=0.0, z=0.0)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "geometry", "conditions", "motions"),
+    [
+        ("3d", BRICK, PLANES[::2], "moving along y;"),
+        ("3d", BRICK, PLANES[:1], "moving along y, moving along z and turning about x;"),
+        ("3d", BRICK, [CORNER], "turning about x, turning about y and turning about z;"),
+        ("3d", BRICK, [CORNER, point(SIDE, 0.0, 0.0, y=0.0, z=0.0)], "turning about x;"),
+        ("3d", BRICK, [CORNER, point(SIDE, SIDE, SIDE, x=0.0, y=0.0, z=0.0)], "turning about an axis through what is held;"),
+        ("3d", {**ROD, "part": "half"}, PLANES[2:], "moving along x;"),
+        ("plane_strain", SQUARE, [{"kind": "displacement", "face": "bottom", "y": 0.0}], "moving along x;"),
+        ("plane_strain", SQUARE, [point(0.0, 0.0, x=0.0, y=0.0)], "turning about z;"),
+        ("axisymmetric", ROD, [{"kind": "displacement", "face": "bottom", "r": 0.0}], "moving along z;"),
+    ],
+)
+def test_a_body_that_is_free_to_move_is_refused_with_the_motion(dimension, geometry, conditions, motions):
+    load = {"kind": "pressure", "face": "top", "pressure": 1.0}
+    fields = {"material": RUBBER, "asked": asked("volume"), "dimension": dimension, "geometry": geometry}
+    with pytest.raises(ValidationError, match=f"conditions: nothing holds the body against {motions}"):
+        BoundaryValueProblem.model_validate({**fields, "conditions": [*conditions, load]})
+
+
+@pytest.mark.parametrize(
+    ("dimension", "geometry", "conditions"),
+    [
+        ("3d", BRICK, PLANES),
+        ("3d", BRICK, [CORNER, point(SIDE, 0.0, 0.0, y=0.0, z=0.0), point(0.0, SIDE, 0.0, z=0.0)]),
+        ("3d", ROD, PLANES[2:]),
+        ("3d", {**ROD, "part": "whole"}, [{"kind": "rotation", "face": "bottom", "angle": 0.0}]),
+        ("3d", {"kind": "ball", "radial": CELLS}, []),
+        ("plane_strain", SQUARE, [point(0.0, 0.0, x=0.0, y=0.0), point(SIDE, 0.0, y=0.0)]),
+        ("axisymmetric", ROD, PLANES[2:]),
+    ],
+)
+def test_a_body_that_is_just_held_is_accepted(dimension, geometry, conditions):
+    load = {"kind": "pressure", "face": "outer" if geometry.get("kind") == "ball" else "top", "pressure": 1.0}
+    fields = {"material": RUBBER, "asked": asked("volume"), "dimension": dimension, "geometry": geometry}
+    assert BoundaryValueProblem.model_validate({**fields, "conditions": [*conditions, load]}).doubts() == []
+
+
+def test_a_body_that_only_a_rigid_one_holds_is_doubted():
+    plane = {"face": "top", "side": "top", "body": {"kind": "plane"}, "law": {"kind": "stick"}, "y": -1e-3}
+    fields = {"dimension": "plane_strain", "geometry": SQUARE, "material": RUBBER, "asked": asked("volume"), "contacts": [plane]}
+    held = [{"kind": "displacement", "face": "bottom", "y": 0.0}]
+    (doubt,) = BoundaryValueProblem.model_validate(fields | {"conditions": held}).doubts()
+    assert "nothing but rigid bodies holds the body against moving along x:" in doubt
 
 
 def test_a_sphere_rubs_deep_into_a_bonded_layer():
