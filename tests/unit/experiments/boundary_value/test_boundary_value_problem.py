@@ -406,6 +406,26 @@ def test_a_body_that_only_a_rigid_one_holds_is_doubted():
     assert "nothing but rigid bodies holds the body against moving along x:" in doubt
 
 
+def test_an_incompressible_body_confined_on_all_sides_fails_with_the_reason():
+    walls = [{"kind": "displacement", "face": face, axis: 0.0} for face, axis in (("right", "x"), ("back", "y"))]
+    pressed = {"kind": "displacement", "face": "top", "z": -0.01 * SIDE}
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": asked("volume")}
+    result = BoundaryValueProblem.model_validate({**fields, "conditions": [*PLANES, *walls, pressed]}).run()
+    assert result.status is Status.FAILED
+    assert "held against moving as a whole" in result.reason
+    assert "confined on all sides" in result.reason
+
+
+@pytest.mark.parametrize(("away", "warned"), [(1e-3, True), (0.0, True), (-1e-3, False)])
+def test_a_rigid_body_that_never_touches_is_warned_of(away, warned):
+    sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": SIDE}, "z": away}
+    fields = {"dimension": "axisymmetric", "geometry": ROD, "conditions": [{"kind": "clamped", "face": "bottom"}], "steps": 2}
+    warnings = result_of(**fields, contacts=[sphere], asked=asked("contact_force", component="z")).warnings
+    assert [warning.startswith("rigid body 1 (sphere from the top) never touches the body at top") for warning in warnings] == (
+        [True] if warned else []
+    )
+
+
 def test_a_sphere_rubs_deep_into_a_bonded_layer():
     layer = {"kind": "cylinder", "radial": [{"length": 12e-3, "cells": 20, "ratio": 4}], "axial": [{"length": 2e-3, "cells": 6}]}
     held = [{"kind": "clamped", "face": "bottom"}]
