@@ -62,7 +62,11 @@ class AskedStress(Asked):
 
 
 class AskedForce(Asked):
-    """A component of what acts on a face from outside: reactions and loads, of the part that is computed."""
+    """A component of what acts on a face from outside, of the part that is computed; all faces together balance.
+
+    Pressures, tractions, forces and rigid bodies on the face, and the reaction to the displacements that are prescribed on it. Of
+    an edge whose displacement several faces prescribe each takes an equal part; of a point, each face through it.
+    """
 
     kind: Literal["force"]
     face: str
@@ -80,7 +84,7 @@ class AskedForce(Asked):
 
 
 class AskedTorque(Asked):
-    """Moment about the z axis of what acts on a face from outside, in 3D."""
+    """Moment about the z axis of what acts on a face from outside, in 3D: of the same forces as those of ``force``."""
 
     kind: Literal["torque"]
     face: str

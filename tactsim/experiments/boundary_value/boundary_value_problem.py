@@ -7,6 +7,9 @@ from typing import Any, ClassVar, Literal, Self
 from tactsim.experiments.boundary_value.asked import AskedForce, AskedStress
 from tactsim.experiments.boundary_value.conditions import ClampCondition, DisplacementCondition
 from tactsim.experiments.boundary_value.geometry import BlockGeometry, Span
+from tactsim.experiments.boundary_value.motions import motions_of
+from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.experiments.boundary_value.setup import RECORDED, BoundaryValueSetup
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
@@ -49,6 +52,18 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
         from tactsim.experiments.boundary_value.record import boundary_value_course
 
         return boundary_value_course(self)
+
+    def doubts(self) -> list[str]:
+        """Whether nothing but rigid bodies holds the body against some motion."""
+        if not self.contacts:
+            return []  # a body that is free then is refused
+        parts = Parts.of(self.geometry, self.dimension)
+        if not (free := free_motions(parts, motions_of(parts, self.conditions))):
+            return []
+        return [
+            f"nothing but rigid bodies holds the body against {in_words(free)}: where they do not, without friction or before "
+            "they touch, such displacements are arbitrary; prescribe one of a face or a point"
+        ]
 
     @property
     def extent(self) -> tuple[str, float]:

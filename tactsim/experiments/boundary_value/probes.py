@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.asked import (
     AnyAsked,
     AskedContactForce,
@@ -18,8 +19,9 @@ from tactsim.experiments.boundary_value.asked import (
     AskedTorque,
     AskedVolume,
 )
+from tactsim.experiments.boundary_value.face_forces import FaceForces
 from tactsim.experiments.boundary_value.geometry import AXES
-from tactsim.experiments.boundary_value.posing import PosedProblem, check_place, face_of
+from tactsim.experiments.boundary_value.posing import PosedProblem
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.assembly.history_variables import HistoryVariables
 from tactsim.mechanics.fields.point_values import BodyPoint, cauchy_stress, von_mises
@@ -32,29 +34,42 @@ AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoo
 
 @dataclass(frozen=True)
 class Present:
-    """A state with the stress (3, 3, E, Q) in Pa and the nodal forces (n, d) in N that belong to it."""
+    """A state with the stress (3, 3, E, Q) in Pa and the nodal forces (n, d) in N on faces that belong to it."""
 
     timed: TimedState
     stress: Array
-    forces: Array
+    forces: dict[str, Array]
 
 
 Evaluation = Callable[[Present], float]
 
 
 class Probes:
-    """All that is asked of one problem."""
+    """All that is asked of one problem.
+
+    Raises
+    ------
+    InputError
+        If a point lies outside the body, or there is no such stress at it.
+    """
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem):
         self._problem, self._posed, self._model = problem, posed, posed.model
         self._axes = AXES[problem.dimension]
-        self._evaluations = {name: self._evaluation(one) for name, one in problem.asked.items()}
+        self._evaluations: dict[str, Evaluation] = {}
+        for name, one in problem.asked.items():
+            try:
+                self._evaluations[name] = self._evaluation(one)
+            except (InputError, ValueError) as error:
+                raise InputError(f"asked.{name}: {error}") from None
+        faces = {one.face for one in problem.asked.values() if isinstance(one, AskedForce | AskedTorque)}
+        self._forces = FaceForces(posed, faces)
 
     def values(self, state: TimedState) -> dict[str, float]:
         """Every number in SI, by its name."""
         now, body = state.contact, self._model.body
         stress = cauchy_stress(body, now.unknowns, now.kinematics, isochoric_of(state.history_variables))
-        present = Present(state, stress, self._model.internal_forces(now.unknowns, state.relaxation))
+        present = Present(state, stress, self._forces.at(state))
         return {name: self._problem.asked[name].factor * evaluate(present) for name, evaluate in self._evaluations.items()}
 
     def _evaluation(self, one: AnyAsked) -> Evaluation:
@@ -65,10 +80,11 @@ class Probes:
         if isinstance(one, AskedStress):
             return self._stress(one)
         if isinstance(one, AskedForce):
-            nodes, axis = np.unique(face_of(self._posed.domain, one.face)), self._axes.index(one.component)
-            return lambda now: float(now.forces[nodes, axis].sum())
+            face, axis = one.face, self._axes.index(one.component)
+            return lambda now: float(now.forces[face][:, axis].sum())
         if isinstance(one, AskedTorque):
-            return self._torque(np.unique(face_of(self._posed.domain, one.face)))
+            face = one.face
+            return lambda now: self._torque(face, now)
         if isinstance(one, AskedContactForce):
             number, axis = one.contact - 1, self._axes.index(one.component)
             return lambda now: self._contact_force(now, number, axis)
@@ -79,7 +95,7 @@ class Probes:
         return lambda now: float((weights * now.timed.contact.kinematics.J).sum())
 
     def _point(self, place: tuple[float, ...]) -> BodyPoint:
-        check_place(place, self._axes)
+        self._posed.parts.check_place(place)
         return BodyPoint.at(self._model.body, np.array(place))
 
     def _stress(self, one: AskedStress) -> Evaluation:
@@ -101,13 +117,10 @@ class Probes:
         along = away if component == "radial" else np.array([-away[1], away[0], 0.0])
         return lambda now: float(along @ point.mean(now.stress) @ along)
 
-    def _torque(self, nodes: Array) -> Evaluation:
-        def moment(now: Present) -> float:
-            u, _ = self._model.space.split(now.timed.contact.unknowns)
-            place, force = (self._model.mesh.nodes + u)[nodes], now.forces[nodes]
-            return float((place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0]).sum())
-
-        return moment
+    def _torque(self, face: str, now: Present) -> float:
+        u, _ = self._model.space.split(now.timed.contact.unknowns)
+        place, force = self._model.mesh.nodes + u, now.forces[face]
+        return float((place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0]).sum())
 
     def _contact_force(self, now: Present, number: int, axis: int) -> float:
         contact = now.timed.contact.contacts[number]

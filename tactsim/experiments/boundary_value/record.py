@@ -93,7 +93,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     """Collects the accepted states of a problem."""
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
-        material, size = problem.material, posed.size
+        material, size = problem.material, posed.parts.size
         super().__init__(
             posed.model,
             path,
@@ -101,11 +101,15 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             stiffest=math.inf if posed.model.conditions.only_contacts_act else 3 * material.shear_modulus / size,
             reached=_time_reached,
         )
-        self.problem, self._probes, self._mirrors = problem, probes, posed.domain.mirrors
+        self.problem, self._probes, self._mirrors = problem, probes, posed.parts.domain.mirrors
+        self._touched = [False] * len(problem.contacts)
 
     def values(self, state: TimedState) -> dict[str, float]:
         """What is asked for, and what every step records."""
         contacts = state.contact.contacts
+        self._touched = [
+            before or bool((one.state.pressure > 0).any()) for before, one in zip(self._touched, contacts, strict=True)
+        ]
         gaps = [float(-one.pair.body.signed_distance(one.state.points)[0].min()) for one in contacts]
         return {
             "time": state.time,
@@ -156,8 +160,18 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """Warnings about volumes and ellipticity."""
-        return [*super().warnings(), *interpreted_warnings({"material": self.problem.material})]
+        """Warnings about volumes and ellipticity, and about rigid bodies that never touched."""
+        together = zip(self.problem.contacts, self._touched, strict=True)
+        return [
+            *super().warnings(),
+            *interpreted_warnings({"material": self.problem.material}),
+            *(
+                f"rigid body {number} ({one.body.kind} from the {one.side}) never touches the body at {one.face}, its force is "
+                "zero: do its displacement and side lead it there?"
+                for number, (one, touched) in enumerate(together, 1)
+                if not touched
+            ),
+        ]
 
     def scene(self) -> BoundaryValueScene:
         """What the figure reads."""

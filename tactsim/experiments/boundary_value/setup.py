@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Self
 
 import numpy as np
 from pydantic import Field, StringConstraints, model_validator
 
-from tactsim.experiments.boundary_value.asked import AnyAsked
+from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.asked import AnyAsked, AskedDisplacement, AskedForce, AskedStress, AskedTorque
 from tactsim.experiments.boundary_value.conditions import (
     SIDES,
     Amplitude,
     AnyCondition,
+    Components,
     ContactCondition,
     RotationCondition,
 )
 from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
+from tactsim.experiments.boundary_value.motions import motions_of
+from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.materials.any_material import AnyMaterial
+from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
@@ -81,13 +88,15 @@ class BoundaryValueSetup(FrozenModel):
         axes = AXES[self.dimension]
         if not (self.conditions or self.contacts):
             raise ValueError("nothing acts on the body; give conditions on its faces, or contacts")
-        for condition in (*self.conditions, *self.contacts):
+        for number, condition in enumerate(self.conditions):
             if isinstance(condition, RotationCondition) and self.dimension != "3d":
-                raise ValueError("a face turns about z in 3d only")
-            if isinstance(condition, ContactCondition):
-                self._check_contact(condition, axes)
-            elif hasattr(condition, "along"):
-                condition.along(axes)
+                raise ValueError(f"conditions.{number}: a face turns about z in 3d only")
+            if isinstance(condition, Components):
+                _blaming(f"conditions.{number}: ", condition.along, axes)
+        for number, contact in enumerate(self.contacts):
+            if contact.moves:
+                _blaming(f"contacts.{number}: ", contact.along, axes)
+            _blaming(f"contacts.{number}.", self._check_contact, contact, axes)
         for name, one in self.asked.items():
             if name in RECORDED:
                 raise ValueError(f"asked.{name}: every step records this already; take another name")
@@ -100,7 +109,28 @@ class BoundaryValueSetup(FrozenModel):
                 raise ValueError(f"asked.{name}: there are {len(self.contacts)} contacts, none is number {one.contact}")
             if one.time is not None:
                 self._check_time(name, one.time)
+        self._check_parts()
         return self
+
+    def _check_parts(self) -> None:
+        """Check that the body has what the case names, with its mesh."""
+        parts = Parts.of(self.geometry, self.dimension)
+        held = motions_of(parts, self.conditions)
+        for number, contact in enumerate(self.contacts):
+            _blaming(f"contacts.{number}.", parts.facets, contact)
+        for name, one in self.asked.items():
+            if isinstance(one, AskedForce | AskedTorque):
+                _blaming(f"asked.{name}.", parts.face, one.face)
+            if isinstance(one, AskedDisplacement | AskedStress):
+                _blaming(f"asked.{name}.", parts.check_place, one.at)
+        try:
+            PrescribedMotions([one.motion for one in held], parts.size)
+        except InputError as error:
+            raise ValueError(f"conditions: {error}") from None
+        if not self.contacts and (free := free_motions(parts, held)):
+            raise ValueError(
+                f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
+            )
 
     def _check_time(self, name: str, time: float) -> None:
         """Check that there is a state at a time in s."""
@@ -112,13 +142,25 @@ class BoundaryValueSetup(FrozenModel):
             raise ValueError(f"asked.{name}: nothing acts at the time 0, for no amplitude begins with a jump; take a later time")
 
     def _check_contact(self, condition: ContactCondition, axes: tuple[str, ...]) -> None:
+        """Check body, side, place and displacement of a contact; errors begin with its key."""
         if len(axes) not in condition.body.dimensions:
-            raise ValueError(f"a {condition.body.kind} is not defined in {self.dimension}")
+            raise ValueError(f"body: a {condition.body.kind} is not defined in {self.dimension}")
         if condition.side not in SIDES[self.dimension]:
             raise ValueError(
-                f"no body comes from the {condition.side} in {self.dimension}; allowed: {', '.join(SIDES[self.dimension])}"
+                f"side: no body comes from the {condition.side} in {self.dimension}; allowed: {', '.join(SIDES[self.dimension])}"
             )
         if condition.at is not None and len(condition.at) != len(axes):
-            raise ValueError(f"at of a contact needs {len(axes)} coordinates: {', '.join(axes)}")
-        if condition.moves:
-            condition.along(axes)
+            raise ValueError(f"at: at of a contact needs {len(axes)} coordinates: {', '.join(axes)}")
+        if condition.at is not None and self.dimension == "axisymmetric" and condition.at[0] != 0:
+            radius = format_quantity(condition.at[0], "m")
+            raise ValueError(f"at: the axis of a rigid body is that of the body, r = 0, and not {radius} away in axisymmetric")
+        if self.dimension == "axisymmetric" and condition.r:
+            raise ValueError("r: a rigid body moves along the axis only in axisymmetric, not away from it")
+
+
+def _blaming(key: str, check: Callable[..., object], *values: object) -> None:
+    """Make a check, and put the key before what it refuses."""
+    try:
+        check(*values)
+    except ValueError as error:
+        raise ValueError(f"{key}{error}") from None

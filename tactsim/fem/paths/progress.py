@@ -76,8 +76,8 @@ class Headway:
             raise ConvergenceError(
                 f"gave up at {reached} of {end}, for there is hardly any headway: the last {total - before} "
                 f"linear solutions brought {100 * (share - old):.2g} % of the way, so that the rest would take "
-                f"{_count(further)} more; allowed: {MOST_FURTHER + PER_STEP * steps:.0f}. Another mesh, above all at the edges "
-                f"of the contact, a wider tolerance or a smaller load may help{last}",
+                f"{_count(further)} more; allowed: {MOST_FURTHER + PER_STEP * steps:.0f}. Another mesh, above all at corners "
+                f"and edges of contacts, a wider tolerance or a smaller load may help{last}",
                 () if failure is None else failure.history,
             )
 

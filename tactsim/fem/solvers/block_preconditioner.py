@@ -20,7 +20,7 @@ from scipy.sparse.linalg import LinearOperator, gcrotmk
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.solvers.linear import LARGEST_RESIDUAL, LOOSENESS, IterativeSolver, LinearSystem, guiding_solver
+from tactsim.fem.solvers.linear import CAUSES, LARGEST_RESIDUAL, LOOSENESS, IterativeSolver, LinearSystem, guiding_solver
 from tactsim.fem.solvers.tangent_blocks import TangentBlocks
 from tactsim.fem.solvers.two_level import TwoLevel
 
@@ -111,7 +111,7 @@ class BlockPreconditioned(IterativeSolver):
         if self._above(left, goal, largest):
             raise ConvergenceError(
                 f"the iterative solver left {np.linalg.norm(self._scale * left) / size:.1e} of the residual after "
-                f"{self.iterations} iterations; is the body held against moving as a whole, and is the material stable?"
+                f"{self.iterations} iterations; {CAUSES}"
             )
         return solution
 

@@ -21,6 +21,12 @@ LARGEST_RESIDUAL = 1e-3
 LOOSENESS = 10.0
 """How much larger the largest entry of a residual may be, relatively, than its accuracy in the mean."""
 
+CAUSES = (
+    "is the body held against moving as a whole, has an incompressible one a face that is free (confined on all sides it cannot "
+    "change its shape, and its pressure is arbitrary), and is the material stable?"
+)
+"""What to ask of a singular system."""
+
 
 @dataclass(frozen=True)
 class LinearSystem:
@@ -99,7 +105,7 @@ class SuperLU:
         try:
             self._factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": False})
         except RuntimeError as error:
-            raise ConvergenceError(f"the sparse direct solver failed ({error}); is the body held?") from error
+            raise ConvergenceError(f"the sparse direct solver failed ({error}); {CAUSES}") from error
 
     def solve(self, right: Array) -> Array:
         """Solution for one right-hand side (n,).
@@ -156,7 +162,7 @@ def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: f
     if not left <= max(LARGEST_RESIDUAL, LOOSENESS * accuracy) * float(np.abs(right).max()):
         raise ConvergenceError(
             f"the linear system is singular (largest step {np.abs(solution).max():.2e}, left over {left:.2e} "
-            f"of {np.abs(right).max():.2e}); is the body held against moving as a whole, and is the material stable?"
+            f"of {np.abs(right).max():.2e}); {CAUSES}"
         )
     return solution
 

@@ -149,8 +149,21 @@ class LoadedBody:
 
     def internal_forces(self, unknowns: Array, relaxation: RelaxationStep | None = None) -> Array:
         """Internal nodal forces (n, d) in N: what acts on each node from outside."""
-        internal = self.body.with_relaxation(relaxation).residual(unknowns)
-        return internal[: self.space.displacement_size].reshape(-1, self.space.dim)
+        return self._nodal(self.body.with_relaxation(relaxation).residual(unknowns))
+
+    def load_forces(self, unknowns: Array, factors: Sequence[float]) -> list[Array]:
+        """Nodal forces (n, d) in N of each load, of all the factors of the conditions."""
+        u, _ = self.space.split(unknowns)
+        return [self._nodal(load.force(u)) for load in self._forces(self.conditions.split(factors)[1])]
+
+    def contact_forces(self, state: ContactEquilibrium) -> list[Array]:
+        """Nodal forces (n, d) in N of each rigid body."""
+        tractions = [one.state.pressure * one.state.normals + one.state.tangential for one in state.contacts]
+        return [self._nodal(one.surface.force(traction)) for one, traction in zip(state.contacts, tractions, strict=True)]
+
+    def _nodal(self, forces: Array) -> Array:
+        """Those (n, d) on displacements, of forces (size,) on all unknowns."""
+        return forces[: self.space.displacement_size].reshape(-1, self.space.dim)
 
     def _forces(self, factors: Sequence[float]) -> list[FollowerLoad]:
         """The loads at their factors."""

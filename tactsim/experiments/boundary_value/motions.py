@@ -1,0 +1,78 @@
+"""What the conditions of a problem prescribe of the displacement, as motions of nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.experiments.boundary_value.conditions import (
+    AnyCondition,
+    ClampCondition,
+    DisplacementCondition,
+    FaceCondition,
+    PointCondition,
+    RotationCondition,
+)
+from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.mechanics.models.prescribed_motion import PrescribedMotion, Rotation, Translation
+
+
+@dataclass(frozen=True)
+class Held:
+    """A motion; ``condition`` is what moves it, None if nothing does, and ``face`` what it holds, None if that is no face."""
+
+    motion: PrescribedMotion
+    condition: FaceCondition | PointCondition | None
+    face: str | None
+
+
+def motions_of(parts: Parts, conditions: Sequence[AnyCondition]) -> list[Held]:
+    """Every motion: those of the symmetry of the whole first, then those of the conditions.
+
+    Raises
+    ------
+    ValueError
+        If a condition names what the body has not; the message begins with its key.
+    """
+    mesh, held = parts.domain.mesh, []
+    for name, axis in parts.domain.mirrors.items():
+        unknowns = _unknowns(mesh.dim, parts.face(name), axis)
+        held.append(Held(Translation(f"the symmetry about {name}", unknowns, 0.0), None, name))
+    if parts.axes[0] == "r" and (on_axis := np.flatnonzero(mesh.nodes[:, 0] == 0.0)).size:
+        held.append(Held(Translation("the symmetry about the axis", mesh.dim * on_axis, 0.0), None, None))
+    for number, condition in enumerate(conditions):
+        try:
+            new = _prescribed(f"condition {number + 1} ({condition.kind})", condition, parts)
+        except ValueError as error:
+            raise ValueError(f"conditions.{number}.{error}") from None
+        face = condition.face if isinstance(condition, FaceCondition) else None
+        held += [Held(motion, condition, face) for motion in new]
+    return held
+
+
+def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[PrescribedMotion]:
+    """What a condition prescribes of the displacement; nothing if it is a load."""
+    mesh = parts.domain.mesh
+    if isinstance(condition, PointCondition):
+        node = parts.node(condition.at)
+        given = condition.along(parts.axes)
+        return [Translation(name, np.array([mesh.dim * node + axis]), value) for axis, value in given.items()]
+    facets = parts.facets(condition)
+    if isinstance(condition, DisplacementCondition):
+        given = condition.along(parts.axes)
+        return [Translation(name, _unknowns(mesh.dim, facets, axis), value) for axis, value in given.items()]
+    if isinstance(condition, ClampCondition):
+        return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
+    if isinstance(condition, RotationCondition):
+        nodes = np.unique(facets)
+        turned: list[PrescribedMotion] = [Rotation(name, nodes, mesh.nodes[nodes], condition.angle)]
+        return turned + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if condition.axial == "held" else [])
+    return []
+
+
+def _unknowns(dim: int, facets: Array, axis: int) -> Array:
+    """Numbers of the unknowns of one axis at the nodes of facets."""
+    return dim * np.unique(facets) + axis

@@ -1,0 +1,135 @@
+"""The parts of a meshed body that a case names: faces, pieces of faces between cells, corners of the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.experiments.boundary_value.asked import place_in_words
+from tactsim.experiments.boundary_value.conditions import FaceCondition
+from tactsim.experiments.boundary_value.geometry import AXES, Dimension, Geometry
+from tactsim.mesh.graded.mapped import Domain
+from tactsim.units import format_quantity
+
+AT_NODE = 1e-9
+"""Distance from a corner or a border of the mesh, over the body's size, that is round-off."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A meshed body with the names of its ``axes``; errors begin with the key that is to blame, such as ``face``."""
+
+    domain: Domain
+    axes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, geometry: Geometry, dimension: Dimension) -> Parts:
+        """Those of a geometry.
+
+        Raises
+        ------
+        ValueError
+            If it has no mesh in this dimension.
+        InputError
+            If the cells are too many.
+        """
+        try:
+            return cls(geometry.domain(dimension), AXES[dimension])
+        except ValueError as error:
+            raise ValueError(f"geometry: {error}") from None
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the body along an axis in m."""
+        return float(np.ptp(self.domain.mesh.nodes, axis=0).max())
+
+    def face(self, name: str) -> Array:
+        """Facets (F, 3) or (F, 6) of a face by its name.
+
+        Raises
+        ------
+        ValueError
+            If there is no such face.
+        """
+        if name not in self.domain.faces:
+            raise ValueError(f"face: the body has no face {name!r}; it has {', '.join(self.domain.faces)}")
+        return self.domain.faces[name]
+
+    def facets(self, condition: FaceCondition) -> Array:
+        """The facets of a face, or of the part of it that the condition means.
+
+        Raises
+        ------
+        ValueError
+            If there is no such face or coordinate, or the part holds no facet or does not end between cells.
+        """
+        facets = self.face(condition.face)
+        inside, touched = np.ones(len(facets), bool), np.ones(len(facets), bool)
+        slack = AT_NODE * self.size
+        for name, (low, high) in (condition.within or {}).items():
+            if name not in self.axes:
+                raise ValueError(f"within: there is no coordinate {name}; allowed: {', '.join(self.axes)}")
+            along = self.domain.mesh.nodes[facets][..., self.axes.index(name)]
+            inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
+            touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
+        if (cut := facets[touched & ~inside]).size:
+            raise ValueError(self._cut_in_words(cut[0], condition))
+        if not inside.any():
+            raise ValueError(
+                f"within: no facet of {condition.face} lies within {condition.within}; let cells end there, or take a wider part"
+            )
+        return facets[inside]
+
+    def node(self, place: Sequence[float]) -> int:
+        """The node at a place in m.
+
+        Raises
+        ------
+        ValueError
+            If there is none, or the place has another number of coordinates.
+        """
+        self.check_place(place)
+        distance = np.linalg.norm(self.domain.mesh.nodes - np.asarray(place), axis=1)
+        node = int(distance.argmin())
+        if distance[node] > AT_NODE * self.size:
+            away = format_quantity(float(distance[node]), "m")
+            raise ValueError(
+                f"at: no node of the mesh lies at {place_in_words(place)}; the nearest is {away} away: let cells end there"
+            )
+        return node
+
+    def check_place(self, place: Sequence[float]) -> None:
+        """Check that a place in m has as many coordinates as the problem, and lies no further out than the body.
+
+        Raises
+        ------
+        ValueError
+            If it has not, or does not.
+        """
+        if len(place) != len(self.axes):
+            raise ValueError(
+                f"at: the point {place_in_words(place)} has {len(place)} coordinates; needed: {', '.join(self.axes)}"
+            )
+        nodes, slack = self.domain.mesh.nodes, AT_NODE * self.size
+        for name, value, low, high in zip(self.axes, place, nodes.min(axis=0), nodes.max(axis=0), strict=True):
+            if not low - slack <= value <= high + slack:
+                ends = " to ".join(format_quantity(float(end), "m") for end in (low, high))
+                raise ValueError(f"at: the point {place_in_words(place)} lies outside the body, where {name} is {ends}")
+
+    def _cut_in_words(self, facet: Array, condition: FaceCondition) -> str:
+        """That a facet reaches across an end of the part that a condition means."""
+        slack = AT_NODE * self.size
+        for name, ends in (condition.within or {}).items():
+            along = self.domain.mesh.nodes[facet][:, self.axes.index(name)]
+            low, high = float(along.min()), float(along.max())
+            for end in ends:
+                if low + slack < end < high - slack:
+                    first, last, cut = (format_quantity(value, "m") for value in (low, high, end))
+                    return (
+                        f"within.{name}: a cell of {condition.face} reaches from {first} to {last}, across the end at {cut}; "
+                        "let cells end there"
+                    )
+        return f"within: a cell of {condition.face} lies partly within {condition.within}; let cells end there"

@@ -1,0 +1,83 @@
+"""What acts on each face of a body: loads, rigid bodies and reactions, which balance."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+from small_problems import ROD, SIDE, SQUARE, asked, number, result_of
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+
+def test_a_load_within_a_part_that_ends_between_cells_is_that_of_the_part():
+    load = {"kind": "pressure", "face": "top", "pressure": 10.0, "within": {"r": [0.0, SIDE / 2]}}
+    held = {"kind": "clamped", "face": "bottom"}
+    question = asked("force", face="bottom", component="z")
+    force = number(dimension="axisymmetric", geometry=ROD, conditions=[held, load], asked=question)
+    assert force == pytest.approx(10 * pi * (SIDE / 2) ** 2, rel=1e-3)  # the bulk of the rest bulges, the loaded part widens
+
+
+def forces_of(faces="left right bottom top", axes="xy", **fields):
+    """Force on each face along each axis, and the largest of them."""
+    question = {f"{face}_{axis}": {"kind": "force", "face": face, "component": axis} for face in faces.split() for axis in axes}
+    quantities = result_of(**fields, asked=question).quantities
+    forces = {name: float(quantities[name].value) for name in question}
+    return forces, max(map(abs, forces.values()))
+
+
+@pytest.mark.parametrize("cells", [1, 2, 4])
+def test_a_face_bears_its_own_load_and_the_clamp_beside_it_the_reaction(cells):
+    load, spans = -100.0, [{"length": SIDE, "cells": cells}]
+    conditions = [{"kind": "clamped", "face": "left"}, {"kind": "traction", "face": "top", "y": load}]
+    common = {"dimension": "plane_strain", "geometry": {"kind": "block", "x": spans, "y": spans}}
+    forces, largest = forces_of(**common, conditions=conditions)
+    expected = dict.fromkeys(forces, 0.0) | {"top_y": load * SIDE, "left_y": -load * SIDE}
+    assert forces == pytest.approx(expected, abs=1e-7 * largest)  # Newton's tolerance, on any mesh
+
+
+@pytest.mark.parametrize(
+    "conditions",
+    [
+        [{"kind": "clamped", "face": "left"}, {"kind": "clamped", "face": "bottom"}],
+        [
+            {"kind": "displacement", "face": "left", "x": 0.0},
+            {"kind": "point", "at": [0.0, 0.0], "y": 0.0},
+            {"kind": "point", "at": [SIDE / 2, 0.0], "y": 0.0},
+        ],
+    ],
+    ids=["an edge of two clamped faces", "points"],
+)
+def test_the_forces_on_all_faces_balance(conditions):
+    loads = [{"kind": "pressure", "face": "top", "pressure": 100.0}, {"kind": "traction", "face": "right", "x": 30.0, "y": 50.0}]
+    forces, largest = forces_of(dimension="plane_strain", geometry=SQUARE, conditions=[*conditions, *loads])
+    for axis in "xy":
+        assert abs(sum(force for name, force in forces.items() if name[-1] == axis)) < 1e-7 * largest
+        assert abs(forces[f"left_{axis}"] + forces[f"bottom_{axis}"]) > 0.1 * largest
+
+
+def test_a_rigid_body_acts_on_the_face_that_it_touches():
+    plane = {
+        "face": "top",
+        "side": "top",
+        "body": {"kind": "plane"},
+        "y": -0.1 * SIDE,
+        "law": {"kind": "coulomb", "friction": 0.5},
+    }
+    common = {"dimension": "plane_strain", "geometry": SQUARE, "conditions": [{"kind": "clamped", "face": "bottom"}]}
+    forces, _ = forces_of(**common, contacts=[plane], steps=2)
+    pressed = number(**common, contacts=[plane], steps=2, asked=asked("contact_force", component="y"))
+    assert forces["top_y"] == pytest.approx(pressed, rel=1e-9)
+    assert pressed < 0
+    assert forces["bottom_y"] == pytest.approx(-pressed, rel=1e-5)  # springs that hold what nothing touches, Newton's tolerance
+    assert forces["left_x"] == forces["right_y"] == 0
+
+
+def test_the_torque_on_a_face_is_that_of_its_own_load():
+    conditions = [{"kind": "clamped", "face": "bottom"}, {"kind": "traction", "face": "right", "y": 10.0}]
+    question = {face: {"kind": "torque", "face": face} for face in ("left", "right", "front", "back", "bottom", "top")}
+    quantities = result_of(conditions=conditions, asked=question).quantities
+    torques = {face: float(quantities[face].value) for face in question}
+    assert torques["right"] == pytest.approx(10 * SIDE**3, rel=0.1)  # the arm grows as the face moves
+    assert torques["bottom"] == pytest.approx(-torques["right"], rel=1e-6)
+    assert torques["left"] == torques["front"] == torques["back"] == torques["top"] == 0

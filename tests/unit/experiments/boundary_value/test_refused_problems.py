@@ -1,0 +1,178 @@
+"""Boundary value problems that are refused, with the key that is to blame, or doubted."""
+
+from __future__ import annotations
+
+import pytest
+from pydantic import ValidationError
+from small_problems import BRICK, CELLS, EXTENSION, PLANES, ROD, RUBBER, SIDE, SQUARE, TOP, asked
+
+from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
+from tactsim.refusals import refusals_of
+from tactsim.units import written
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+
+HALF = {"x": [0.0, SIDE / 2]}
+
+
+@pytest.mark.parametrize(
+    ("fields", "place", "words"),
+    [
+        ({"conditions": [{"kind": "clamped", "face": "roof"}]}, "conditions.0.face", "no face 'roof'; it has left, right, front"),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top", "within": {"r": [0.0, 1.0]}}]},
+            "conditions.0.within",
+            "no coordinate r; allowed: x, y, z",
+        ),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [2 * SIDE, 3 * SIDE]}}]},
+            "conditions.0.within",
+            "no facet of top lies within",
+        ),
+        (
+            {"conditions": [{"kind": "pressure", "face": "top", "pressure": 1.0, "within": {**HALF, "y": [0.0, 0.7 * SIDE]}}]},
+            "conditions.0.within.y",
+            "from 5 mm to 10 mm, across the end at 7 mm; let cells end there",
+        ),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0, 0.0], "x": 0.0}]}, "conditions.0.at", "no node of the mesh lies at"),
+        ({"conditions": [{"kind": "point", "at": [1e-3, 0.0], "x": 0.0}]}, "conditions.0.at", "2 coordinates; needed: x, y, z"),
+        (
+            {"conditions": [{"kind": "clamped", "face": "top"}, {"kind": "displacement", "face": "left", "x": 1e-3}]},
+            "conditions",
+            "condition 2 (displacement) and condition 1 (clamped) prescribe different displacements",
+        ),
+        (
+            {"asked": asked("displacement", at=(1.0, 0.0, 0.0), component="x")},
+            "asked.number.at",
+            "lies outside the body, where x",
+        ),
+        ({"asked": asked("force", face="roof", component="x")}, "asked.number.face", "no face 'roof'"),
+        ({"dimension": "axisymmetric", "asked": asked("volume")}, "geometry", "a block has no axis"),
+        ({"contacts": [{"face": "roof", "side": "top", "body": {"kind": "plane"}}]}, "contacts.0.face", "no face 'roof'"),
+    ],
+)
+def test_what_the_body_has_not_is_refused_with_its_key(fields, place, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    with pytest.raises(ValidationError) as caught:
+        BoundaryValueProblem.model_validate(fields)
+    ((path, message),) = refusals_of(caught.value, written(fields), BoundaryValueProblem).items()
+    assert ".".join(map(str, path)) == place
+    assert words in message
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"asked": asked("stress", at=TOP, component="rz")}, "asked.number: there is no rz stress"),
+        (
+            {"contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 1e-3}, "at": [1.0, 0.0, 0.0]}]},
+            "contacts.0: the sphere that comes from the top does not meet top",
+        ),
+    ],
+)
+def test_what_the_posed_problem_has_not_is_refused_before_the_first_step(fields, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    with pytest.raises(InputError, match=words):
+        BoundaryValueProblem.model_validate(fields).begin()
+
+
+@pytest.mark.parametrize(
+    ("moved", "words"), [({"at": [2e-3, SIDE]}, "r = 0, and not 2 mm away"), ({"r": 1e-3}, "along the axis only")]
+)
+def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
+    sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 3e-3}} | moved
+    fields = {"conditions": [{"kind": "clamped", "face": "bottom"}], "contacts": [sphere], "asked": asked("volume")}
+    with pytest.raises(ValidationError, match=words):
+        BoundaryValueProblem.model_validate({"dimension": "axisymmetric", "geometry": ROD, "material": RUBBER} | fields)
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"conditions": []}, "nothing acts on the body"),
+        ({"conditions": [{"kind": "displacement", "face": "top", "r": 0.0}]}, "there is no component r; allowed: x, y, z"),
+        ({"conditions": [{"kind": "traction", "face": "top"}]}, "no component is given"),
+        ({"asked": asked("displacement", at=TOP, component="r")}, "asked.number: there is no component r"),
+        ({"asked": {"time": {"kind": "volume"}}}, "asked.time: every step records this already"),
+        ({"asked": asked("contact_force", component="x")}, "there are 0 contacts"),
+        ({"asked": asked("volume", time=2.0)}, "after the end at 1 s"),
+        ({"asked": asked("volume", time=0.0), "conditions": PLANES}, "nothing acts at the time 0"),
+        ({"contacts": [{"face": "top", "side": "top", "body": {"kind": "plane"}, "at": [0.0]}]}, "at of a contact needs 3"),
+        (
+            {"dimension": "plane_strain", "contacts": [{"face": "top", "side": "front", "body": {"kind": "plane"}}]},
+            "no body comes from the front in plane_strain; allowed: left",
+        ),
+        (
+            {"dimension": "plane_strain", "contacts": [{"face": "top", "side": "top", "body": {"kind": "jaw"}}]},
+            "a jaw is not defined in plane_strain",
+        ),
+        ({"dimension": "plane_strain", "asked": asked("torque", face="top")}, "in 3d only"),
+        ({"dimension": "plane_strain", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0}]}, "in 3d only"),
+    ],
+)
+def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
+    held = [{"kind": "clamped", "face": "bottom"}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
+    if fields["dimension"] == "plane_strain":
+        fields = {"asked": asked("volume")} | {**fields, "geometry": SQUARE}
+        fields["asked"] = fields["asked"] if "torque" in str(fields["asked"]) else asked("volume")
+    with pytest.raises(ValidationError, match=words):
+        BoundaryValueProblem.model_validate(fields)
+
+
+def point(*at, **prescribed):
+    return {"kind": "point", "at": at, **prescribed}
+
+
+CORNER = point(0.0, 0.0, 0.0, x=0.0, y=0.0, z=0.0)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "geometry", "conditions", "motions"),
+    [
+        ("3d", BRICK, PLANES[::2], "moving along y;"),
+        ("3d", BRICK, PLANES[:1], "moving along y, moving along z and turning about x;"),
+        ("3d", BRICK, [CORNER], "turning about x, turning about y and turning about z;"),
+        ("3d", BRICK, [CORNER, point(SIDE, 0.0, 0.0, y=0.0, z=0.0)], "turning about x;"),
+        ("3d", BRICK, [CORNER, point(SIDE, SIDE, SIDE, x=0.0, y=0.0, z=0.0)], "turning about an axis through what is held;"),
+        ("3d", {**ROD, "part": "half"}, PLANES[2:], "moving along x;"),
+        ("plane_strain", SQUARE, [{"kind": "displacement", "face": "bottom", "y": 0.0}], "moving along x;"),
+        ("plane_strain", SQUARE, [point(0.0, 0.0, x=0.0, y=0.0)], "turning about z;"),
+        ("axisymmetric", ROD, [{"kind": "displacement", "face": "bottom", "r": 0.0}], "moving along z;"),
+    ],
+)
+def test_a_body_that_is_free_to_move_is_refused_with_the_motion(dimension, geometry, conditions, motions):
+    load = {"kind": "pressure", "face": "top", "pressure": 1.0}
+    fields = {"material": RUBBER, "asked": asked("volume"), "dimension": dimension, "geometry": geometry}
+    with pytest.raises(ValidationError, match=f"conditions: nothing holds the body against {motions}"):
+        BoundaryValueProblem.model_validate({**fields, "conditions": [*conditions, load]})
+
+
+@pytest.mark.parametrize(
+    ("dimension", "geometry", "conditions"),
+    [
+        ("3d", BRICK, PLANES),
+        ("3d", BRICK, [CORNER, point(SIDE, 0.0, 0.0, y=0.0, z=0.0), point(0.0, SIDE, 0.0, z=0.0)]),
+        ("3d", ROD, PLANES[2:]),
+        ("3d", {**ROD, "part": "whole"}, [{"kind": "rotation", "face": "bottom", "angle": 0.0}]),
+        ("3d", {"kind": "ball", "radial": CELLS}, []),
+        ("plane_strain", SQUARE, [point(0.0, 0.0, x=0.0, y=0.0), point(SIDE, 0.0, y=0.0)]),
+        ("axisymmetric", ROD, PLANES[2:]),
+    ],
+)
+def test_a_body_that_is_just_held_is_accepted(dimension, geometry, conditions):
+    load = {"kind": "pressure", "face": "outer" if geometry.get("kind") == "ball" else "top", "pressure": 1.0}
+    fields = {"material": RUBBER, "asked": asked("volume"), "dimension": dimension, "geometry": geometry}
+    assert BoundaryValueProblem.model_validate({**fields, "conditions": [*conditions, load]}).doubts() == []
+
+
+def test_a_body_that_only_a_rigid_one_holds_is_doubted():
+    plane = {"face": "top", "side": "top", "body": {"kind": "plane"}, "law": {"kind": "stick"}, "y": -1e-3}
+    fields = {"dimension": "plane_strain", "geometry": SQUARE, "material": RUBBER, "asked": asked("volume"), "contacts": [plane]}
+    held = [{"kind": "displacement", "face": "bottom", "y": 0.0}]
+    (doubt,) = BoundaryValueProblem.model_validate(fields | {"conditions": held}).doubts()
+    assert "nothing but rigid bodies holds the body against moving along x:" in doubt
