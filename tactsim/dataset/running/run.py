@@ -51,14 +51,14 @@ class Tally:
     """How many samples these are in all."""
     seconds: list[Array] = field(default_factory=list)
     """Wall times in s of the samples of each block."""
-    slowest: list[tuple[float, int]] = field(default_factory=list)
-    """The longest of them in s, longest first, each with the number of the sample."""
+    slowest: dict[int, float] = field(default_factory=dict)
+    """The longest of them in s by the number of the sample, longest first."""
 
     def timed(self, samples: Array, seconds: Array) -> None:
         """Notes how long new samples took in s."""
         self.seconds.append(seconds)
-        new = zip(seconds.tolist(), samples.tolist(), strict=True)
-        self.slowest = sorted([*self.slowest, *new], reverse=True)[:SLOWEST]
+        known = self.slowest | dict(zip(samples.tolist(), seconds.tolist(), strict=True))
+        self.slowest = {number: known[number] for number in sorted(known, key=lambda one: -known[one])[:SLOWEST]}
 
     def add(self, done: int, reasons: list[str]) -> None:
         """Counts new samples: those that are done, and the reasons of those that failed."""
@@ -84,8 +84,8 @@ class Tally:
         lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             lines.append(f"{self.before} samples were there before")
-        if self.slowest and self.slowest[0][0] > WORTH_A_LINE:
-            slow = ", ".join(f"{seconds:.3g} s (sample {number})" for seconds, number in self.slowest)
+        if max(self.slowest.values(), default=0.0) > WORTH_A_LINE:
+            slow = ", ".join(f"{seconds:.3g} s (sample {number})" for number, seconds in self.slowest.items())
             lines.append(f"a sample took {np.median(np.concatenate(self.seconds)):.3g} s in the median; the slowest {slow}")
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
