@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import re
+import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -326,3 +327,12 @@ def test_the_tests_that_contributing_names_exist():
     assert len(named) > 10
     missing = [name for name in named if not (ROOT / (name if "/" in name else f"tests/contract/{name}")).is_file()]
     assert missing == []
+
+
+def test_every_dependency_is_locked():
+    """What the package needs stands in each lock, so that a fresh checkout has it."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    needed = {re.split(r"[^\w-]", line)[0] for line in project["dependencies"]}
+    for lock in sorted(ROOT.glob("requirements*.lock")):
+        locked = {line.split("==")[0].strip() for line in lock.read_text(encoding="utf-8").splitlines()}
+        assert needed <= locked, f"{lock.name} lacks {', '.join(sorted(needed - locked))}"
