@@ -332,7 +332,7 @@ def test_the_tests_that_contributing_names_exist():
 def test_every_dependency_is_locked():
     """What the package needs stands in each lock, so that a fresh checkout has it."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    needed = {re.split(r"[^\w.-]", line)[0] for line in project["dependencies"]}
+    needed = {re.split(r"[^\w.-]", line)[0].replace("-", ".") for line in project["dependencies"]}
     for lock in sorted(ROOT.glob("requirements*.lock")):
-        locked = {line.split("==")[0].strip() for line in lock.read_text(encoding="utf-8").splitlines()}
+        locked = {line.split("==")[0].strip().replace("-", ".") for line in lock.read_text(encoding="utf-8").splitlines()}
         assert needed <= locked, f"{lock.name} lacks {', '.join(sorted(needed - locked))}"
