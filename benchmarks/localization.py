@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import statistics
 import sys
-import time
-from collections.abc import Callable
+from functools import partial
 
 import numpy as np
+from timing import median_seconds
 
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -27,25 +26,15 @@ def measure() -> dict[str, float]:
         forces = generator.uniform(0.1, 1.0, (2, side, side))
         layout = TaxelLayout(rows=side, columns=side, pitch=30e-3 / side, size=27e-3 / side)
         readings = Readings(forces, layout, np.array([40e-3, 40e-3, 20e-3]))
-        figures[f"views_{side}_seconds"] = _median(lambda forces=forces: views(forces))  # type: ignore[misc]
-        figures[f"estimate_{side}_seconds"] = _median(lambda readings=readings: ThesisEstimator().estimate(readings))  # type: ignore[misc]
-        figures[f"volume_{side}_seconds"] = _median(lambda forces=forces: volume(forces, (20, 40, 40)))  # type: ignore[misc]
+        figures[f"views_{side}_seconds"] = median_seconds(partial(views, forces), CALLS)
+        figures[f"estimate_{side}_seconds"] = median_seconds(partial(ThesisEstimator().estimate, readings), CALLS)
+        figures[f"volume_{side}_seconds"] = median_seconds(partial(volume, forces, (20, 40, 40)), CALLS)
     return figures
 
 
 def rows(taken: dict[str, float]) -> list[tuple[str, str, str]]:
     """The row of the performance table: what, what is asked, what was measured."""
     return [("three views of two 32 x 32 matrices at 60 x 100 pixels", "1 ms", f"{1e3 * taken['views_32_seconds']:.2f} ms")]
-
-
-def _median(call: Callable[[], object]) -> float:
-    call()
-    seconds = []
-    for _ in range(CALLS):
-        begin = time.perf_counter()
-        call()
-        seconds.append(time.perf_counter() - begin)
-    return statistics.median(seconds)
 
 
 if __name__ == "__main__":

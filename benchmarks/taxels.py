@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from statistics import median
+
+from timing import median_seconds
 
 from tactsim.case.loading import load_case
 from tactsim.experiments.grasp.grasp import Grasp
@@ -35,19 +36,9 @@ def measure() -> dict[str, float]:
     figures = {"solution_seconds": time.perf_counter() - begin, "states": float(len(states))}
     for side in SIDES:
         layout = TaxelLayout(rows=side, columns=side, pitch=WIDTH / side, size=COVERED * WIDTH / side)
-        figures[f"reading_{side}_seconds"] = _median(lambda layout=layout: jaw_readings(model, states[-1], layout))  # type: ignore[misc]
+        figures[f"reading_{side}_seconds"] = median_seconds(partial(jaw_readings, model, states[-1], layout), REPEATS)
     coarse, fine = (figures["solution_seconds"] + len(states) * figures[f"reading_{side}_seconds"] for side in SIDES)
     return figures | {"ratio": fine / coarse}
-
-
-def _median(call: Callable[[], object]) -> float:
-    call()
-    seconds = []
-    for _ in range(REPEATS):
-        begin = time.perf_counter()
-        call()
-        seconds.append(time.perf_counter() - begin)
-    return median(seconds)
 
 
 def rows(taken: dict[str, float]) -> list[tuple[str, str, str]]:

@@ -40,7 +40,7 @@ nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np)\..*"),
     ("py:(class|obj)", r"(collections|concurrent|contextlib|dataclasses|enum|functools|pathlib|types|typing)\..*"),
     ("py:(class|obj)", r"(pydantic_core|warnings|multiprocessing|math)\..*"),
-    ("py:(class|obj|exc)", r"(?:[A-Z]\w*|_\w+|'\w+'|[\d.e+-]+|Annotated\[.*|[\w\[]*\[(?:str|int))$"),
+    ("py:(class|obj|exc)", r"(?:[A-Z]\w*|_\w+|'\w+'|[\d.e+-]+|Annotated\[.*|[\w\[]*\[str)$"),
     # Variables of types, and what is private.
     ("py:(class|obj)", r"tactsim\..*\.(State|Now|Iterate|Function|Made|Model|Key|AnyScene|Number|_\w+|<locals>.*)$"),
 ]

@@ -34,6 +34,11 @@ class ContactState:
     multiplier: Array | float = 0.0
     creep: Array | float = 0.0
 
+    @property
+    def traction(self) -> Array:
+        """Traction (d, n) on the tissue in Pa."""
+        return self.pressure * self.normals + self.tangential
+
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
         """No contact yet."""

@@ -49,16 +49,12 @@ class Tally:
     """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
     again: int = 0
     """How many samples these are in all."""
-    seconds: list[Array] = field(default_factory=list)
-    """Wall times in s of the samples of each block."""
-    slowest: dict[int, float] = field(default_factory=dict)
-    """The longest of them in s by the number of the sample, longest first."""
+    times: list[Array] = field(default_factory=list)
+    """Of the samples of each block (k, 2): their numbers, and wall times in s."""
 
     def timed(self, samples: Array, seconds: Array) -> None:
         """Notes how long new samples took in s."""
-        self.seconds.append(seconds)
-        known = self.slowest | dict(zip(samples.tolist(), seconds.tolist(), strict=True))
-        self.slowest = {number: known[number] for number in sorted(known, key=lambda one: -known[one])[:SLOWEST]}
+        self.times.append(np.column_stack([samples, seconds]))
 
     def add(self, done: int, reasons: list[str]) -> None:
         """Counts new samples: those that are done, and the reasons of those that failed."""
@@ -84,9 +80,11 @@ class Tally:
         lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             lines.append(f"{self.before} samples were there before")
-        if max(self.slowest.values(), default=0.0) > WORTH_A_LINE:
-            slow = ", ".join(f"{seconds:.3g} s (sample {number})" for number, seconds in self.slowest.items())
-            lines.append(f"a sample took {np.median(np.concatenate(self.seconds)):.3g} s in the median; the slowest {slow}")
+        times = np.concatenate([np.zeros((0, 2)), *self.times])
+        slowest = times[np.argsort(-times[:, 1], kind="stable")[:SLOWEST]]
+        if (slowest[:, 1] > WORTH_A_LINE).any():
+            slow = ", ".join(f"{taken:.3g} s (sample {number:.0f})" for number, taken in slowest)
+            lines.append(f"a sample took {np.median(times[:, 1]):.3g} s in the median; the slowest {slow}")
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]

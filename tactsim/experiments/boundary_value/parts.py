@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -26,8 +27,9 @@ class Parts:
     axes: tuple[str, ...]
 
     @classmethod
+    @lru_cache(maxsize=1)
     def of(cls, geometry: Geometry, dimension: Dimension) -> Parts:
-        """Those of a geometry.
+        """Those of a geometry; checking, asking for doubts and solving take the same mesh, which is made once.
 
         Raises
         ------

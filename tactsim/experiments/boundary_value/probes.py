@@ -124,8 +124,7 @@ class Probes:
 
     def _contact_force(self, now: Present, number: int, axis: int) -> float:
         contact = now.timed.contact.contacts[number]
-        state = contact.state
-        return float(contact.surface.total(state.pressure * state.normals + state.tangential)[axis])
+        return float(contact.surface.total(contact.state.traction)[axis])
 
     def _energy(self, now: Present) -> float:
         F, weights = now.timed.contact.kinematics.F, self._model.body.points.weights

@@ -44,11 +44,10 @@ def _sourced(experiment: GraspSetup, source: AnySource) -> SourcedBlock:
 
 def grasp_model(experiment: GraspSetup, sourced: SourcedBlock) -> GraspModel:
     """The finite element model on a mesh of the block."""
-    middle = np.array(experiment.block.size[:2]) / 2
     return GraspModel(
         sourced.block.mesh,
         experiment.materials,
         sourced.block.facets,
         jaws=[experiment.jaw(side) for side in JAWS],
-        offsets=np.array([middle + experiment.upper.offset, middle + experiment.lower.offset]),
+        offsets=np.array([jaw.middle(experiment.block.size) for jaw in (experiment.upper, experiment.lower)]),
     )

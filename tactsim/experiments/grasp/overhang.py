@@ -31,7 +31,7 @@ def overhang_warnings(grasp: GraspSetup) -> list[str]:
     """Warnings about taxels that reach beyond the block, jaw by jaw."""
     size, layout, warnings = np.array(grasp.block.size[:2]), grasp.matrix, []
     for side in JAWS:
-        areas = covered_areas(grasp.jaw(side), size / 2 + getattr(grasp, side).offset, size, layout)
+        areas = covered_areas(grasp.jaw(side), getattr(grasp, side).middle(size), size, layout)
         beyond = areas < COVERED * layout.area
         if beyond.any():
             row, column = np.unravel_index((areas / layout.area).round(9).argmin(), areas.shape)

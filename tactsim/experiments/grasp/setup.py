@@ -95,6 +95,10 @@ class JawSettings(FrozenModel):
         posed = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
         return Jaw.model_validate({"width": width, "depth": depth, "side": side, **posed})
 
+    def middle(self, size: Sequence[float]) -> Array:
+        """Place (2,) in m of the middle of its face on a block of this size, whose corner is the origin."""
+        return np.array(size[:2]) / 2 + self.offset
+
 
 class GraspSetup(FrozenModel):
     """A block of tissue between two jaws that close by a history of displacement or force."""
@@ -176,8 +180,7 @@ class GraspSetup(FrozenModel):
         (x, y, _), jaws = self.block.size, {side: self.jaw(side) for side in JAWS}
         if all(jaw.width >= x and jaw.depth >= y for jaw in jaws.values()):
             return []
-        middle = np.array([x, y]) / 2
-        return [jaw.flat(middle + getattr(self, side).offset) for side, jaw in jaws.items()]
+        return [jaw.flat(getattr(self, side).middle(self.block.size)) for side, jaw in jaws.items()]
 
     @property
     def source(self) -> AnySource:

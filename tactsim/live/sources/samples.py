@@ -156,11 +156,10 @@ class Samples:
 
 def _untouched(experiment: Grasp) -> GraspScene:
     """The scene of a grasp whose jaws touch the block but do not press it."""
-    x, y, z = experiment.block.size
-    places = {}
-    for side, height in zip(JAWS, (z, 0.0), strict=True):
-        along, across = getattr(experiment, side).offset
-        places[side] = (x / 2 + along, y / 2 + across, height)
+    size, places = experiment.block.size, {}
+    for side, height in zip(JAWS, (size[2], 0.0), strict=True):
+        along, across = getattr(experiment, side).middle(size).tolist()
+        places[side] = (along, across, height)
     tissue = experiment.block.tissue
     return GraspScene(
         kind=experiment.kind,

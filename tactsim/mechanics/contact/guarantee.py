@@ -101,7 +101,7 @@ class _Recorded:
 
     def converged(self, _displacement: Array) -> Array:
         """Traction (d, n) in Pa."""
-        return self.contact.state.pressure * self.contact.state.normals + self.contact.state.tangential
+        return self.contact.state.traction
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa that was lost in the round-off of the positions."""

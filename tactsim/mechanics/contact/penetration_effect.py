@@ -90,5 +90,4 @@ def _missing(contact: PosedContact, growth: ContactIterate | None) -> float:
 def _force(contact: PosedContact) -> float:
     """Largest component in N of the force on the body: bodies move along an axis, and what acts around an axis of revolution adds
     up to less."""
-    state = contact.state
-    return float(np.abs(contact.surface.total(state.pressure * state.normals + state.tangential)).max())
+    return float(np.abs(contact.surface.total(contact.state.traction)).max())

@@ -172,8 +172,7 @@ class GraspModel:
 
     def _traction(self, state: ContactEquilibrium, side: str) -> Array:
         """Traction (3, n) in Pa on the tissue at the surface points, that of the accepted state."""
-        contact = state.contacts[JAWS.index(side)].state
-        return contact.pressure * contact.normals + contact.tangential
+        return state.contacts[JAWS.index(side)].state.traction
 
 
 def touchable_facets(nodes: Array, facets: Mapping[str, Array]) -> dict[str, Array]:

@@ -158,8 +158,7 @@ class LoadedBody:
 
     def contact_forces(self, state: ContactEquilibrium) -> list[Array]:
         """Nodal forces (n, d) in N of each rigid body."""
-        tractions = [one.state.pressure * one.state.normals + one.state.tangential for one in state.contacts]
-        return [self._nodal(one.surface.force(traction)) for one, traction in zip(state.contacts, tractions, strict=True)]
+        return [self._nodal(one.surface.force(one.state.traction)) for one in state.contacts]
 
     def _nodal(self, forces: Array) -> Array:
         """Those (n, d) on displacements, of forces (size,) on all unknowns."""
