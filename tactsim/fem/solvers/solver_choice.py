@@ -14,19 +14,19 @@ from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
 from tactsim.fem.solvers.section_solver import section_factors
 
-OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 4.2e10, 1e9
-"""Speeds of a factor in single precision and of solutions with it. Grasps of 28 506 and 82 832 unknowns
-(``benchmarks/scale.py``): 2.2e10 and 1.6e11 operations in 0.54 and 3.6 s, 1.8e7 and 7.7e7 entries in 17 and 66 ms; plates of
-66 642 and 173 802 (``benchmarks/stretch.py``): 2.3e10 and 9.5e10 in 0.61 and 2.7 s, 2.9e7 and 8.9e7 in 32 and 95 ms. All in
-seconds of one core beside other work, as those below; only their ratios decide."""
+OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 9e10, 2.5e9
+"""Speeds of a factor in single precision and of solutions with it, on two idle cores, as a single run has them. Blocks of 45 293
+and 121 811 unknowns (``benchmarks/peers.py``): 4.2e10 and 3.1e11 operations in 0.58 and 3.4 s, 3.1e7 and 1.3e8 entries in 13 and
+47 ms; a grasp of 93 660 (``benchmarks/scale.py``): 2.4e11 in 2.5 s, 9.5e7 in 38 ms. One core takes twice as long, and the
+iteration 1.4 times as long, so that in a sweep the larger bodies would gain from iterating earlier; but what a body is solved by
+depends on the body alone, so that its result does too."""
 FACTORS, SOLUTIONS = 0.23, 7.0
 """Factors and solutions per system."""
-PREPARATION, STEP = 7.5e-6, 7.5e-7
+PREPARATION, STEP = 4.5e-6, 4.7e-7
 """Seconds of the preconditioner and of one step of the iteration for each unknown."""
 STEPS = 12.0
-"""Steps per system: 7 in the grasp of 28 506 unknowns and 8 in that of 82 832, which ask for few digits; some 20 without contact.
-Whole systems of the grasps took 0.35 and 1.05 s by iteration, 0.36 and 1.60 s by factor; the path of the smaller plate 75 s by
-iteration and 52 s by factor; that of a block of 121 811 unknowns (``benchmarks/peers.py``) 47 and 41 s."""
+"""Steps per system: 7 in grasps, which ask for few digits; some 20 without contact. Whole paths by iteration and by factor: the
+grasp of 93 660 unknowns 17.5 and 19.9 s, that of 33 334 6.6 and 4.7 s, the block of 121 811 21.9 and 13.6 s."""
 SMALLEST_ITERATED = 25_000
 """Unknowns below which a factor is cheaper in any body, so that none need be analysed."""
 LARGEST_FACTOR = 400_000
