@@ -65,13 +65,18 @@ JOBS = {
 
 @dataclass(frozen=True)
 class Spent:
-    """What a command took in s: by the clock, of processors, and of the clock without figures where its result tells.
+    """What a command took in s: by the clock, and of processors.
 
-    ``done`` are the samples of a sweep that have a result.
+    Attributes
+    ----------
+    case_seconds : from the case to the last state, if its result tells: without Python's start before it and the figures after it
+    solving_seconds : those of them after the model was set up
+    done : samples of a sweep that have a result
     """
 
     seconds: float
     processor_seconds: float
+    case_seconds: float | None = None
     solving_seconds: float | None = None
     done: int | None = None
 
@@ -103,7 +108,7 @@ def _summed_up(taken: dict[str, list[Spent]]) -> dict[str, float]:
     for side, runs in taken.items():
         figures |= {side: median(spent.figure for spent in runs), f"{side}_seconds": median(spent.seconds for spent in runs)}
         figures[f"{side}_processor_seconds"] = median(spent.processor_seconds for spent in runs)
-        for name in ("solving_seconds", "done"):
+        for name in ("case_seconds", "solving_seconds", "done"):
             values = [getattr(spent, name) for spent in runs]
             if None not in values:
                 figures[f"{side}_{name}"] = float(median(values))
@@ -144,12 +149,8 @@ def _spent(job: Job, place: Path, work: Path, name: str) -> Spent:
     used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     if job.is_sweep:
         return Spent(seconds, used, done=samples_done(out))
-    return Spent(seconds, used, _solving_seconds(out / "result.json"))
-
-
-def _solving_seconds(result: Path) -> float:
-    """Seconds from the case to the last state, figures not counted."""
-    return float(json.loads(result.read_text())["timing"]["total"])
+    timing = json.loads((out / "result.json").read_text())["timing"]
+    return Spent(seconds, used, timing["total"], timing["total"] - timing["setup"])
 
 
 def rows(figures: dict[str, dict[str, float]]) -> list[tuple[str, str, str]]:
@@ -162,11 +163,12 @@ def _row(name: str, job: Job, taken: dict[str, float]) -> tuple[str, str, str]:
         what = f"`{name}.yaml` by turns, {taken['here_done']:.0f} of {SAMPLES} samples done"
         rates = [f"{taken[side]:.0f} per hour" for side in ("here", "base")]
         return what, f"{job.asked:.0f} per hour", f"{rates[0]}, {taken['ratio']:.1f} times as many as {BASE} ({rates[1]})"
-    whole, solving = ([taken[f"{side}{kind}_seconds"] for side in ("here", "base")] for kind in ("", "_solving"))
-    (here, base), beside = (solving, whole) if job.without_figures else (whole, solving)
-    what, other = ("to the last state", "with") if job.without_figures else ("whole command", "without")
-    measured = f"{here:.2f} s ({beside[0]:.1f} s {other} figures), {base / here:.1f} times as fast as {BASE} ({base:.1f} s)"
-    return f"`{name}.yaml`, {what}", f"{job.asked:g} s", measured
+    what, kind = ("to the last state", "_case") if job.without_figures else ("whole command", "")
+    here, base = (taken[f"{side}{kind}_seconds"] for side in ("here", "base"))
+    solving = " and ".join(f"{taken[f'{side}_solving_seconds']:.1f}" for side in ("here", "base"))
+    faster = f"{base / here:.1f} times as fast as {BASE} ({base:.1f} s); {solving} s of them solving"
+    whole = f", {taken['here_seconds']:.1f} s with all figures" if job.without_figures else ""
+    return f"`{name}.yaml`, {what}", f"{job.asked:g} s", f"{here:.2f} s, {faster}{whole}"
 
 
 def main() -> None:

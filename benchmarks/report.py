@@ -1,8 +1,9 @@
 """Runs the benchmarks, prints them as JSON and as a table, and writes the README's performance table.
 
-python benchmarks/report.py [PART ...] [--all] [--readme] [--history] [--kept FILE]
+python benchmarks/report.py [PART ...] [--all] [--stale] [--keep]
 
-Without names all parts but the long ones are measured; with ``--all``, which ``--readme`` implies, those too.
+Without names all parts but the long ones are measured, with ``--all`` those too. ``--keep`` puts the figures of each part into
+``measured.json``, which holds the newest of every part, and into ``history.csv``, and writes the README's table from the former.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,9 @@ import validate
 import viscoelasticity
 
 README = Path(__file__).parents[1] / "README.md"
-START = "<!-- performance table: written by `python benchmarks/report.py --readme` -->"
+MEASURED = Path(__file__).with_name("measured.json")
+"""The newest figures of every part, and of what they are: machine, day, commit and state of the package."""
+START = "<!-- performance table: written by `python benchmarks/report.py --keep` -->"
 END = "<!-- end of performance table -->"
 PARTS = {
     part.__name__: part
@@ -55,33 +58,48 @@ PARTS = {
 """Modules with ``measure`` and ``rows``, in the order of the table."""
 LONG = ("validate", "scale", "peers")
 """Eight minutes, half an hour, and one to two hours with every other program installed."""
-Figures = dict[str, dict[str, Any]]
+Measurement = dict[str, Any]
+"""The ``figures`` of a part, and of what they are."""
 
 
-def table(measured: Figures) -> str:
-    """Markdown table of what is asked and what was measured, with the machine, the day and the commit."""
-    rows = [row for name, part in PARTS.items() if name in measured for row in part.rows(measured[name])]
-    lines = ["| what | asked | measured |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
-    return "\n".join([*lines, "", f"On {history.machine()}; {history.today()}, commit {history.commit()}."])
+def table(measured: dict[str, Measurement]) -> str:
+    """Markdown table of what is asked and what was measured at which commit, and the machines below."""
+    taken = [(measured[name], part.rows(measured[name]["figures"])) for name, part in PARTS.items() if name in measured]
+    lines = [f"| {' | '.join((*row, part['commit']))} |" for part, rows in taken for row in rows]
+    machines = "; ".join(dict.fromkeys(part["machine"] for part, _ in taken))
+    days = sorted({part["day"] for part, _ in taken})
+    period = " to ".join(dict.fromkeys((days[0], days[-1])))
+    return "\n".join(["| what | asked | measured | commit |", "|---|---|---|---|", *lines, "", f"On {machines}; {period}."])
 
 
-def measure(names: Sequence[str], kept: Path | None = None) -> Figures:
-    """The figures of each part by its name; hours of figures outlive a part that fails.
-
-    Figures of another machine or of another state of the package do not stand beside those of this run.
-    """
-    origin = {"machine": history.machine(), "package": history.package()}
-    before = json.loads(kept.read_text()) if kept is not None and kept.exists() else {"of": origin, "parts": {}}
-    if before["of"] != origin:
-        raise SystemExit(f"{kept} was measured on {before['of']}, this is {origin}")
-    parts: Figures = before["parts"]
+def measured_parts(names: Sequence[str]) -> Iterator[tuple[str, Measurement]]:
+    """Each part as soon as it is measured, so that hours of figures outlive one that fails."""
     for name in names:
-        if name not in parts:
-            sys.stderr.write(f"{name}\n")
-            parts[name] = PARTS[name].measure()
-            if kept is not None:
-                kept.write_text(json.dumps({"of": origin, "parts": parts}, indent=2) + "\n")
-    return {name: parts[name] for name in names}
+        sys.stderr.write(f"{name}\n")
+        figures = PARTS[name].measure()
+        yield name, {**_state(), "day": history.today(), "commit": history.commit(), "figures": figures}
+
+
+def _state() -> dict[str, str]:
+    return {"machine": history.machine(), "package": history.package()}
+
+
+def kept_parts() -> dict[str, Measurement]:
+    """The newest figures of every part that was kept."""
+    return json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
+
+
+def is_stale(part: Measurement | None) -> bool:
+    """Whether a part was never measured, or on another machine, or with another state of the package or the cases."""
+    return part is None or any(part[name] != value for name, value in _state().items())
+
+
+def keep(name: str, part: Measurement) -> None:
+    """Put a part into `MEASURED` and the history, and write the README's table anew."""
+    parts = kept_parts() | {name: part}
+    MEASURED.write_text(json.dumps(parts, indent=1) + "\n")
+    history.append({name: part["figures"]})
+    README.write_text(with_table(README.read_text(), table(parts)))
 
 
 def with_table(readme: str, text: str) -> str:
@@ -95,24 +113,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", metavar="PART", nargs="*", help=f"of {', '.join(PARTS)}")
     parser.add_argument("--all", action="store_true", help=f"also {', '.join(LONG)}")
-    parser.add_argument("--readme", action="store_true", help="write the table of all parts into README.md")
-    parser.add_argument("--history", action="store_true", help=f"add the figures to {history.HISTORY.name}")
-    parser.add_argument(
-        "--kept", type=Path, metavar="FILE", help="keep the figures of each part here, and take those that stand here"
-    )
+    parser.add_argument("--stale", action="store_true", help="only parts whose kept figures are of another state or machine")
+    parser.add_argument("--keep", action="store_true", help="keep the figures, and write the README's table of all kept ones")
     arguments = parser.parse_args()
     unknown = set(arguments.parts) - set(PARTS)
-    if unknown or (arguments.readme and arguments.parts):
-        parser.error(f"no such part: {', '.join(unknown)}" if unknown else "--readme writes the table of all parts")
-    every = arguments.all or arguments.readme
-    names = [name for name in PARTS if name in arguments.parts or (not arguments.parts and (every or name not in LONG))]
-    measured = measure(names, arguments.kept)
-    text = table(measured)
-    sys.stdout.write(f"{json.dumps(measured, indent=2)}\n\n{text}\n")
-    if arguments.readme:
-        README.write_text(with_table(README.read_text(), text))
-    if arguments.history:
-        history.append(measured)
+    if unknown:
+        parser.error(f"no such part: {', '.join(unknown)}")
+    names = arguments.parts or [name for name in PARTS if arguments.all or name not in LONG]
+    if arguments.stale:
+        before = kept_parts()
+        names = [name for name in names if is_stale(before.get(name))]
+    measured = {}
+    for name, part in measured_parts(names):
+        measured[name] = part
+        if arguments.keep:
+            keep(name, part)
+    if measured:
+        sys.stdout.write(f"{json.dumps(measured, indent=2)}\n\n{table(measured)}\n")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,8 @@ class Ones(dict[str, float]):
 def made_up(report: ModuleType) -> dict[str, dict]:
     """Figures of every part."""
     figures: dict[str, dict] = {name: Ones() for name in report.PARTS}
-    run = Ones(here_seconds=4.0, base_seconds=12.0, here_solving_seconds=2.0, base_solving_seconds=10.0, ratio=3.0)
+    run = Ones(here_seconds=4.0, base_seconds=12.0, here_case_seconds=2.0, base_case_seconds=10.0)
+    run |= {"here_solving_seconds": 1.5, "base_solving_seconds": 9.0}
     sweep = Ones(here=500.0, base=250.0, here_done=20.0, base_done=18.0, ratio=2.0)
     figures["against"] = {name: sweep if job.is_sweep else run for name, job in report.against.JOBS.items()}
     figures["validate"] = Ones(rows_left=0.0, rows=600.0, from_nothing_seconds=477.0)
@@ -44,9 +45,15 @@ def made_up(report: ModuleType) -> dict[str, dict]:
         "exponent": 1.3,
         "exponent_of_a_system": 1.2,
     }
-    figures["stretch"] = {"63375": Ones(seconds=20.0)}
+    figures["stretch"] = {"63375": {**dict.fromkeys(("systems", "force_error"), 1.0), "seconds": 20.0, "machine": "drum"}}
     figures["peers"] = peers_figures()
     return figures
+
+
+def measurements(figures: dict[str, dict], **others: str) -> dict[str, dict]:
+    """The same with what they are of."""
+    of = {"machine": "2 x drum, Python 3", "package": "beef cafe", "day": "1999-12-31", "commit": "c0ffee1"} | others
+    return {name: {**of, "figures": part} for name, part in figures.items()}
 
 
 def peers_figures() -> dict[str, float | str]:
@@ -65,44 +72,56 @@ def row(text: str, begin: str) -> list[str]:
 
 
 def test_table_has_every_part_and_names_its_origin(report: ModuleType) -> None:
-    text = report.table(made_up(report))
-    assert text.endswith("\n\nOn 2 x drum, Python 3; 1999-12-31, commit c0ffee1.")
+    text = report.table(measurements(made_up(report)))
+    assert text.endswith("\n\nOn 2 x drum, Python 3; 1999-12-31.")
     lines = text.splitlines()[2:-2]
-    assert all(line.count("|") == 4 for line in lines)
+    assert all(line.count("|") == 5 for line in lines)
     firsts = [line.split("|")[1] for line in lines]
     assert len(set(firsts)) == len(firsts)
     for name, part in report.PARTS.items():
         rows = part.rows(made_up(report)[name])
         assert rows
-        assert all("| " + " | ".join(cells) + " |" in lines for cells in rows)
+        assert all("| " + " | ".join(cells) + " | c0ffee1 |" in lines for cells in rows)
+
+
+def test_parts_of_other_states_stand_with_their_commit_day_and_machine(report: ModuleType) -> None:
+    figures = made_up(report)
+    later = measurements({"grasp": figures["grasp"]}, commit="decade5", day="2000-01-01", machine="lathe")
+    text = report.table(measurements(figures) | later)
+    assert text.endswith("\n\nOn 2 x drum, Python 3; lathe; 1999-12-31 to 2000-01-01.")
+    assert row(text, "memory of")[-1] == "decade5"
+    assert row(text, "`annulus_icf.yaml`")[-1] == "c0ffee1"
 
 
 def test_figures_stand_in_one_row_each_with_what_is_asked(report: ModuleType) -> None:
-    text = report.table(made_up(report))
-    assert row(text, "`annulus_icf.yaml`")[1:] == ["5 s", "4.00 s (2.0 s without figures), 3.0 times as fast as 26a5475 (12.0 s)"]
-    assert row(text, "`grasp_lump_icf.yaml`, to")[1:] == [
+    text = report.table(measurements(made_up(report)))
+    assert row(text, "`annulus_icf.yaml`")[1:3] == [
         "5 s",
-        "2.00 s (4.0 s with figures), 5.0 times as fast as 26a5475 (10.0 s)",
+        "4.00 s, 3.0 times as fast as 26a5475 (12.0 s); 1.5 and 9.0 s of them solving",
+    ]
+    assert row(text, "`grasp_lump_icf.yaml`, to")[1:3] == [
+        "5 s",
+        "2.00 s, 5.0 times as fast as 26a5475 (10.0 s); 1.5 and 9.0 s of them solving, 4.0 s with all figures",
     ]
     assert row(text, "`atrial_annulus.yaml`")[1] == "15 s"
-    assert row(text, "`sweep_classes.yaml`") == [
+    assert row(text, "`sweep_classes.yaml`")[:3] == [
         "`sweep_classes.yaml` by turns, 20 of 20 samples done",
         "1000 per hour",
         "500 per hour, 2.0 times as many as 26a5475 (250 per hour)",
     ]
     assert row(text, "samples of `sweep_lumps.yaml`")[1] == "4 000 per hour"
     assert row(text, "time of `grasp_lump_icf.yaml` with 16 x 16")[1] == "1.05"
-    assert row(text, "`tactsim validate`") == [
+    assert row(text, "`tactsim validate`")[:3] == [
         "`tactsim validate`, nothing kept: 600 rows, each as recorded",
         "480 s",
         "477 s, 1 s of processors",
     ]
-    assert row(text, "neo-Hookean plate")[2].startswith("20.0 s (2 x drum, Python 3, 1999-12-31)")
+    assert row(text, "neo-Hookean plate")[2].startswith("20.0 s (drum)")
 
 
 def test_a_size_that_was_not_solved_is_said_to_be(report: ModuleType) -> None:
-    text = report.table(made_up(report))
-    assert row(text, "`grasp_lump_icf.yaml` by iteration in one step, 381 170")[1:] == [
+    text = report.table(measurements(made_up(report)))
+    assert row(text, "`grasp_lump_icf.yaml` by iteration in one step, 381 170")[1:3] == [
         "60 iterations a system, 24 GB",
         "at most 1 iterations, mean 1, in 1 systems; 1.1 GB; 1 s, 1 s of processors",
     ]
@@ -112,31 +131,80 @@ def test_a_size_that_was_not_solved_is_said_to_be(report: ModuleType) -> None:
 
 
 def test_every_program_has_a_row_with_its_version_or_why_it_has_no_figure(report: ModuleType) -> None:
-    text = report.table({"peers": peers_figures()})
+    text = report.table(measurements({"peers": peers_figures()}))
     block = "block of 43 245 displacement unknowns, faster than"
-    assert row(text, f"{block} FElupe 11.3.0 by")[1:] == ["7 times", "6.1 times (5.0 against 30.0 s)"]
+    assert row(text, f"{block} FElupe 11.3.0 by")[1:3] == ["7 times", "6.1 times (5.0 against 30.0 s)"]
     assert row(text, f"{block} CalculiX 2.20 by")[2].startswith("20.0 times (5.0 against 100.0 s), 7e-08 off")
     assert row(text, f"{block} GetFEM by")[2] == "not installed"
     assert row(text, f"{block} FEniCSx by")[2] == "stopped after 5 s"
 
 
-def test_readme_is_written_with_all_parts(report: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys) -> None:
-    readme = tmp_path / "README.md"
-    readme.write_text(f"before\n\n{report.START}\nold\n{report.END}\n\nafter\n")
-    monkeypatch.setattr(report, "README", readme)
+@pytest.fixture
+def kept(report: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
+    """The report with files of its own and parts that cost nothing; the names of those measured, as they are."""
+    (tmp_path / "README.md").write_text(f"before\n\n{report.START}\nold\n{report.END}\n\nafter\n")
+    monkeypatch.setattr(report, "README", tmp_path / "README.md")
+    monkeypatch.setattr(report, "MEASURED", tmp_path / "measured.json")
     monkeypatch.setattr(report.history, "HISTORY", tmp_path / "history.csv")
-    figures = made_up(report)
+    figures, calls = made_up(report), []
     for name, part in report.PARTS.items():
-        monkeypatch.setattr(part, "measure", lambda name=name: figures[name])
-    monkeypatch.setattr("sys.argv", ["report.py", "--readme", "--history"])
+        monkeypatch.setattr(part, "measure", lambda name=name: calls.append(name) or figures[name])
+        monkeypatch.setattr(part, "rows", lambda taken, name=name: [(name, "-", f"{len(taken)} figures")])
+    return calls
+
+
+def run(report: ModuleType, monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
+    """The report by its command line."""
+    monkeypatch.setattr("sys.argv", ["report.py", *words])
     report.main()
-    text = report.table(figures)
-    assert readme.read_text() == f"before\n\n{report.START}\n{text}\n{report.END}\n\nafter\n"
-    assert text in capsys.readouterr().out
-    written = pd.read_csv(tmp_path / "history.csv", dtype=str).set_index("figure")["value"]
+
+
+def test_readme_has_all_kept_parts(report: ModuleType, kept: list[str], monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    run(report, monkeypatch, "peers", "--keep")
+    assert "| peers | - | 10 figures | c0ffee1 |" in report.README.read_text()
+    monkeypatch.setattr(report.history, "commit", lambda: "decade5")
+    run(report, monkeypatch, "scale", "grasp", "--keep")
+    text = report.README.read_text()
+    assert text.startswith(f"before\n\n{report.START}\n| what | asked | measured | commit |\n|---|---|---|---|\n| grasp |")
+    assert text.endswith(f"\n\nOn 2 x drum, Python 3; 1999-12-31.\n{report.END}\n\nafter\n")
+    assert [line.split("|")[4].strip() for line in text.splitlines()[5:8]] == ["decade5", "decade5", "c0ffee1"]
+    assert "| peers |" not in capsys.readouterr().out.rpartition("| what |")[2]
+    written = pd.read_csv(report.history.HISTORY, dtype=str).set_index("figure")["value"]
     assert written["peers.43245_getfem"] == "not installed"
-    assert written["peers.43245_felupe_version"] == "11.3.0"
     assert written["scale.0.4.unknowns"] == "381170"
+
+
+def test_nothing_is_kept_unless_asked(report: ModuleType, kept: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    run(report, monkeypatch, "grasp")
+    assert kept == ["grasp"]
+    assert not report.MEASURED.exists()
+    assert "old" in report.README.read_text()
+
+
+def test_only_parts_of_another_state_or_machine_are_stale(report: ModuleType, kept: list[str], monkeypatch) -> None:
+    run(report, monkeypatch, "grasp", "--keep")
+    run(report, monkeypatch, "grasp", "taxels", "--stale", "--keep")
+    assert kept == ["grasp", "taxels"]
+    monkeypatch.setattr(report.history, "package", lambda: "another")
+    run(report, monkeypatch, "grasp", "--stale", "--keep")
+    monkeypatch.setattr(report.history, "machine", lambda: "lathe")
+    run(report, monkeypatch, "grasp", "--stale")
+    assert kept == ["grasp", "taxels", "grasp", "grasp"]
+
+
+def test_figures_outlive_a_part_that_fails(report: ModuleType, kept: list[str], monkeypatch) -> None:
+    def failing() -> dict[str, float]:
+        raise RuntimeError("no such program")
+
+    monkeypatch.setattr(report.taxels, "measure", failing)
+    with pytest.raises(RuntimeError, match="no such program"):
+        run(report, monkeypatch, "grasp", "taxels", "--keep")
+    assert list(report.kept_parts()) == ["grasp"]
+
+
+def test_table_of_the_readme_is_that_of_the_kept_figures(report: ModuleType) -> None:
+    text = report.README.read_text(encoding="utf-8")
+    assert report.with_table(text, report.table(report.kept_parts())) == text
 
 
 def test_marks_of_the_readme_are_those_of_the_report(report: ModuleType) -> None:
@@ -145,18 +213,6 @@ def test_marks_of_the_readme_are_those_of_the_report(report: ModuleType) -> None
     page = (report.README.parent / "docs" / "verification" / "speed.md").read_text(encoding="utf-8")
     assert report.START in page
     assert report.END in page
-
-
-def test_kept_figures_are_taken_on_the_same_machine_and_package_only(report: ModuleType, monkeypatch, tmp_path: Path) -> None:
-    calls: list[str] = []
-    monkeypatch.setattr(report.grasp, "measure", lambda: calls.append("grasp") or {"seconds": 1.0})
-    kept = tmp_path / "kept.json"
-    first = report.measure(["grasp"], kept)
-    assert report.measure(["grasp"], kept) == first
-    assert calls == ["grasp"]
-    monkeypatch.setattr(report.history, "package", lambda: "another")
-    with pytest.raises(SystemExit, match="was measured on"):
-        report.measure(["grasp"], kept)
 
 
 def test_kept_history_holds_measurements_of_known_parts_only(report: ModuleType) -> None:
