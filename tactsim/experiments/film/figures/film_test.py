@@ -12,7 +12,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-from scipy.interpolate import PchipInterpolator
 
 from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
@@ -22,8 +21,6 @@ from tactsim.plotting.canvas import Plot, despined, result_figure
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
-DENSE = 200
-"""Points of a smooth curve."""
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
 SURFACE_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
@@ -117,23 +114,13 @@ def _draw_creep(axis: Axes, result: Result) -> None:
     chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):
-        axis.semilogy(*_smooth(times, resistance[:, k] / 1e3), "-", color=colour, label=f"{forces[k]:.3g} N")
-        axis.semilogy(times, resistance[:, k] / 1e3, ".", color=colour, markersize=4)
+        axis.semilogy(times, resistance[:, k] / 1e3, ".-", color=colour, markersize=4, label=f"{forces[k]:.3g} N")
     axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ")
     axis.set_title("creep of the resistance; dots: the times of the case", loc="left")
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.legend(loc="center right", bbox_to_anchor=(1.0, 0.62), ncols=2)
-
-
-def _smooth(times: Array, values: Array) -> tuple[Array, Array]:
-    """A curve through positive values at times from 0 s on that has no other ups and downs than they have."""
-    if len(times) < 3:
-        return times, values
-    along = np.log1p(times / times[1])
-    dense = np.linspace(0.0, along[-1], DENSE)
-    return times[1] * np.expm1(dense), np.exp(PchipInterpolator(along, np.log(values))(dense))
 
 
 def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:

@@ -5,7 +5,6 @@ import pytest
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError, InvalidQuantity, StorageError
-from tactsim.experiments.film.figures.film_test import _smooth
 from tactsim.experiments.film.film_creep import FilmCreep, MeasuredCreep
 from tactsim.experiments.film.film_test import FilmTest
 from tactsim.experiments.film.force_signal import Chirp, Record, Square
@@ -72,15 +71,6 @@ def test_moduli_and_viscosity_have_axes_of_their_own():
     labels = [axis.get_ylabel() for axis in result.plot("film_test").axes]
     assert "moduli $E_0$ and $E_1$ in MPa" in labels
     assert "viscosity $\\mu_1$ in MPa s" in labels
-
-
-def test_a_curve_of_creep_passes_its_points_and_has_no_other_ups_and_downs():
-    times = np.array([0.0, 1.0, 3.0, 10.0, 60.0])
-    values = 5 + 3 * np.exp(-times / 4)
-    along, curve = _smooth(times, values)
-    np.testing.assert_allclose(np.interp(times, along, curve), values, rtol=1e-3)  # straight between 200 points
-    assert (np.diff(curve) <= 0).all()
-    assert np.abs(curve / (5 + 3 * np.exp(-along / 4)) - 1).max() < 0.02
 
 
 def test_creep_that_has_no_creep_in_it_fails(tmp_path):
