@@ -47,7 +47,7 @@ def test_force_gives_the_displacement_back():
     times, force = column(first, "time"), column(first, "force")
     samples = {"kind": "samples", "times": times.tolist(), "values": force.tolist()}
     loading = ForceLoading.model_validate({"control": "force", "pieces": [samples]})
-    second = ClosedForm(material=atrial, loading=loading, points=50).run()
+    second = ClosedForm(material=atrial, loading=loading, points=2).run()
     expected = np.interp(column(second, "time"), times, column(first, "displacement"))
     np.testing.assert_allclose(column(second, "displacement"), expected, atol=1e-3 * 1e-5, err_msg="chords of 2000 samples")
 
