@@ -22,7 +22,7 @@ TESTS = Path(__file__).parent
 sys.path.insert(0, str(TESTS))
 
 import pretence  # noqa: E402  it stands beside this file, which the line above makes known
-from fork_server import forked_pretended_command  # noqa: E402
+from fork_server import forked_pretended_command, share  # noqa: E402
 
 from tactsim.registry import forget, registered_outside  # noqa: E402
 
@@ -44,6 +44,12 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.enable()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """One server of forks for all workers."""
+    if getattr(config.option, "numprocesses", None):
+        share()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

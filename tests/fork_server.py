@@ -22,11 +22,15 @@ from pathlib import Path
 from typing import NoReturn
 
 CLIENT = Path(__file__).with_name("forked_tactsim.py")
+SHARED = "TACTSIM_TEST_FORKS"
+"""Variable that holds the socket of the server which all processes of one run of the tests use."""
 
 
 @cache
 def _served() -> str:
-    """The socket of this process's server, which ends with it."""
+    """The socket of the run's server, or of this process's own, which ends with it."""
+    if SHARED in os.environ:
+        return os.environ[SHARED]
     folder = tempfile.TemporaryDirectory(prefix="tactsim-forks-")
     place = str(Path(folder.name) / "socket")
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
@@ -43,6 +47,11 @@ def _served() -> str:
 
     atexit.register(end)
     return place
+
+
+def share() -> None:
+    """Start the server for this process and for those that it will start; it loads beside them."""
+    os.environ[SHARED] = _served()
 
 
 def forked_command(*options: str) -> list[str]:
@@ -195,8 +204,8 @@ def _load() -> None:
 
 
 if __name__ == "__main__":
+    server = _Server(sys.argv[1])
+    os.write(1, b"ready\n")  # clients may come; they wait until it is loaded
     _load()
     gc.freeze()  # a collection in a child would copy every page
-    server = _Server(sys.argv[1])
-    os.write(1, b"ready\n")
     server.serve()

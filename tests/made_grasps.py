@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,7 @@ sweep: {samples: 40, seed: 3, splits: {train: 0.75, validation: 0.0}}
 READOUT = "  time: {steps: 1}\n  readout: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}, seed: 4}\n"
 
 
+@cache
 def response() -> LumpResponse:
     """A bell over every taxel that fades with the distance from its jaw."""
     lines = [(np.arange(n) + 0.5) * side / n for n, side in zip((40, 40, 20), SIZE, strict=True)]

@@ -34,10 +34,6 @@ KEYS = {
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 
 
-SILENT: tuple[str, ...] = ()
-"""Rooms whose functions need not say yet what they raise."""
-
-
 @dataclass(frozen=True)
 class Definition:
     """A function or class of the package: where it stands, and whether a user may name it."""
@@ -179,8 +175,7 @@ def overloaded(node: ast.AST) -> bool:
 
 def silent_about_errors() -> list[str]:
     """Public functions that raise and have no section that says what."""
-    silent = [f.place for f in functions(public=True) if raises(f.node) and not says_raises(f)]
-    return [place for place in silent if not place.startswith(SILENT)]
+    return [f.place for f in functions(public=True) if raises(f.node) and not says_raises(f)]
 
 
 def empty_names() -> list[str]:
@@ -194,8 +189,6 @@ def household_names() -> list[str]:
     broken = set()
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
-        if place.startswith("tactsim/case/"):
-            continue
         words = HOUSEHOLD | (HOUSEHOLD_IN_ENGINE if place.startswith((*ENGINE, "tactsim/mechanics/")) else set())
         for node in ast.walk(tree(path)):
             names = (getattr(node, field, None) for field in ("name", "id", "attr", "arg"))

@@ -1,8 +1,15 @@
-"""Small thesis tables for the tests: written to a folder with their manifest."""
+"""Thesis tables for the tests: small ones written to a folder with their manifest, and those that are shipped."""
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
+
+from tactsim.validation import load_tables
+from tactsim.validation.loading import LoadedTables
+
+CASES = Path(__file__).parents[1] / "cases"
+GROUPS = ("thesis", "published")
 
 MANIFEST = """\
 schema: tactsim/thesis-manifest/2
@@ -49,3 +56,14 @@ def write_tables(folder: Path, table: str = TABLE, manifest: str = MANIFEST) -> 
     (folder / "manifest.yaml").write_text(manifest, encoding="utf-8")
     (folder / "small.yaml").write_text(table, encoding="utf-8")
     return folder
+
+
+@cache
+def shipped_tables(group: str) -> LoadedTables:
+    """All tables of a group, read when a test needs them: every process that collects tests would read them at import."""
+    return load_tables(CASES / group)
+
+
+def shipped_names() -> list[tuple[str, str]]:
+    """Group and name of every shipped table, as their files are called."""
+    return [(group, path.stem) for group in GROUPS for path in sorted((CASES / group).glob("*.yaml")) if path.stem != "manifest"]

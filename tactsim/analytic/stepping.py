@@ -12,11 +12,13 @@ import math
 import numba
 import numpy as np
 
+from tactsim.analytic import small_ratio
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.small_ratio import SERIES, SERIES_END
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.outside.compiled_loops import forget_stale
 
 
 def step_constants(model: GeneralizedKelvin | GeneralizedMaxwell) -> Array:
@@ -117,3 +119,6 @@ def carry(ratios: Array, gains: Array, states: Array) -> None:
         for i in range(ratios.shape[1]):
             ratio = ratios[k, i]
             states[k + 1, i] = _faded(states[k, i], ratio, math.expm1(-ratio)) + gains[k, i]
+
+
+forget_stale(carry, small_ratio)

@@ -19,13 +19,13 @@ def check_inputs(case: Case, document: Document, place: Place) -> list[str]:
     StorageError
         If one is missing, with the file, the line and the key of the case that name it.
     """
-    told = []
+    warnings = []
     for key, path in input_paths(case.experiment, ("experiment",)):
         try:
-            found = located(path)
+            place_of_file = located(path)
         except Unreadable as error:
             first = f"; run first\n{document.first}" if str(path) in document.first else ""
             raise StorageError(in_words(Problem(key, document.line(key), f"{error}{first}"), place)) from None
-        if found == "elsewhere":
-            told.append(f"{'.'.join(map(str, key))}: {one_line(path)} lies neither beside the case nor in the working folder")
-    return told
+        if place_of_file == "elsewhere":
+            warnings.append(f"{'.'.join(map(str, key))}: {one_line(path)} lies neither beside the case nor in the working folder")
+    return warnings

@@ -37,8 +37,8 @@ def _told_apart(schema: dict[str, Any]) -> set[tuple[str, str]]:
 
 def _union_members(fragment: Any) -> Iterator[tuple[str, str]]:
     if isinstance(fragment, dict) and "discriminator" in fragment:
-        told = fragment["discriminator"]
-        yield from ((told["propertyName"], reference) for reference in told.get("mapping", {}).values())
+        key = fragment["discriminator"]
+        yield from ((key["propertyName"], reference) for reference in key.get("mapping", {}).values())
     for item in fragment.values() if isinstance(fragment, dict) else fragment if isinstance(fragment, list) else ():
         yield from _union_members(item)
 

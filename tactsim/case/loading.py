@@ -102,8 +102,8 @@ def _read_file(path: Path) -> Document:
     except YamlProblems as error:
         raise case_error(error.problems, _place_in(path, {})) from None
     if not isinstance(document.value, dict):
-        found = "is empty" if document.value is None else f"holds {as_written(document.value)}"
-        raise CaseError(f"{one_line(path)}: the file {found}; a case is a mapping that begins with 'schema: {SCHEMA}'")
+        content = "is empty" if document.value is None else f"holds {as_written(document.value)}"
+        raise CaseError(f"{one_line(path)}: the file {content}; a case is a mapping that begins with 'schema: {SCHEMA}'")
     return document
 
 

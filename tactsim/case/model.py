@@ -108,8 +108,8 @@ def experiment_class(kind: str) -> type[Experiment]:
     UnknownName
         With the nearest kind.
     """
-    found: type[Experiment] = kind_class(Experiment, kind)
-    return found
+    known: type[Experiment] = kind_class(Experiment, kind)
+    return known
 
 
 @cache

@@ -13,11 +13,9 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.identification.columns import read_columns
-from tactsim.sensors.films.composite import Composite
+from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.film_equations import creep_strain
 
-COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
-"""E0 in Pa, E1 in Pa and mu1 in Pa s."""
 FEWEST_SAMPLES = 6
 
 
@@ -32,7 +30,7 @@ class CreepTest:
 
 @dataclass(frozen=True, eq=False)
 class CreepFit:
-    """Coefficients (3,) of one test in the order of ``COEFFICIENTS``, their half-widths (3,), residuals (n,) of the strain."""
+    """The ``CREEP_COEFFICIENTS`` (3,) of one test in their order, their half-widths (3,), residuals (n,) of the strain."""
 
     force: float
     coefficients: Array
@@ -111,7 +109,7 @@ def coefficient_lines(fits: Sequence[CreepFit], *, confidence: float = 0.95) -> 
         raise InvalidQuantity(f"creep at {len(np.unique(forces))} different forces; allowed: at least 3 for lines with intervals")
     quantile = scipy.stats.t.ppf((1 + confidence) / 2, len(forces) - 2)
     lines = {}
-    for k, name in enumerate(COEFFICIENTS):
+    for k, name in enumerate(CREEP_COEFFICIENTS):
         line = scipy.stats.linregress(forces, [fit.coefficients[k] for fit in fits])
         widths = (quantile * line.stderr, quantile * line.intercept_stderr)
         lines[name] = CoefficientLine(float(line.slope), float(line.intercept), float(widths[0]), float(widths[1]))

@@ -9,10 +9,9 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.film_creep import COEFFICIENTS
 from tactsim.identification.film_line import LineProjection, projected_on_line
 from tactsim.sensors.electronics.calibration import LinearCalibration
-from tactsim.sensors.films.composite import Composite
+from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 
 CREEP_FORCES = (2.0, 4.0, 6.0, 8.0)
 """In N: forces of the creep tests, thesis section 2.3."""
@@ -74,7 +73,7 @@ def identify_film_jointly(
     """
     if creep_weight is not None and not 0 <= creep_weight < np.inf:
         raise InvalidQuantity(f"creep_weight is {creep_weight}; allowed: finite and >= 0, or None for the creep as given")
-    count = 1 if creep_weight is None else 1 + 2 * len(COEFFICIENTS)
+    count = 1 if creep_weight is None else 1 + 2 * len(CREEP_COEFFICIENTS)
 
     def projected(logarithms: Array) -> LineProjection:
         return projected_on_line(changed(composite, logarithms), line, forces=forces, delay=delay, points=points)
@@ -102,7 +101,7 @@ def changed(composite: Composite, logarithms: Array) -> Composite:
     """The composite with gamma s0, by the barrier, and if given its constants of creep times exp(``logarithms``), (1,), (7,)."""
     factors = np.exp(logarithms)
     update: dict[str, object] = {"barrier": composite.barrier * float(factors[0]) ** 2}
-    for name, (slope, intercept) in zip(COEFFICIENTS, factors[1:].reshape(-1, 2).tolist(), strict=False):
+    for name, (slope, intercept) in zip(CREEP_COEFFICIENTS, factors[1:].reshape(-1, 2).tolist(), strict=False):
         line = getattr(composite, name)
         update[name] = line.model_copy(update={"slope": line.slope * slope, "intercept": line.intercept * intercept})
     return composite.model_copy(update=update)
@@ -111,7 +110,7 @@ def changed(composite: Composite, logarithms: Array) -> Composite:
 def _creep_changes(given: Composite, film: Composite) -> Array:
     """By which factor less one E0, E1 and mu1 differ, shape (3, 4)."""
     forces = np.array(CREEP_FORCES)
-    return np.array([getattr(film, name).at(forces) / getattr(given, name).at(forces) - 1 for name in COEFFICIENTS])
+    return np.array([getattr(film, name).at(forces) / getattr(given, name).at(forces) - 1 for name in CREEP_COEFFICIENTS])
 
 
 def _least(residuals: object, count: int) -> Array:

@@ -44,3 +44,8 @@ class ContactShape:
     def reach(self) -> float:
         """The radius in m, infinite where there is none."""
         return math.inf if self.radius is None else self.radius
+
+    @property
+    def flat(self) -> bool:
+        """Whether a disc or ring of this radius touches, whatever the depth."""
+        return self.radius is not None and self.tip is None

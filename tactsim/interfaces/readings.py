@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.interfaces.solid import check_size
 from tactsim.interfaces.taxel_layout import JAWS as JAWS
 from tactsim.interfaces.taxel_layout import TaxelLayout
 
@@ -90,8 +91,7 @@ class Readings:
             if values is not None and np.shape(values) != allowed:
                 raise InvalidQuantity(f"{what} of shape {np.shape(values)}; the layout needs (jaw, row, column) = {allowed}")
         size = np.asarray(self.block_size, dtype=float)
-        if size.shape != (3,) or not np.isfinite(size).all() or not (size > 0).all():
-            raise InvalidQuantity(f"the block has the size {size.tolist()} m; allowed: three positive lengths")
+        check_size(size)
         if not (np.isfinite(self.noise) and self.noise >= 0):
             raise InvalidQuantity(f"noise {self.noise} N; allowed: finite and not negative")
         middle = size[:2] / 2 if self.middle is None else np.asarray(self.middle, dtype=float)

@@ -101,6 +101,18 @@ class Solid(ABC):
         return None
 
 
+def check_size(size: Array) -> None:
+    """Refuse a size in m of a block that is not three positive lengths.
+
+    Raises
+    ------
+    InvalidQuantity
+        With the size.
+    """
+    if size.shape != (3,) or not np.isfinite(size).all() or not (size > 0).all():
+        raise InvalidQuantity(f"the block has the size {size.tolist()} m; allowed: three positive lengths")
+
+
 def check_bounds(bounds: Array, size: Array, gap: float, name: str) -> None:
     """Refuse bounds (2, 3) that leave a block of size (3,) or come nearer to a face than ``gap``, all in m.
 

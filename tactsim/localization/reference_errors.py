@@ -36,6 +36,8 @@ ROUNDING = 1e-12
 """Of a change over the largest reading of the reference."""
 WORTH_SAYING = 0.05
 """Least distance of a factor from one that is put into words."""
+UNCHANGED = "no inclusion: the readings are those of the reference"
+"""Why nothing is there, in words."""
 
 
 @dataclass(frozen=True, eq=False)

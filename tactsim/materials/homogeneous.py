@@ -9,7 +9,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.interfaces import Material
 from tactsim.materials.hyperelastic import Hyperelastic
-from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.moduli import poisson_ratio
 
 
 def uniaxial(stretch: Array) -> Array:
@@ -57,22 +57,24 @@ def cauchy_stress(W1: Array, W2: Array, stretches: Array) -> Array:
 def nominal_stress(material: Material, path: str, stretch: Array) -> Array:
     """Force per reference area in Pa along direction 1 of a path of ``PATHS``, of the shape of ``stretch``.
 
-    Every kind is taken as incompressible but ``linear_elastic``, which keeps its Poisson's ratio. One without an energy of the
+    Every law is taken as incompressible but those of small strain, which keep their Poisson's ratio. One without an energy of the
     invariants is loaded along its axes; its pressure follows from the free direction 3.
     """
     stretch = np.asarray(stretch, dtype=float)
     if isinstance(material, Hyperelastic):
         stretches = PATHS[path](stretch)
         return cauchy_stress(*material.energy_gradient(*principal_invariants(stretches)), stretches) / stretch
-    if isinstance(material, LinearElastic):
-        nu = material.poisson_ratio
-        stiffening = {"uniaxial": 1.0, "equibiaxial": 1 / (1 - nu), "planar": 1 / (1 - nu**2)}[path]
-        return material.youngs_modulus * stiffening * (stretch - 1)
-    stretches = PATHS[path](stretch)
-    F = diagonal(stretches)
+    F = diagonal(_small_stretches(material, path, stretch) if material.small_strain else PATHS[path](stretch))
     stress = material.first_piola_kirchhoff(F, np.zeros(stretch.shape))
     slope = material.volume_change_gradient(F)
     return stress[0, 0] - stress[2, 2] / slope[2, 2] * slope[0, 0]
+
+
+def _small_stretches(material: Material, path: str, stretch: Array) -> Array:
+    """Principal stretches (3, ...) of a path at small strain: the free directions contract by Poisson's ratio."""
+    nu = poisson_ratio(material.shear_modulus, material.bulk_modulus)
+    strains = {"uniaxial": (1.0, -nu, -nu), "equibiaxial": (1.0, 1.0, -2 * nu / (1 - nu)), "planar": (1.0, 0.0, -nu / (1 - nu))}
+    return 1 + np.multiply.outer(np.array(strains[path]), stretch - 1)
 
 
 def stiffness_ratio(material: Material, tissue: Material, stretch: float) -> float:

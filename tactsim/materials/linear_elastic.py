@@ -9,10 +9,10 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import Material
+from tactsim.materials.kinematics import IDENTITY
 from tactsim.materials.moduli import check_moduli
 from tactsim.units import Pressure
 
-IDENTITY = np.eye(3)
 SYMMETRIC = (np.einsum("ik,JL->iJkL", IDENTITY, IDENTITY) + np.einsum("iL,kJ->iJkL", IDENTITY, IDENTITY)) / 2
 DEVIATORIC = SYMMETRIC - np.einsum("iJ,kL->iJkL", IDENTITY, IDENTITY) / 3
 """Projection of a displacement gradient on its symmetric traceless part, shape (3, 3, 3, 3)."""

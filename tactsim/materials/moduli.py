@@ -21,6 +21,12 @@ def youngs_modulus(shear_modulus: float, bulk_modulus: float | None) -> float:
     return 3 * G if K is None else 9 * K * G / (3 * K + G)
 
 
+def poisson_ratio(shear_modulus: float, bulk_modulus: float | None) -> float:
+    """nu = (3K - 2G) / (6K + 2G), dimensionless, from G and K in Pa, 1/2 if K is None (incompressible)."""
+    G, K = shear_modulus, bulk_modulus
+    return 0.5 if K is None else (3 * K - 2 * G) / (6 * K + 2 * G)
+
+
 def check_moduli(shear_modulus: float, bulk_modulus: float | None) -> None:
     """Nothing, for moduli in Pa that a simulation can use.
 

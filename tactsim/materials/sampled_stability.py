@@ -63,13 +63,16 @@ def sampled_drucker_margin(material: Material, stretches: Array) -> Array:
     .. math:: \frac{\partial^2 W}{\partial e_i \partial e_j} = \lambda_i \lambda_j \frac{\partial P_{ii}}{\partial F_{jj}}
         + \delta_{ij} \lambda_i P_{ii}
 
-    at ``stretches`` of shape (3, ...) and product 1, in the axes of the material.
+    at ``stretches`` of shape (3, ...) and product 1, in the axes of the material. A law of small strain is judged by its own
+    strains, whose second derivative is :math:`\partial P_{ii} / \partial F_{jj}`.
 
     Source: Hill 1970, doi:10.1098/rspa.1970.0018.
     """
-    F = diagonal(stretches)
+    F = diagonal(1 + np.log(stretches) if material.small_strain else stretches)
     none = np.zeros(stretches.shape[1:])
     moduli = np.einsum("iijj...->ij...", material.tangent(F, none))
+    if material.small_strain:
+        return smaller_eigenvalue(np.einsum("ai,bj,ij...->ab...", LOGARITHMIC, LOGARITHMIC, moduli))
     hessian = np.einsum("i...,j...,ij...->ij...", stretches, stretches, moduli)
     first = np.einsum("i...,ii...->i...", stretches, material.first_piola_kirchhoff(F, none))
     for i in range(3):

@@ -12,12 +12,12 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Solid
+from tactsim.interfaces.solid import Solid, check_size
 from tactsim.registry import Registered
 from tactsim.units import format_quantity
 
 AnyInclusion = Annotated[Inclusion, Registered(Inclusion)]
-"""Pydantic type of a sphere, an ellipsoid, a tube or a surface."""
+"""Pydantic type of every registered inclusion."""
 SMALLEST = 0.01
 """Least diameter of an inclusion over the shortest side of the block: a smaller one is a mistaken unit."""
 SAMPLES_ACROSS = 40
@@ -41,8 +41,7 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
     InputError
         Naming the inclusions, the face, the distance and what is allowed.
     """
-    if size.shape != (3,) or not np.isfinite(size).all() or not (size > 0).all():
-        raise InvalidQuantity(f"the block has the size {size.tolist()} m; allowed: three positive lengths")
+    check_size(size)
     solids = []
     for number, inclusion in enumerate(inclusions, 1):
         name = inclusion_name(number, inclusion)

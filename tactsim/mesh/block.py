@@ -17,6 +17,8 @@ VOLUME_TOLERANCE = 5e-3
 """Largest relative error of the volume of a region."""
 FLATNESS = 1e-9
 """Largest distance of a node from the plane of its face, over the longest side of the block."""
+SIZES = "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth"
+"""Keys of a case that make more cells or fewer."""
 SMALLEST_GAP = 0.3
 """Least distance between inclusions, and from faces, in element sizes near inclusions."""
 

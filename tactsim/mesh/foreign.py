@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -34,18 +35,24 @@ class ForeignMesh:
     tag_names: dict[str, int]
 
 
-def read_foreign(path: str | Path | OutsideFile, time_limit: float | None = None) -> ForeignMesh:
+LengthUnit = Literal["m", "cm", "mm", "um"]
+"""What the coordinates of a file may be in, which holds no unit itself."""
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
+"""One of each in m."""
+
+
+def read_foreign(path: str | Path | OutsideFile) -> ForeignMesh:
     """The points and cells of a file.
 
     Raises
     ------
     StorageError
-        If the file cannot be read, is damaged or takes longer than ``time_limit`` in s, by default what its size asks for.
+        If the file cannot be read, is damaged or takes longer than its size asks for.
     InputError
         If a coordinate is not a finite number or a cell names a point that does not exist.
     """
     file = path if isinstance(path, OutsideFile) else opened(path, "mesh")
-    mesh = read_mesh_file(file, time_limit)
+    mesh = read_mesh_file(file)
     _check(mesh, file.named)
     tags = {name: parts for name, parts in mesh.cell_data.items() if all(map(_whole, parts))}
     numbers = {name: tuple(part.astype(np.int64) for part in parts) for name, parts in tags.items()}

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError, UnknownName
-from tactsim.mesh.foreign import ForeignMesh, read_foreign
+from tactsim.mesh.foreign import METRES, ForeignMesh, LengthUnit, read_foreign
 from tactsim.mesh.quadratic import EDGES, MIRROR, QuadraticMesh, quadratic_mesh
 from tactsim.mesh.quality import jacobian_ratio
 
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 TAGS = ("gmsh:physical", "medit:ref", "region", "cell_tags", "gmsh:geometrical")
 """Names under which programs keep the region of a cell, the likeliest first."""
 LOWER = frozenset({"vertex", "line", "line3", "triangle", "triangle6"})
@@ -28,7 +26,7 @@ def read_mesh(
     path: str | Path,
     region_map: Mapping[int | str, int] | None = None,
     *,
-    unit: Literal["m", "cm", "mm", "um"],
+    unit: LengthUnit,
     tag: str | None = None,
 ) -> QuadraticMesh:
     """A mesh of quadratic tetrahedra from any file that meshio reads; linear ones get straight mid-nodes.
@@ -47,12 +45,12 @@ def read_mesh(
         If it holds other cells than tetrahedra, a tag is missing or unknown, a coordinate or index cannot be used, or an element
         is flat or inverted and not merely numbered the other way round.
     """
-    if unit not in UNITS:
-        raise UnknownName("unit", str(unit), UNITS)
+    if unit not in METRES:
+        raise UnknownName("unit", str(unit), METRES)
     name, foreign = str(path), read_foreign(path)
     kind, cells = _tetrahedra(foreign, name)
     regions = _regions(foreign, region_map, tag, name, kind)
-    points = foreign.points * UNITS[unit]
+    points = foreign.points * METRES[unit]
     if points.shape[1] != 3:
         raise InputError(f"{name}: the mesh has {points.shape[1]} coordinates; allowed: 3")
     used = np.unique(cells)

@@ -85,7 +85,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
     check_inclusions(extent, [inclusion], settings.least_gap)
     ball = inclusion.solids(extent)[0].ball_image()
     if ball is None:
-        raise InputError(f"a {inclusion.kind} cannot be meshed in layers; allowed: sphere, ellipsoid")
+        raise InputError(f"a {inclusion.kind} cannot be meshed in layers; allowed: a ball, stretched or not")
     radius, size_at = ball.longest, settings.inclusion_size
     check_along(np.pi / 2 * radius / size_at, f"mesh.inclusion_size {size_at:.3g} m")
     around = max(LEAST_AROUND, 2 * round(np.pi / 4 * radius / size_at))

@@ -27,7 +27,7 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Triangles
 from tactsim.mesh.affordable import check_unknowns, estimated_unknowns
 from tactsim.mesh.any_inclusion import check_inclusions
-from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import fitted
 from tactsim.mesh.fitting.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import at_jaw_edges, background
@@ -67,7 +67,7 @@ def block_mesh(
     settings, extent = settings or BlockMeshSettings(), np.asarray(size, float)
     check_inclusions(extent, inclusions, settings.least_gap)
     estimate = estimated_unknowns(extent, inclusions, settings, at_jaw_edges(settings))
-    check_unknowns(estimate, "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
+    check_unknowns(estimate, SIZES)
     surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
     key = mesh_key(size, inclusions, settings)
     for part in ATTEMPTS:

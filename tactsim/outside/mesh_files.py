@@ -58,12 +58,8 @@ class MeshArrays:
     groups: dict[str, int] = field(default_factory=dict)
 
 
-def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshArrays:
+def read_mesh_file(file: OutsideFile) -> MeshArrays:
     """The content of a file of any format that meshio reads.
-
-    Parameters
-    ----------
-    time_limit : in s; by default as the size asks for
 
     Raises
     ------
@@ -75,10 +71,10 @@ def read_mesh_file(file: OutsideFile, time_limit: float | None = None) -> MeshAr
     MeshFileWarning
         For each thing that the reader warned of.
     """
-    return read_mesh_files([file], time_limit)[0]
+    return read_mesh_files([file])[0]
 
 
-def read_mesh_files(files: Sequence[OutsideFile], time_limit: float | None = None) -> list[MeshArrays]:
+def read_mesh_files(files: Sequence[OutsideFile]) -> list[MeshArrays]:
     """The content of several files, read by one process, whose start takes longer than most files.
 
     Raises
@@ -86,7 +82,7 @@ def read_mesh_files(files: Sequence[OutsideFile], time_limit: float | None = Non
     StorageError
         As `read_mesh_file`, for the first file that cannot be read.
     """
-    allowed = sum(TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE for file in files) if time_limit is None else time_limit
+    allowed = sum(TIME + TIME_PER_MEBIBYTE * file.size / MEBIBYTE for file in files)
     largest = [ANSWER_MEMORY + UNPACKED * file.size for file in files]
     with tempfile.TemporaryDirectory(prefix="tactsim-read-") as folder:
         answers = [Path(folder) / f"{number}.npz" for number in range(len(files))]

@@ -10,6 +10,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.mesh.quadratic import EDGES, FACETS, MIRROR
 from tactsim.results import FieldFrame
+from tactsim.results.fields import DISPLACEMENT, REGION
 
 FACES = np.array(FACETS[3])
 """Nodes (4, 6) of the faces of a quadratic tetrahedron, as quadratic triangles seen from outside, in the order of VTK."""
@@ -53,13 +54,13 @@ class PlaneCut:
 
 def deformed(frame: FieldFrame) -> Array:
     """Deformed nodes (n, 3) in m."""
-    return frame.points + frame.point_data["displacement [m]"]
+    return frame.points + frame.point_data[DISPLACEMENT]
 
 
 def regions_of(frame: FieldFrame) -> Array:
     """Region (E,) of every element: 0 is the tissue, k the inclusion k."""
     count = len(frame.cells["tetra10"])
-    return np.asarray(frame.cell_data.get("region [1]", np.zeros(count))).ravel().round().astype(int)
+    return np.asarray(frame.cell_data.get(REGION, np.zeros(count))).ravel().round().astype(int)
 
 
 def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> PlaneCut:

@@ -14,6 +14,10 @@ from tactsim.outside.text import one_line
 from tactsim.results.result import FieldFrame
 
 INDEX = "fields.pvd"
+DISPLACEMENT, PRESSURE = "displacement [m]", "pressure [Pa]"
+"""Arrays of the nodes of a frame; positive pressure is compression."""
+REGION, CORNER_PRESSURE, AXIAL_STRESS, VON_MISES = "region [1]", "corner_pressure [Pa]", "axial_stress [Pa]", "von_mises [Pa]"
+"""Arrays of its cells that later stages read: the axial stress is the Cauchy stress across the axis, tension positive."""
 
 
 def write_fields(frames: Sequence[FieldFrame], directory: Path) -> None:

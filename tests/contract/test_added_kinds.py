@@ -172,6 +172,13 @@ PRESS = """
   stop: displacement
   displacement: 0.2 mm
 """
+TIMED = """
+  kind: timed_indentation
+  specimen: {material: {kind: neo_hookean, c10: 3 kPa}, radius: 10 mm, thickness: 5 mm}
+  body: {kind: BODY}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 0.2 mm, duration: 1 s}]}
+  compare: half_space
+"""
 SMALL_GRASP = """
   kind: grasp
   block: {size: [20 mm, 20 mm, 10 mm], tissue: MATERIAL}
@@ -233,6 +240,11 @@ def test_a_body_with_a_hole_has_a_recess_and_a_threshold(added: Any, tmp_path: P
     assert ring.steps == annulus.steps
     assert {"threshold_pressure", "tissue_rise"} <= set(ring.quantities)
     assert ContactCurve.of_result(ring, beyond=1e-4).shape == SensorShape(1.5e-3, 3e-3, 0.2e-3)
+    beside = case(tmp_path, TIMED, {"BODY": "added"})
+    assert (beside.compare, beside.contact_radius) == ("half_space", 3e-3)
+    for other in ("rod", "plane"):
+        with pytest.raises(CaseError, match=f"a closed form exists for a flat ring or disc, not for a {other}"):
+            case(tmp_path, TIMED, {"BODY": other})
 
 
 def test_an_inclusion_is_meshed_and_labelled(added: Any, tmp_path: Path) -> None:

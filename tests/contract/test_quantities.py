@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any, get_type_hints
 
 import pytest
-from thesis_tables import MANIFEST, TABLE, write_tables
+from thesis_tables import GROUPS, MANIFEST, TABLE, shipped_tables, write_tables
 
 from tactsim.cli import main
 from tactsim.errors import CaseError, InputError
@@ -26,15 +26,14 @@ from tactsim.validation.endings import Interval
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.table import Row, Table
 
-SHIPPED = Path(__file__).parents[2] / "cases" / "thesis"
 FUNCTIONS = [marked for family in ("quantity", "drawing") for marked in marked_functions(PACKAGE, family).values()]
 each = pytest.mark.parametrize("marked", [pytest.param(marked, id=f"{marked.family} {marked.name}") for marked in FUNCTIONS])
 
 
 @pytest.fixture(scope="module")
 def tables() -> list[Table]:
-    """All that are shipped; every process that collects tests would read them at import."""
-    return [table for folder in (SHIPPED, SHIPPED.with_name("published")) for table in load_tables(folder).tables.values()]
+    """All that are shipped."""
+    return [table for group in GROUPS for table in shipped_tables(group).tables.values()]
 
 
 @pytest.fixture(scope="module")

@@ -73,7 +73,7 @@ def test_the_command_writes_a_failed_result(tmp_path: Path, capsys: pytest.Captu
 )
 def test_limits_that_are_no_time(start: Callable[..., subprocess.Popen[str]], tmp_path: Path, text: str, message: str):
     (tmp_path / "case.yaml").write_text(CASE_TEXT, encoding="utf-8")
-    process = start("run", "case.yaml", "--time-limit", text)
+    process = start("run", "case.yaml", "--time-limit", text, forked=True)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2
     assert err.startswith("error: --time-limit")

@@ -22,9 +22,9 @@ from tactsim.plotting.canvas import (
 )
 from tactsim.plotting.plane_cut import FACES, QUARTERS
 from tactsim.results import FieldFrame, Result
+from tactsim.results.fields import DISPLACEMENT, VON_MISES
 from tactsim.units import format_quantity
 
-VON_MISES = "von_mises [Pa]"
 VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
 MOST_CURVES = 6
@@ -54,7 +54,7 @@ class BoundaryValueFigures(SingleFigure):
 
 def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     """The deformed body, each element in the colour of its von Mises stress, and its undeformed outline in 2D."""
-    places = 1e3 * (frame.points + frame.point_data["displacement [m]"])
+    places = 1e3 * (frame.points + frame.point_data[DISPLACEMENT])
     polygons, owners = _section(frame) if "triangle6" in frame.cells else _surface(frame, places)
     flat = places[:, :2] if "triangle6" in frame.cells else _projected(places)
     stress = np.asarray(frame.cell_data[VON_MISES]).ravel()

@@ -10,7 +10,6 @@ from pydantic import Field
 
 from tactsim.experiments.film.scene import CreepCurve, FilmCreepScene
 from tactsim.identification.film_creep import (
-    COEFFICIENTS,
     CoefficientLine,
     CreepFit,
     CreepTest,
@@ -25,11 +24,14 @@ from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
+from tactsim.sensors.films.composite import CREEP_COEFFICIENTS
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
 from tactsim.sensors.response_errors import root_mean_square
 from tactsim.units import Area, Force, Time
 
 PositiveForce = Annotated[Force, Field(gt=0)]
+MOST_DRAWN = 400
+"""Samples of a test that its figure shows."""
 UNITS = {"instantaneous": "Pa", "delayed": "Pa", "viscosity": "Pa*s"}
 
 
@@ -136,14 +138,14 @@ class FilmCreep(Experiment):
         return tuple(
             f"the creep at {fit.force:g} N determines {name} only to {width / value:.0%}; record longer or with less noise"
             for fit in fits
-            for name, value, width in zip(COEFFICIENTS, fit.coefficients, fit.half_widths, strict=True)
+            for name, value, width in zip(CREEP_COEFFICIENTS, fit.coefficients, fit.half_widths, strict=True)
             if width > 0.2 * value
         )
 
 
 def _step(number: int, fit: CreepFit) -> StepRecord:
     values: dict[str, float] = {"force": fit.force}
-    for k, name in enumerate(COEFFICIENTS):
+    for k, name in enumerate(CREEP_COEFFICIENTS):
         values |= {name: float(fit.coefficients[k]), f"{name}_half_width": float(fit.half_widths[k])}
     return StepRecord(number, 0, 0.0, values | {"strain_rms_error": root_mean_square(fit.residuals)})
 
@@ -161,7 +163,7 @@ def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
     return quantities
 
 
-def _curve(test: CreepTest, most: int = 400) -> CreepCurve:
+def _curve(test: CreepTest) -> CreepCurve:
     """A test thinned for the figure."""
-    kept = np.unique(np.linspace(0, len(test.time) - 1, most).astype(int))
+    kept = np.unique(np.linspace(0, len(test.time) - 1, MOST_DRAWN).astype(int))
     return CreepCurve(force=test.force, time=test.time[kept].tolist(), strain=test.strain[kept].tolist())

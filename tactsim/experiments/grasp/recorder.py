@@ -15,6 +15,7 @@ from tactsim.experiments.recording import history
 from tactsim.interfaces import Experiment, Inclusion, Recorder
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label, reading
+from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
 from tactsim.registry import kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import CLEAN, latest, read_variables
@@ -29,7 +30,7 @@ PER_INCLUSION = {
 }
 PER_SAMPLE = {
     "tissue_shear_modulus": ("Pa", "small-strain shear modulus of the tissue"),
-    "friction": ("1", "coefficient of friction at the jaws"),
+    "friction": ("1", "coefficient of friction at the jaws; NaN of a law that has none"),
     "closing": ("m", "largest closing of each jaw from first touch; NaN if a force is prescribed"),
 }
 TAXELS = {
@@ -53,11 +54,7 @@ class GraspRecorder(Recorder):
     kind: Literal["grasp"] = "grasp"
     noise_seed: ClassVar = ("readout", "seed")
     histories: ClassVar = True
-    quantities: ClassVar = {
-        "max_penetration": ("m", "largest penetration at any surface point in any step"),
-        "min_volume_ratio": ("1", "least local volume ratio in any step"),
-        "unstable_volume_fraction": ("1", "part of the volume outside strong ellipticity at any accepted step"),
-    }
+    quantities: ClassVar = WHOLE_RUN
 
     def labels_of(self, experiment: Experiment) -> list[Variable]:
         """Inclusions padded to the largest number of the sweep."""

@@ -200,7 +200,7 @@ class GraspSetup(FrozenModel):
         for number, embedded in enumerate(self.inclusions, 1):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
-                raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; only a tube is hollow")
+                raise ValueError(f"inclusions.{number - 1}.lumen: {name} has no empty space; leave it out")
         if (misfit := self.mesh.misfit(self.block.size, self.shapes, self.flats)) is not None:
             raise ValueError(f"mesh.kind: {misfit}; take kind: tetrahedra")
         return self

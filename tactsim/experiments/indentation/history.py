@@ -8,6 +8,12 @@ CLOCK = ("time", "closed_form_displacement", "closed_form_force", "closed_form_d
 """Values of a timed indentation alone."""
 SPACE = ("force_x", "force_y", "moment_x", "moment_y", "moment_z")
 """Values of an indentation in space alone."""
+THRESHOLD = {
+    "threshold_force": ("N", "force on the annulus when the tissue touches the inner sensor"),
+    "threshold_pressure": ("Pa", "threshold force over the annular area"),
+    "threshold_displacement": ("m", "displacement at the threshold"),
+}
+"""Unit and description of what holds at the threshold, in a result and in a data set."""
 UNITS: dict[str, str] = {
     "time": "s",
     "displacement": "m",

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.experiments.indentation.comparison import Comparison
-from tactsim.experiments.indentation.history import SPACE, UNITS
+from tactsim.experiments.indentation.history import SPACE, THRESHOLD, UNITS
 from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.materials.library import set_with_constants_of
@@ -123,11 +123,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         if self.event is None:
             return {}
         force, displacement = (self.event.values[name] for name in ("reaction_force", "displacement"))
-        return {
-            "threshold_force": Quantity(force, "N", "force on the annulus when the tissue touches the inner sensor"),
-            "threshold_pressure": Quantity(force / self._face_area, "Pa", "threshold force over the annular area"),
-            "threshold_displacement": Quantity(displacement, "m", "displacement at the threshold"),
-        }
+        values = (force, force / self._face_area, displacement)
+        return {name: Quantity(value, *words) for value, (name, words) in zip(values, THRESHOLD.items(), strict=True)}
 
     def _around(self, model: SolidModel) -> dict[str, Quantity]:
         """Vectors of force and moment at the last kept state, and the pressure around an annulus."""

@@ -6,9 +6,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from tactsim.experiments.indentation.history import THRESHOLD
 from tactsim.interfaces import Experiment, Recorder
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label
+from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
 
 LABELS = {
     "inner_radius": ("m", "radius of the hole, 0 for a body without one"),
@@ -16,7 +18,7 @@ LABELS = {
     "recess": ("m", "depth of the inner sensor; NaN if there is none"),
     "thickness": ("m", "thickness of the specimen"),
     "shear_modulus": ("Pa", "small-strain shear modulus of the specimen's main material"),
-    "friction": ("1", "coefficient of friction"),
+    "friction": ("1", "coefficient of friction; NaN of a law that has none"),
 }
 
 
@@ -25,16 +27,13 @@ class IndentationRecorder(Recorder):
 
     kind: Literal["indentation"] = "indentation"
     quantities: ClassVar = {
-        "threshold_force": ("N", "force on the annulus when the tissue touches the inner sensor"),
-        "threshold_pressure": ("Pa", "threshold force over the annular area"),
-        "threshold_displacement": ("m", "displacement at the threshold"),
+        **THRESHOLD,
         "displacement": ("m", "displacement of the body from first touch at the end"),
         "reaction_force": ("N", "force of the tissue on the body at the end"),
         "tissue_rise": ("m", "largest height of the tissue in the hole above the face at the end"),
-        "max_penetration": ("m", "largest penetration at any surface point in any step"),
-        "unstable_volume_fraction": ("1", "part of the volume outside strong ellipticity at any accepted step"),
+        **{name: WHOLE_RUN[name] for name in ("max_penetration", "unstable_volume_fraction")},
     }
-    optional: ClassVar = ("threshold_force", "threshold_pressure", "threshold_displacement", "tissue_rise")
+    optional: ClassVar = (*THRESHOLD, "tissue_rise")
 
     def labels_of(self, experiment: Experiment) -> list[Variable]:
         """Geometry, modulus and friction."""
@@ -49,7 +48,7 @@ class IndentationRecorder(Recorder):
             np.nan if recess is None else recess,
             experiment.specimen.thickness,
             experiment.specimen.material.shear_modulus,
-            getattr(experiment.contact, "friction", 0.0),
+            getattr(experiment.contact, "friction", np.nan),
         )
         return {name: np.array(value) for name, value in zip(LABELS, values, strict=True)}
 

@@ -116,8 +116,8 @@ class TimedIndentation(IndentationSetup, Experiment):
         return self
 
     def _check_comparable(self) -> None:
-        if self.body.kind not in ("annulus", "punch"):
-            raise ValueError(f"compare: a closed form exists for an annulus or a punch, not for a {self.body.kind}")
+        if not self.body.contact_shape.flat:
+            raise ValueError(f"compare: a closed form exists for a flat ring or disc, not for a {self.body.kind}")
         if len(self.specimen.materials) > 1 or self.specimen.surface != "flat":
             raise ValueError("compare: a closed form exists for one material and a flat surface")
         if self.specimen.material.bulk_modulus is not None:

@@ -13,6 +13,7 @@ from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation
 from tactsim.materials import AnyMaterial
+from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact.penetration_bounds import default_penetration
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import DisplacementLoading
@@ -133,7 +134,7 @@ class SwitchProbeSetup(FrozenModel):
             depth, most = format_quantity(self.depth, "m"), format_quantity(deepest, "m")
             raise ValueError(f"depth {depth} is beyond the curve of the fast model; allowed: up to {most}, or set model: fem")
         for tissue in self.tissues:
-            if tissue.material.kind != "neo_hookean" or tissue.material.bulk_modulus is not None:
+            if not isinstance(tissue.material, NeoHookean) or tissue.material.bulk_modulus is not None:
                 raise ValueError(
                     f"tissue {tissue.name} is a {tissue.material.kind}; the curve of the fast model is that of incompressible "
                     "neo_hookean tissue, scaled and made to relax; take such a material or set model: fem"

@@ -26,7 +26,7 @@ from tactsim.fem.assembly import history_kernels
 from tactsim.fem.assembly.body import Body, Kinematics, RelaxationStep
 
 ROUND_OFF = 128 * np.finfo(float).eps
-"""Round-off of the stress over the shear modulus: F is one plus small numbers."""
+"""Round-off of a stress over the shear modulus, and of the forces that it makes: F is one plus small numbers."""
 NOISE_GROWTH = 8
 """Sum of the coefficients of the differences, on even steps."""
 LEAST_STRESS = 1e-7

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from tactsim.fem.assembly import point
 from tactsim.fem.assembly.point import (
     add_history_stress,
     add_history_tangent,
@@ -17,6 +18,7 @@ from tactsim.fem.assembly.point import (
     point_tangent,
     pulled_back,
 )
+from tactsim.outside.compiled_loops import forget_stale
 
 BLOCK = 32
 """Elements per task of a thread."""
@@ -187,3 +189,6 @@ def elastic_stress(F, W, linear, out):  # type: ignore[no-untyped-def]
                 here[m] = F[m // 3, m % 3, e, q]
             point_stress(here, W[:, e, q], linear[e], work, cof)
             pulled_back(work, linear[e], out[:, e, q])
+
+
+forget_stale(elastic_stress, point)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from tactsim.fem.assembly import section_point
 from tactsim.fem.assembly.section_point import (
     add_history_moduli,
     add_history_stress,
@@ -19,6 +20,7 @@ from tactsim.fem.assembly.section_point import (
     moduli,
     pulled_back,
 )
+from tactsim.outside.compiled_loops import forget_stale
 
 BLOCK = 64
 """Elements per task of a thread."""
@@ -194,3 +196,6 @@ def elastic_stress(F, W, linear, out):  # type: ignore[no-untyped-def]
             pulled_back(here, P, linear[e], S)
             for c in range(4):
                 out[c, e, q] = S[c]
+
+
+forget_stale(elastic_stress, section_point)

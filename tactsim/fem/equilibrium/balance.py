@@ -10,11 +10,9 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, Kinematics
 from tactsim.fem.assembly.external_forces import AnyInterface, FollowerLoad
+from tactsim.fem.assembly.history_variables import ROUND_OFF
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-
-ROUND_OFF = 128 * np.finfo(float).eps
-"""Residuals below this part of the forces that a stress of the shear modulus makes are round-off: F is one plus small numbers."""
 
 
 @dataclass(frozen=True)

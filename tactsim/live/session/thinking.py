@@ -169,15 +169,15 @@ def estimate_message(
 class Threads:
     """Daemon threads that share the work; asyncio's own would hold up the end of the process until they are done."""
 
-    def __init__(self, most: int = MOST_THREADS):
-        self._most, self._started = most, 0
+    def __init__(self) -> None:
+        self._started = 0
         self._work: SimpleQueue[tuple[Future[Any], Callable[[], Any]] | None] = SimpleQueue()
 
     async def run(self, make: Callable[[], Made]) -> Made:
         """What ``make`` returns or raises; it is not begun if nobody waits any more."""
         answer: Future[Made] = Future()
         self._work.put((answer, make))
-        if self._started < self._most:
+        if self._started < MOST_THREADS:
             threading.Thread(target=self._serve, daemon=True, name="live work").start()
             self._started += 1
         return await asyncio.wrap_future(answer)

@@ -21,6 +21,7 @@ from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
     TAXEL_ERROR,
+    UNCHANGED,
     ReferenceErrors,
     ReferenceFit,
     factor_words,
@@ -109,9 +110,7 @@ class HypothesesEstimator(Estimator):
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
         values, priors = readings.difference.ravel(), self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
-            return Estimate(
-                False, (), "no inclusion: the readings are those of the reference", 0.0, self._probabilities({"none": 0.0})
-            )
+            return Estimate(False, (), UNCHANGED, 0.0, self._probabilities({"none": 0.0}))
         balls = ball_candidates(readings.response, readings.block_size, radius_steps(self.radii), gap=self.gap).signals
         fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
         explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}

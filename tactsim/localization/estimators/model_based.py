@@ -20,6 +20,7 @@ from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
     SAME_TISSUE,
     TAXEL_ERROR,
+    UNCHANGED,
     ReferenceErrors,
     ReferenceFit,
     factor_words,
@@ -121,7 +122,7 @@ class ModelBasedEstimator(Estimator):
         candidates = self._candidates(readings.response, readings.block_size)
         priors = self._errors(plain, readings.noise)
         if any(without_error(change, errors) for errors in priors):
-            return Estimate(False, (), "no inclusion: the readings are those of the reference", 0.0)
+            return Estimate(False, (), UNCHANGED, 0.0)
         fits = [fitted(candidates.signals, change, errors, self.contrast_spread) for errors in priors]
         fit = max(fits, key=lambda one: one.likelihood)
         probability = self._probability(fits)

@@ -7,10 +7,10 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.history_variables import mean_stress
-from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.ellipticity import elliptic_in
+from tactsim.mechanics.fields.cell_fields import cell_fields, corner_means
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.fields import DISPLACEMENT, PRESSURE
 from tactsim.results.result import FieldFrame
 
 
@@ -28,26 +28,13 @@ def section_frame(
     pressure = np.zeros(len(u))
     pressure[: len(p)] = -p
     if isochoric is not None:
-        pressure[: len(p)] -= corner_means(mesh, body, mean_stress(body, state.kinematics, isochoric))
+        pressure[: len(p)] -= corner_means(body, mean_stress(body, state.kinematics, isochoric))
     ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
     pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
     return FieldFrame(
         time=time,
         points=points,
         cells={"triangle6": mesh.elements},
-        point_data={"displacement [m]": displacement, "pressure [Pa]": pressure},
-        cell_data={
-            "largest_stretch [1]": principal_stretches(state.kinematics.F)[0].max(axis=1),
-            "volume_ratio [1]": state.kinematics.J.mean(axis=1),
-            "region [1]": mesh.regions.astype(float),
-            "elliptic [1]": elliptic_in(body, state.kinematics).all(axis=1).astype(float),
-        },
+        point_data={DISPLACEMENT: displacement, PRESSURE: pressure},
+        cell_data=cell_fields(mesh, body, state),
     )
-
-
-def corner_means(mesh: QuadraticMesh, body: Body, values: Array) -> Array:
-    """Values (E, Q) at the volume points as means over the elements around each corner node, by volume."""
-    weights, corners = body.points.weights, mesh.elements[:, :3]
-    volume = np.repeat(weights.sum(axis=1), 3)
-    total = np.repeat((weights * values).sum(axis=1), 3)
-    return np.bincount(corners.ravel(), total) / np.bincount(corners.ravel(), volume)

@@ -7,10 +7,10 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.history_variables import mean_stress
-from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.ellipticity import elliptic_in
+from tactsim.mechanics.fields.cell_fields import cell_fields, corner_means
 from tactsim.mesh.quadratic import EDGES, QuadraticMesh
+from tactsim.results.fields import CORNER_PRESSURE, DISPLACEMENT, PRESSURE
 from tactsim.results.result import FieldFrame
 
 
@@ -34,20 +34,6 @@ def solid_frame(
         time=time,
         points=mesh.nodes,
         cells={"tetra10": mesh.elements},
-        point_data={"displacement [m]": u.copy(), "pressure [Pa]": pressure},
-        cell_data={
-            "corner_pressure [Pa]": at_corners[body.space.pressures],
-            "region [1]": mesh.regions.astype(float),
-            "largest_stretch [1]": principal_stretches(state.kinematics.F)[0].max(axis=1),
-            "volume_ratio [1]": state.kinematics.J.mean(axis=1),
-            "elliptic [1]": elliptic_in(body, state.kinematics).all(axis=1).astype(float),
-        },
+        point_data={DISPLACEMENT: u.copy(), PRESSURE: pressure},
+        cell_data={CORNER_PRESSURE: at_corners[body.space.pressures], **cell_fields(mesh, body, state)},
     )
-
-
-def corner_means(body: Body, values: Array) -> Array:
-    """Values (E, Q) at the volume points as means over the elements around each corner, region by region, by volume."""
-    weights, corners = body.points.weights, body.space.pressures
-    volume = np.repeat(weights.sum(axis=1), 4)
-    total = np.repeat((weights * values).sum(axis=1), 4)
-    return np.bincount(corners.ravel(), total) / np.bincount(corners.ravel(), volume)

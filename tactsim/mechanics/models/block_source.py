@@ -20,6 +20,7 @@ from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.foreign import LengthUnit
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.units import format_quantity
@@ -92,7 +93,7 @@ class LayersSource(BlockMeshSettings, BlockSource):
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
         """That there is no sphere or ellipsoid, or not only one."""
         served = len(inclusions) == 1 and inclusions[0].solids(np.asarray(size, float))[0].ball_image() is not None
-        return None if served else "layers serves exactly one sphere or ellipsoid"
+        return None if served else "layers serves exactly one ball, stretched or not"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
         """The mesh of a block of this size in m around its only inclusion.
@@ -192,7 +193,7 @@ class FileSource(BlockSource):
     kind: Literal["file"]
     path: InputPath
     """Any file of tetrahedra that meshio reads."""
-    unit: Literal["m", "cm", "mm", "um"]
+    unit: LengthUnit
     """Unit of its coordinates."""
     regions: dict[str, Annotated[int, Field(ge=0)]] | None = None
     """Region of each tag: 0 is the tissue, k the inclusion k counted from 1. Tags are whole numbers or names of groups."""

@@ -26,10 +26,9 @@ from tactsim.mechanics.fields.section_fields import section_frame
 from tactsim.mechanics.fields.solid_fields import solid_frame
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.fields import VON_MISES
 from tactsim.results.result import FieldFrame
 
-VON_MISES = "von_mises [Pa]"
-"""Name of that field."""
 ACCURACY = 1e-6
 """Error of the first guess of a step, over its size: Newton mends it."""
 

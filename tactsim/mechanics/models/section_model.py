@@ -18,10 +18,8 @@ from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mesh.adaptation import Refinement, refined
 from tactsim.mesh.axisymmetric import Size
 from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.fields import AXIAL_STRESS
 from tactsim.results.result import FieldFrame
-
-AXIAL_STRESS = "axial_stress [Pa]"
-"""Name of the Cauchy stress normal to planes across the axis, tension positive, among the fields of a section."""
 
 
 class SectionModel(PressedModel):

@@ -10,5 +10,11 @@ CONTACT_UNITS = {
     **QUALITY_UNITS,
 }
 """A run need not record all."""
+WHOLE_RUN = {
+    "max_penetration": ("m", "largest penetration at any surface point in any step"),
+    "min_volume_ratio": ("1", "least local volume ratio in any step"),
+    "unstable_volume_fraction": ("1", "part of the volume outside strong ellipticity at any accepted step"),
+}
+"""Unit and description of numbers of a whole run, in a result and in a data set."""
 LAST = ", at the last accepted step"
 """Behind the words of a quantity that is a value of that step."""

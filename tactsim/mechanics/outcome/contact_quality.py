@@ -13,6 +13,7 @@ from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.penetration_effect import PenetrationEffect
 from tactsim.mechanics.fields.ellipticity import elliptic_in
 from tactsim.mechanics.fields.volume_ratios import VolumeRatios
+from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
@@ -20,7 +21,6 @@ from tactsim.units import format_quantity
 
 FINER = "take smaller elements"
 """How most cases make their mesh finer, in their own words."""
-UNSTABLE = "part of the volume outside strong ellipticity at any accepted step"
 
 
 def displacement_reached(step: StepRecord) -> str:
@@ -75,9 +75,9 @@ class ContactQuality:
         effect = "part of the largest force that the penetration left takes away, estimated, at the last accepted step"
         poor = "largest part of the volume with local volume ratios off by more than a tenth, any step"
         return {
-            "min_volume_ratio": Quantity(least, "1", "least local volume ratio in any step"),
-            "max_penetration": Quantity(deepest, "m", "largest penetration at any surface point in any step"),
-            "unstable_volume_fraction": Quantity(last["unstable_volume_fraction"], "1", UNSTABLE),
+            "min_volume_ratio": Quantity(least, *WHOLE_RUN["min_volume_ratio"]),
+            "max_penetration": Quantity(deepest, *WHOLE_RUN["max_penetration"]),
+            "unstable_volume_fraction": Quantity(last["unstable_volume_fraction"], *WHOLE_RUN["unstable_volume_fraction"]),
             "penetration_force_error": Quantity(last["penetration_force_error"], "1", effect),
             "poor_volume_fraction": Quantity(self._volumes.worst, "1", poor),
         }

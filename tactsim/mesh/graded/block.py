@@ -20,7 +20,7 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
-from tactsim.mesh.block import BlockMesh, BlockMeshSettings
+from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import fitted
 from tactsim.mesh.graded.beside_jaws import Footprint, footprint_of, widened
 from tactsim.mesh.graded.bricks import brick_cells, bricks_of, check_apart
@@ -152,7 +152,7 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
         elif tube is not None:
             tubes.append(tube)
         else:
-            raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: sphere, ellipsoid, tube")
+            raise InputError(f"a {inclusion.kind} cannot be meshed in graded cells; allowed: a ball, stretched or not, or a tube")
     if tubes and len(lumps) > 1:
         raise InputError("graded cells serve one lump beside tubes, or several lumps without")
     return lumps, tubes
@@ -206,7 +206,7 @@ def _cells_of_lumps(between: _Between, finer: int, layering: Layering) -> Cells:
 def _check_size(footprint: Footprint, cells: Sequence[int], axes: Sequence[int] = (0, 1, 2)) -> None:
     """Refuse a grid of too many cells (3,) along ``axes`` of the footprint, with those beside it."""
     more = footprint.more[list(axes)]
-    check_unknowns(unknowns_of_cells((more + cells).tolist()), "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth")
+    check_unknowns(unknowns_of_cells((more + cells).tolist()), SIZES)
 
 
 def _around(ball: BallImage, lines: Sequence[Line], layering: Layering) -> Cells:

@@ -14,14 +14,13 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Point, Solid, Triangles
-from tactsim.mesh.foreign import read_foreign
+from tactsim.mesh.foreign import METRES, LengthUnit, read_foreign
 from tactsim.mesh.inclusions.triangulated import TriangulatedSolid
 from tactsim.outside.files import OutsideFile, opened
 from tactsim.outside.input_path import InputPath
 from tactsim.units import Angle
 
 FORMATS = (".stl", ".ply", ".obj")
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 MOST_TRIANGLES = 500_000
 
 
@@ -32,7 +31,7 @@ class Surface(Inclusion):
     data_set_number: ClassVar[int | None] = 4
     path: InputPath
     """STL, PLY or OBJ file of triangles; one of ``meshes/`` is also found where this program is kept."""
-    unit: Literal["m", "cm", "mm", "um"]
+    unit: LengthUnit
     """Unit of the coordinates in the file."""
     translation: Point = (0.0, 0.0, 0.0)
     """Where the origin of the file comes to lie in the block."""
@@ -65,7 +64,7 @@ def _file(path: str) -> tuple[OutsideFile, int]:
 def _placed(surface: Surface, file: OutsideFile, written: int) -> TriangulatedSolid:
     vertices, triangles = _read_surface(file, written)
     turn = scipy.spatial.transform.Rotation.from_euler("xyz", surface.rotation).as_matrix()
-    placed = vertices * UNITS[surface.unit] @ turn.T + np.array(surface.translation)
+    placed = vertices * METRES[surface.unit] @ turn.T + np.array(surface.translation)
     return TriangulatedSolid(placed, triangles, surface.path)
 
 

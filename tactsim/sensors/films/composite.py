@@ -12,6 +12,9 @@ from tactsim.sensors.films.thermogravimetry import FillerFraction, Thermogravime
 from tactsim.sensors.films.tunnelling import particle_separation, tunnelling_decay
 from tactsim.units import Area, Energy, Force, Length, Pressure, PressurePerForce, Resistance, Viscosity, ViscosityPerForce
 
+CREEP_COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
+"""Names of the coefficients of the creep: E0 in Pa, E1 in Pa and mu1 in Pa s."""
+
 
 class ModulusLine(FrozenModel):
     """A modulus of the standard linear solid over the force, E(F) = slope F + intercept."""

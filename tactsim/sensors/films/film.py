@@ -22,7 +22,7 @@ from tactsim.errors import ConvergenceError, InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.quantity import Quantity
-from tactsim.sensors.films.composite import Composite
+from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
 from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
@@ -34,8 +34,6 @@ HOLM = 100.0
 INVERSION = 1e-12
 """Relative accuracy of a force computed from its conductance."""
 ITERATIONS = 60
-CREEP = ("instantaneous", "delayed", "viscosity")
-"""Coefficients of the creep as a composite names them."""
 COMPLEX_STEP = 1e-30
 """Imaginary part of the logarithm of the force, with which a slope is exact to round-off."""
 
@@ -141,7 +139,7 @@ class Film(SensorFilm):
         alone = 1 / signal - self.composite.contact_resistance / np.sqrt(force)
         words = "the same without the contacts at the electrodes"
         felt = force * self._magnification
-        coefficients = {name: getattr(self.composite, name).at(felt).tolist() for name in CREEP}
+        coefficients = {name: getattr(self.composite, name).at(felt).tolist() for name in CREEP_COEFFICIENTS}
         readings = {"reading_film_resistance": Quantity(alone.tolist(), "ohm", words)}
         return FilmReport(self._constants(), readings, coefficients)
 

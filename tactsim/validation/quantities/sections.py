@@ -12,9 +12,9 @@ from tactsim.errors import InputError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.interfaces import drawing
 from tactsim.interfaces.run import returned_by, run_within_another
-from tactsim.mechanics.models.section_model import AXIAL_STRESS
 from tactsim.model import FrozenModel
 from tactsim.results import Result, Status
+from tactsim.results.fields import AXIAL_STRESS, DISPLACEMENT
 from tactsim.units import format_quantity
 from tactsim.validation.curves import Data, Title
 from tactsim.validation.inputs import Inputs
@@ -75,7 +75,7 @@ def section_panel(result: Result, title: str) -> Data:
     lines = [[[shape.hole, face], [shape.reach, face]]]
     if scene.recess is not None:
         lines.append([[0.0, face + scene.recess], [shape.hole, face + scene.recess]])
-    places = (frame.points + frame.point_data["displacement [m]"])[:, :2]
+    places = (frame.points + frame.point_data[DISPLACEMENT])[:, :2]
     return {
         "title": f"{title}: {format_quantity(moved, 'm')}",
         "points": places.tolist(),

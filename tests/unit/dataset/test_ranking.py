@@ -41,7 +41,6 @@ def test_errors_of_one_estimate() -> None:
     assert judged.covered is False
     assert estimated(LUMP, (21e-3, 20e-3, 12e-3)).covered is True
     assert judged.width == pytest.approx(2 * np.sqrt(6.2514) * 1e-3, rel=1e-4)
-    assert judged.width != pytest.approx(2 * np.sqrt(4.6052) * 1e-3, rel=1e-2)  # that of two dimensions
 
 
 def test_hiding_does_not_pay() -> None:
@@ -96,7 +95,6 @@ def test_the_interval_of_a_rate_has_a_width_at_its_ends():
     assert all_detected["value"] == 1.0
     z = norm.ppf(0.975)
     assert all_detected["low"] == pytest.approx(20 / (20 + z**2), rel=1e-9)  # Wilson's by hand for 20 of 20
-    assert all_detected["low"] != pytest.approx(1.0, abs=0.1), "the bootstrap's would have no width"
     assert share([]) is None
 
 

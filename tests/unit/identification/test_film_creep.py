@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tactsim.errors import InvalidQuantity, StorageError
-from tactsim.identification.film_creep import COEFFICIENTS, CreepTest, coefficient_lines, fit_creep, read_creep, synthetic_creep
+from tactsim.identification.film_creep import CreepTest, coefficient_lines, fit_creep, read_creep, synthetic_creep
+from tactsim.sensors.films.composite import CREEP_COEFFICIENTS
 from tactsim.sensors.films.composite_library import named_composite
 
 LINGSTAT = named_composite("lingstat_literal")
@@ -19,7 +20,7 @@ def noisy_creep(noise, seed=1):
 
 def test_the_lines_of_2_3_1_come_back_from_clean_creep():
     lines = coefficient_lines([fit_creep(test, AREA) for test in noisy_creep(0.0)])
-    for name in COEFFICIENTS:
+    for name in CREEP_COEFFICIENTS:
         true = getattr(LINGSTAT, name)
         assert lines[name].slope == pytest.approx(true.slope, rel=1e-6)
         assert lines[name].intercept == pytest.approx(true.intercept, rel=1e-6)
@@ -27,7 +28,7 @@ def test_the_lines_of_2_3_1_come_back_from_clean_creep():
 
 def covered(noise, claimed):
     """Share of 200 seeded tests whose interval, scaled by ``claimed``, holds the true coefficients."""
-    true = np.array([getattr(LINGSTAT, name).at(4.0) for name in COEFFICIENTS])
+    true = np.array([getattr(LINGSTAT, name).at(4.0) for name in CREEP_COEFFICIENTS])
     inside = []
     for seed in range(200):
         fit = fit_creep(synthetic_creep(LINGSTAT, (4.0,), TIMES, noise=noise, generator=np.random.default_rng(seed))[0], AREA)

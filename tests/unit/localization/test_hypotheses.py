@@ -10,7 +10,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.candidates import ball_candidates, tube_candidates
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
-from tactsim.localization.evidence import Change, nothing
+from tactsim.localization.evidence import Change
 from tactsim.localization.lump_response import LumpResponse
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])
@@ -70,7 +70,6 @@ def test_a_tube_is_the_integral_of_a_constant_density_over_it():
     volumes = np.pi * chosen.radii**2 * np.linalg.norm(chosen.ends - chosen.begins, axis=1)
     # the ends lose up to 0.35 of the radius of the ball, and a cut tube gains as much at neither end
     assert chosen.signals[:, 0] == pytest.approx(volumes, rel=0.1)
-    assert chosen.signals[:, 0] != pytest.approx(4 / np.pi * volumes, rel=0.1), "a tube is round"
 
 
 def test_overlapping_bodies_are_reported():
@@ -99,7 +98,6 @@ def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
     covariance = 4e-4 * np.eye(18) + 4.0 * np.outer(candidates.signals[0], candidates.signals[0])
     exact = -(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2
     assert change.single(candidates).evidence == pytest.approx(exact, rel=1e-10)
-    assert change.single(candidates).evidence != pytest.approx(nothing(values, 4e-4), rel=1e-10)
 
 
 def test_the_evidence_of_pairs_is_their_mean_over_all(response):
@@ -117,7 +115,6 @@ def test_the_evidence_of_pairs_is_their_mean_over_all(response):
     mean = largest + np.log(np.exp(np.array(exact) - largest).sum() / len(candidates) ** 2)
     sampled = [change.double(candidates, candidates, np.random.default_rng(seed)).evidence for seed in range(4)]
     assert np.mean(sampled) == pytest.approx(mean, abs=0.2)  # scatter of 32 draws
-    assert np.mean(sampled) != pytest.approx(mean + np.log(2), abs=0.2)
 
 
 @pytest.mark.parametrize("name", ["none", "lump", "two_lumps", "artery"])

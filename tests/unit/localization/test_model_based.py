@@ -56,7 +56,6 @@ def test_a_linear_density_gives_its_middle_times_the_volume():
     signal = response.signal(center, np.array([5e-3]))[0, :, 0, 0]
     volume = 4 / 3 * np.pi * 5e-3**3
     assert signal == pytest.approx([volume, volume * (1 + 20 * 21.5e-3)], rel=1e-3)
-    assert signal != pytest.approx([volume, volume * (1 + 20 * 20e-3)], rel=1e-3), "the density at the middle of the block"
 
 
 def test_a_ball_outside_the_table_is_refused(response):

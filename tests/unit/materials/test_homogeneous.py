@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import ClassVar, Literal, Self
+
 import numpy as np
 import pytest
 from principal_ogden import PrincipalOgden
 
-from tactsim.materials.homogeneous import PATHS, nominal_stress, principal_invariants
+from tactsim.interfaces import Material
+from tactsim.materials.homogeneous import PATHS, diagonal, nominal_stress, principal_invariants
 from tactsim.materials.library import LIBRARY
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.materials.stability_range import SCANNED, stability_range
 
 STRETCH = np.array([0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.5, 2.0])
 
@@ -80,3 +84,50 @@ def test_a_law_of_principal_stretches_has_the_states_of_neo_hooke_at_an_exponent
     np.testing.assert_allclose(nominal_stress(PrincipalOgden(modulus=1e3), path, STRETCH), expected, rtol=1e-10)
     other = nominal_stress(PrincipalOgden(modulus=1e3, alpha=3.0), path, STRETCH)
     assert np.abs(other - expected).max() > 0.1 * np.abs(expected).max()
+
+
+class UserLinear(Material):
+    """Linear elasticity as a user would write it, with moduli of its own."""
+
+    kind: Literal["user_linear"] = "user_linear"
+    small_strain: ClassVar[bool] = True
+    bulk_modulus: float | None
+    modulus: float
+
+    @classmethod
+    def example(cls) -> Self:
+        return cls(modulus=1e3, bulk_modulus=2e3)
+
+    @property
+    def shear_modulus(self) -> float:
+        return self.modulus
+
+    def first_piola_kirchhoff(self, F, pressure):
+        strain = (F + np.swapaxes(F, 0, 1)) / 2 - diagonal(np.ones(F.shape[1:]))
+        mean = np.einsum("ii...->...", strain) / 3
+        unit = diagonal(np.ones(F.shape[1:]))
+        return 2 * self.modulus * (strain - mean * unit) + pressure * unit
+
+    def tangent(self, F, pressure):
+        unit, more = np.eye(3), (1,) * (F.ndim - 2)
+        one = np.einsum("ik,JL->iJkL", unit, unit) + np.einsum("iL,Jk->iJkL", unit, unit)
+        moduli = self.modulus * (one - 2 / 3 * np.einsum("iJ,kL->iJkL", unit, unit))
+        return np.broadcast_to(moduli.reshape(*moduli.shape, *more), (3, 3, 3, 3, *F.shape[2:]))
+
+    def volume_change(self, F):
+        return np.einsum("ii...->...", F) - 3
+
+    def volume_change_gradient(self, F):
+        return diagonal(np.ones(F.shape[1:]))
+
+
+@pytest.mark.parametrize("bulk_modulus", [2e3, None])
+def test_a_users_law_of_small_strain_keeps_its_poissons_ratio_and_is_stable(bulk_modulus):
+    own = UserLinear(modulus=1e3, bulk_modulus=bulk_modulus)
+    nu = 0.5 if bulk_modulus is None else (3 * 2e3 - 2 * 1e3) / (6 * 2e3 + 2 * 1e3)
+    young, strain = 2e3 * (1 + nu), np.array([-0.2, 0.0, 0.1, 0.5])
+    for path, stiffening in (("uniaxial", 1.0), ("equibiaxial", 1 / (1 - nu)), ("planar", 1 / (1 - nu**2))):
+        np.testing.assert_allclose(nominal_stress(own, path, 1 + strain), young * stiffening * strain, rtol=1e-12, atol=1e-9)
+    report = stability_range(own)
+    assert all((path.elliptic, path.drucker) == (SCANNED, SCANNED) for path in report.paths.values())
+    assert report.strongly_elliptic

@@ -9,8 +9,8 @@ import pytest
 
 from tactsim.errors import InputError, UnknownName
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.mechanics.models.section_model import AXIAL_STRESS
 from tactsim.results import Result
+from tactsim.results.fields import AXIAL_STRESS
 from tactsim.validation import load_tables
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from pathlib import Path
 
 import pytest
+from thesis_tables import shipped_names, shipped_tables
 
-from tactsim.validation import load_tables
 from tactsim.validation.comparison import compare_row, reason_of
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.loading import LoadedTables
 from tactsim.validation.table import Row, Table
 
-CASES = Path(__file__).parents[3] / "cases"
-GROUPS = {name: load_tables(CASES / name) for name in ("thesis", "published")}
-TABLES = [(group, table) for group, loaded in GROUPS.items() for table in loaded.tables]
 SIZE = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w]|\.\d)")
 """A number that stands alone; ``B1-A`` and ``2.3.1`` are names."""
 NAMES = re.compile(
@@ -74,9 +70,9 @@ def typed(row: Row, table: Table, loaded: LoadedTables) -> list[float]:
     return sorted(each for each in sizes(reason) if not any(abs(each - other) <= 1e-9 * each for other in known))
 
 
-@pytest.mark.parametrize(("group", "name"), TABLES)
+@pytest.mark.parametrize(("group", "name"), shipped_names())
 def test_no_reason_of_a_computed_row_has_an_own_figure_typed_into_it(group: str, name: str) -> None:
-    loaded = GROUPS[group]
+    loaded = shipped_tables(group)
     table = loaded.tables[name]
     stale = {row.id: (figures, reason_of(row)) for row in table.rows if (figures := typed(row, table, loaded))}
     assert stale == {}, "let the run fill them in, {computed}, {ratio} or {another_row}, or point to the row that computes them"
@@ -88,7 +84,7 @@ def with_reason(row: Row, why: str) -> Row:
 
 @pytest.mark.parametrize("why", ["E10: 0.08 mm; the tissue does not touch", "a force 9 times as large", "it costs 0.9 %"])
 def test_a_typed_figure_is_noticed(why: str) -> None:
-    loaded = GROUPS["thesis"]
+    loaded = shipped_tables("thesis")
     table = loaded.tables["section_4_7"]
     row = next(row for row in table.rows if row.id == "rise")
     assert typed(row, table, loaded) == []
@@ -97,7 +93,7 @@ def test_a_typed_figure_is_noticed(why: str) -> None:
 
 
 def test_what_is_not_testable_can_name_the_row_with_the_number() -> None:
-    row = next(row for row in GROUPS["thesis"].tables["section_6_6"].rows if row.id == "pulse.icf.above_diastole")
+    row = next(row for row in shipped_tables("thesis").tables["section_6_6"].rows if row.id == "pulse.icf.above_diastole")
     outcome = compare_row(row, Inputs())
     assert outcome.held
     assert "{pulse.icf.above_diastole_change}" in outcome.reason

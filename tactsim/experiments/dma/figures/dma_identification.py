@@ -12,11 +12,11 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from tactsim.array import Array
 from tactsim.experiments.dma.figures.signals import signals_figure
 from tactsim.experiments.dma.scene import DmaScene
+from tactsim.identification.dma_data import PARTS
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot, despined, result_figure
 from tactsim.results import Result
 
-PARTS = ("elastic", "viscous")
 METHODS = {"least_squares": ("least squares", "#1f4e79", "-"), "genetic": ("genetic algorithm", "#b8540a", "--")}
 PER_MEGAPASCAL = 1e6
 DATA_COLOUR, TRUE_COLOUR = "#000000", "#4d9221"

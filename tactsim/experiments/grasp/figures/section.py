@@ -17,6 +17,7 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
 from tactsim.results import FieldFrame, Result
+from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
 
 JAW_SHOWN = 2.6
 """Height in mm of the jaws in the picture."""
@@ -62,7 +63,7 @@ def draw_section(axis: Axes, result: Result) -> None:
     frame, scene = result.frames[-1], result.scene_as(GraspScene)
     plane = cutting_plane(frame, scene.size)
     if result.steps:
-        pressure = frame.cell_data.get("corner_pressure [Pa]", np.asarray(frame.point_data["pressure [Pa]"]).ravel())
+        pressure = frame.cell_data.get(CORNER_PRESSURE, np.asarray(frame.point_data[PRESSURE]).ravel())
         cut = plane_cut(frame, plane.across, plane.level, np.asarray(pressure))
         _draw_pressure(axis, cut)
     else:

@@ -21,6 +21,7 @@ from tactsim.experiments.indentation.figures.section import (
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.plotting.canvas import PRESSURE_COLOURS, despined
 from tactsim.results import Result
+from tactsim.results.fields import PRESSURE
 from tactsim.units import format_quantity
 
 SHOWN_RADII = 2.4
@@ -72,7 +73,7 @@ class PressedSection:
     def _draw_pressure(self, axis: Axes) -> None:
         """The pressure with robust limits, so that the singular edges do not take all the colours."""
         (left, right), (bottom, _) = self.limits
-        pressure = np.asarray(self.section.frame.point_data["pressure [Pa]"]).ravel()
+        pressure = np.asarray(self.section.frame.point_data[PRESSURE]).ravel()
         x, z = self.section.places.T
         seen = (x >= left) & (x <= right) & (z >= bottom)
         (low, high), factor, unit = pressure_scale(self.section, pressure, seen)

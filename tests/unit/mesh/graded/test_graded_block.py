@@ -125,7 +125,9 @@ def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
     vertices, faces = irregular()
     path = write_cells(tmp_path / "free.stl", vertices, triangle=faces)
     free = Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3))
-    with pytest.raises(InputError, match="a surface cannot be meshed in graded cells; allowed: sphere, ellipsoid, tube"):
+    with pytest.raises(
+        InputError, match="surface cannot be meshed in graded cells; allowed: a ball, stretched or not, or a tube"
+    ):
         graded_block(SIZE, [free], COARSE)
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
     with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):

@@ -1,0 +1,31 @@
+"""Fields of the elements of a section or a solid, and values at their points as those of their corners."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactsim.array import Array
+from tactsim.fem.assembly.body import Body
+from tactsim.materials.stability import principal_stretches
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.fields.ellipticity import elliptic_in
+from tactsim.mesh.quadratic import QuadraticMesh
+from tactsim.results.fields import REGION
+
+
+def cell_fields(mesh: QuadraticMesh, body: Body, state: ContactEquilibrium) -> dict[str, Array]:
+    """By name, values (E,) of the elements in a state: their region, how far they are deformed, whether they are elliptic."""
+    return {
+        REGION: mesh.regions.astype(float),
+        "largest_stretch [1]": principal_stretches(state.kinematics.F)[0].max(axis=1),
+        "volume_ratio [1]": state.kinematics.J.mean(axis=1),
+        "elliptic [1]": elliptic_in(body, state.kinematics).all(axis=1).astype(float),
+    }
+
+
+def corner_means(body: Body, values: Array) -> Array:
+    """Values (E, Q) at the volume points as means over the elements around each corner, region by region, by volume."""
+    weights, corners = body.points.weights, body.space.pressures
+    volume = np.repeat(weights.sum(axis=1), corners.shape[1])
+    total = np.repeat((weights * values).sum(axis=1), corners.shape[1])
+    return np.bincount(corners.ravel(), total) / np.bincount(corners.ravel(), volume)
