@@ -96,7 +96,7 @@ def test_a_reference_of_another_block_or_matrix_is_refused(
 def test_grasps_that_open_again_are_not_held_against_tissue_that_only_closed(tmp_path: Path, plain: str) -> None:
     ramp = "      - {kind: ramp, to: 1 mm, duration: 1 s}\n"
     place = made_store(tmp_path, response(), text=TEXT.replace(ramp, ramp + "      - {kind: ramp, to: 0.4 mm, duration: 1 s}\n"))
-    words = r"close by 1 mm and open again to 0\.4 mm; needed: a largest closing at the end"
+    words = "close by 1 mm and open again to 400 µm; needed: a largest closing at the end"
     with pytest.raises(InputError, match=words):
         store_confusion(place, plain, HypothesesEstimator(), response=response())
     with pytest.raises(InputError, match=words):
