@@ -110,6 +110,14 @@ def registered_outside(package: str) -> list[Any]:
     return [cls for known in _registered.values() for cls in known.values() if cls.__module__.partition(".")[0] != package]
 
 
+def kinds_outside(package: str) -> dict[str, str]:
+    """Kind -> name of the class that is defined outside a package; without kinds that a class of the package has too."""
+    outside = registered_outside(package)
+    own = {kind for known in _registered.values() for kind, cls in known.items() if cls not in outside}
+    named = {cls.model_fields["kind"].default: cls.__name__ for cls in outside}
+    return {kind: name for kind, name in named.items() if kind not in own}
+
+
 def family(cls: Any) -> Any:
     """The extension point that a class extends: the nearest base that names the package where its kinds stand."""
     return next(base for base in cls.__mro__ if "package" in vars(base))

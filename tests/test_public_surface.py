@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pint
@@ -18,6 +19,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.experiments.grasp.scene import ReadGrasp
 from tactsim.results import FieldFrame
+from tactsim.sensors.films.film import Film
 from tactsim.shipped import shipped_cases
 
 # fmt: off
@@ -337,6 +339,28 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
             ts.ClosedForm.example().vary({"outer_radius": {"uniform": ["4 mm", "2 mm"]}}), samples=2, out=tmp_path / "c.zarr"
         )
     assert not (tmp_path / "b.zarr").exists()
+
+
+def test_a_sweep_refuses_what_its_workers_cannot_load_before_it_makes_a_store(tmp_path: Path) -> None:
+    class OwnTissue(ts.NeoHookean):
+        kind: Literal["own_tissue"] = "own_tissue"
+
+    class OwnFilm(Film):
+        kind: Literal["own_film"] = "own_film"
+
+    class OwnForm(ts.ClosedForm):
+        kind: Literal["own_form"] = "own_form"
+
+    place = {"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5}
+    experiment = ts.ClosedForm.example()
+    settings: dict[str, Any] = {"samples": 2, "out": tmp_path / "own.zarr", "workers": 1}
+    with pytest.raises(ts.InputError, match="OwnForm is defined in this session"):
+        ts.sweep(OwnForm.example().vary(place), **settings)
+    with pytest.raises(ts.InputError, match="OwnTissue is defined in this session"):
+        ts.sweep(experiment.model_copy(update={"material": OwnTissue(c10=2e3)}).vary(place), **settings)
+    with pytest.raises(ts.InputError, match="OwnFilm is defined in this session"):
+        ts.sweep(experiment.vary(place), reading={"film": {"kind": "own_film"}}, **settings)
+    assert not (tmp_path / "own.zarr").exists()
 
 
 def test_the_signature_of_every_kind_reads_without_machinery() -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +50,21 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
         raise InvalidQuantity(f"{place}: no column {', '.join(missing)}; allowed: {allowed}")
     values = np.array(table.numbers(names), dtype=float).reshape(-1, len(names))
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
+
+
+@contextmanager
+def of_file(path: str | Path) -> Iterator[None]:
+    """Names the file in what is refused of the numbers that were read from it.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the block refuses a number, with the file.
+    """
+    try:
+        yield
+    except InvalidQuantity as error:
+        raise InvalidQuantity(f"{one_line(path)}: {error}") from None
 
 
 def _column(table: Table, cell: str, units: dict[str, str]) -> tuple[str, float]:

@@ -12,7 +12,7 @@ import scipy
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 from tactsim.identification.dma_data import DmaData
 
 COLUMNS = {"time": "s", "load": "N", "displacement": "m"}
@@ -128,10 +128,8 @@ def read_dma_signals(path: str | Path, *, frequency: float, area: float, height:
     columns = read_columns(path, COLUMNS)
     if set(columns) != set(COLUMNS):
         raise InvalidQuantity(f"{path}: columns {', '.join(columns)}; allowed: {', '.join(COLUMNS)}")
-    try:
+    with of_file(path):
         return DmaSignals(**columns, frequency=frequency, area=area, height=height)
-    except InvalidQuantity as error:
-        raise InvalidQuantity(f"{path}: {error}") from None
 
 
 def read_dma_tests(path: str | Path, *, area: float, height: float) -> list[DmaSignals]:
@@ -150,6 +148,11 @@ def read_dma_tests(path: str | Path, *, area: float, height: float) -> list[DmaS
     tests, frequencies = [], columns.pop("frequency")
     for frequency in np.unique(frequencies):
         rows = frequencies == frequency
+        if rows.sum() < FEWEST_SAMPLES:
+            raise InvalidQuantity(
+                f"{path}: the frequency {frequency:g} Hz stands in {rows.sum()} rows; allowed: at least {FEWEST_SAMPLES} for "
+                "each frequency, by which tests are told apart: write the frequency that was set, not the one that was measured"
+            )
         try:
             signals = {name: values[rows] for name, values in columns.items()}
             tests.append(DmaSignals(**signals, frequency=float(frequency), area=area, height=height))
@@ -265,7 +268,8 @@ def _refined_frequency(signals: DmaSignals) -> float:
         residuals, [signals.frequency], bounds=bounds, x_scale=reach, xtol=1e-14, ftol=1e-14, gtol=1e-14
     )
     unexplained = 2 * fit.cost / both.size
-    if not fit.success or unexplained > MOST_UNEXPLAINED:
+    at_border = bool(fit.active_mask.any())  # the best frequency lies beyond what was searched
+    if not fit.success or at_border or unexplained > MOST_UNEXPLAINED:
         raise ConvergenceError(f"no frequency near {signals.frequency:g} Hz fits the signals; give it within {reach:.2g} Hz")
     return float(fit.x[0])
 

@@ -12,7 +12,7 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.film_equations import creep_strain
 
@@ -70,7 +70,9 @@ def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> Cree
 
     Source: thesis, eq. 2.1.15 with the exponent of errata E1.
     """
-    _check(test, area)
+    _check(test)
+    if not area > 0:
+        raise InvalidQuantity(f"creep on an area of {area:g} m^2; allowed: > 0")
     stress = test.force / area
     end, first = float(test.time[-1]), max(float(test.strain[0]), 1e-12)
     late = max(float(test.strain[-1] - first), 1e-3 * first)
@@ -135,16 +137,25 @@ def read_creep(path: str | Path) -> list[CreepTest]:
     StorageError
         If the file cannot be read.
     InvalidQuantity
-        If a column is missing or a row is wrong, with file and line.
+        If a column is missing or a row is wrong, with file and line, or no creep can be fitted to a test, with the file.
     """
     columns = read_columns(path, {"time": "s", "force": "N", "strain": "1"}, complete=True)
     chosen = [(force, columns["force"] == force) for force in np.unique(columns["force"])]
-    return [CreepTest(float(force), columns["time"][rows], columns["strain"][rows]) for force, rows in chosen]
+    tests = [CreepTest(float(force), columns["time"][rows], columns["strain"][rows]) for force, rows in chosen]
+    with of_file(path):
+        for test in tests:
+            if len(test.time) < FEWEST_SAMPLES:
+                raise InvalidQuantity(
+                    f"the force {test.force:g} N stands in {len(test.time)} rows; allowed: at least {FEWEST_SAMPLES} for each "
+                    "force, by which tests are told apart: write the force that was set, not the one that was measured"
+                )
+            _check(test)
+    return tests
 
 
-def _check(test: CreepTest, area: float) -> None:
-    if not (test.force > 0 and area > 0):
-        raise InvalidQuantity(f"force {test.force} N on {area} m^2; allowed: > 0")
+def _check(test: CreepTest) -> None:
+    if not test.force > 0:
+        raise InvalidQuantity(f"creep under a force of {test.force:g} N; allowed: > 0")
     if len(test.time) < FEWEST_SAMPLES or len(test.time) != len(test.strain):
         raise InvalidQuantity(
             f"creep at {test.force:g} N has {len(test.time)} times and {len(test.strain)} strains; "
@@ -153,6 +164,8 @@ def _check(test: CreepTest, area: float) -> None:
     if not (np.isfinite(test.time).all() and np.isfinite(test.strain).all()):
         raise InvalidQuantity(f"creep at {test.force:g} N has values that are not finite")
     if test.time[0] < 0 or (np.diff(test.time) <= 0).any():
-        raise InvalidQuantity(f"the times of the creep at {test.force:g} N must increase from 0 s or later")
+        raise InvalidQuantity(
+            f"the times of the creep at {test.force:g} N must increase from 0 s or later: one test for each force"
+        )
     if np.max(test.strain) <= 0:
         raise InvalidQuantity(f"the creep at {test.force:g} N never strains; compressive strain is positive")

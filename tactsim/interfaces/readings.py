@@ -12,11 +12,14 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.solid import check_size
 from tactsim.interfaces.taxel_layout import JAWS as JAWS
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.units import format_quantity
 
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
 RESOLUTION = 0.1
 """Resolution of a sensor in N: thesis, section 6.2."""
+SAME_BLOCK = 1e-6
+"""Largest relative difference of the sides of one block."""
 ROUNDING_NOISE = RESOLUTION / 12**0.5
 """Standard deviation in N of what rounding to the resolution does to a force."""
 
@@ -55,7 +58,8 @@ class Readings:
     forces : (jaw, row, column) in N pressing into the taxels, the upper jaw first, row 1 nearest the front, column 1 smallest x
     layout : of the taxels on each jaw
     block_size : (3,) of the undeformed tissue in m, which begins at the origin
-    reference : (jaw, row, column) in N, what the same tissue without a lump reads at the same closing; None if not known
+    reference : (jaw, row, column) in N, what the same tissue without a lump reads at the same closing, that of invalid taxels
+        interpolated; None if not known
     noise : standard deviation of a reading in N
     noise_origin : in words, why this noise is taken; empty if not known
     valid : (jaw, row, column), False for a dead or saturated taxel; None if all can be trusted
@@ -66,7 +70,8 @@ class Readings:
     Raises
     ------
     InvalidQuantity
-        On construction: a wrong shape, a taxel that is not finite (named), a block or noise out of its range.
+        On construction: a wrong shape, a taxel that is not finite (named), a block or noise out of its range, a response of
+        other taxels or of another block.
     """
 
     forces: Array
@@ -97,10 +102,11 @@ class Readings:
         middle = size[:2] / 2 if self.middle is None else np.asarray(self.middle, dtype=float)
         if middle.shape != (2,) or not np.isfinite(middle).all():
             raise InvalidQuantity(f"middle of the matrices {middle.tolist()} m; allowed: two finite lengths, x and y")
-        difference = None
-        if self.reference is not None:
-            difference = checked_readings(forces - checked_readings(self.reference, self.valid), self.valid)
-        parts = {"forces": forces, "block_size": size, "middle": middle, "difference": difference}
+        if self.response is not None:
+            _check_response(self.response, allowed, size)
+        reference = None if self.reference is None else checked_readings(self.reference, self.valid)
+        difference = None if reference is None else checked_readings(forces - reference, self.valid)
+        parts = {"forces": forces, "block_size": size, "middle": middle, "reference": reference, "difference": difference}
         for name, value in (parts | {"filled": checked_readings(forces, self.valid)}).items():
             object.__setattr__(self, name, value)
 
@@ -177,6 +183,20 @@ def checked_readings(readings: Array, valid: Array | None = None) -> Array:
         )
     _check_finite(np.where(usable, forces, 0.0))
     return np.stack([_filled(matrix, good, side) for matrix, good, side in zip(forces, usable, JAWS, strict=True)])
+
+
+def _check_response(response: TissueResponse, taxels: tuple[int, ...], size: Array) -> None:
+    """Refuse the response of other taxels (jaw, row, column), or of a block of another size than (3,) in m."""
+    needed = "needed: the response of the same grasp"
+    if response.values.shape[4:] != taxels:
+        raise InvalidQuantity(
+            f"the response of the tissue is that of taxels {response.values.shape[4:]}, the readings are of (jaw, row, column) = "
+            f"{taxels}; {needed}"
+        )
+    tabulated = np.array([axis[0] + axis[-1] for axis in response.axes])
+    if not np.allclose(tabulated, size, rtol=SAME_BLOCK):
+        given, block = (" x ".join(format_quantity(float(side), "m") for side in sides) for sides in (tabulated, size))
+        raise InvalidQuantity(f"the response of the tissue is that of a block of {given}, the readings are of {block}; {needed}")
 
 
 def _check_finite(readings: Array) -> None:

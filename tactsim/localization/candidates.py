@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import scipy
+from pydantic import AfterValidator, Field
 
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
+from tactsim.units import Length, format_quantity
 
 LINE_STEP = 1e-3
 """Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
@@ -20,8 +23,26 @@ CUTS = (0.25, 0.5, 0.75)
 """Fractions of a line's length in the block at which a tube may end."""
 SAME_SPREAD = float(np.sqrt(5 / 4))
 """Radius of the ball over that of the circle with the same second moment along a diameter: r^2 / 5 and r^2 / 4."""
+SAME = 1e-9
+"""Largest relative difference of equal radii."""
 RADIUS_STEP = 1e-3
 """Of balls and tubes that are tried, in m."""
+
+
+def _ordered(limits: tuple[float, float]) -> tuple[float, float]:
+    if limits[0] > limits[1]:
+        least, largest = (format_quantity(limit, "m") for limit in limits)
+        raise ValueError(f"the least radius {least} is above the largest {largest}; name the least first")
+    return limits
+
+
+RadiusLimits = Annotated[tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]], AfterValidator(_ordered)]
+"""Pydantic type of the least and the largest radius of what is sought."""
+
+
+def no_body(kind: str) -> InputError:
+    """What is raised if no candidate of a kind is left."""
+    return InputError(f"no {kind} of the tabulated radii fits into the block; take smaller radii or a smaller gap")
 
 
 def radius_steps(limits: tuple[float, float]) -> list[float]:
@@ -80,19 +101,19 @@ def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float
     Raises
     ------
     InputError
-        If none fits.
+        If none fits, or all radii lie beyond those of the table.
     """
     axes = tuple(axis[every // 2 :: every] for axis in response.axes)
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     room = np.minimum(grid, size - grid).min(axis=1)
     parts = []
-    for k in _tabulated(response, np.asarray(radii)):
+    for k in _tabulated(response, radii):
         fits = room >= response.radii[k] + gap
         picked = response.values[k][tuple(slice(every // 2, None, every) for _ in range(3))]
         parts.append((grid[fits], np.full(int(fits.sum()), response.radii[k]), picked.reshape(len(grid), -1)[fits]))
     centers, sizes, signals = (np.concatenate(part) for part in zip(*parts, strict=True))
     if not len(sizes):
-        raise InputError("no ball of the tabulated radii fits into the block; take smaller radii")
+        raise no_body("ball")
     return Candidates("sphere", centers, centers, sizes, np.ascontiguousarray(signals))
 
 
@@ -112,7 +133,7 @@ def tube_candidates(
     Raises
     ------
     InputError
-        If none fits.
+        If none fits, or all radii lie beyond those of the table.
     """
     heights = response.axes[2]
     lines = _lines(size, spacing)
@@ -121,7 +142,7 @@ def tube_candidates(
     firsts, lasts = (np.concatenate([lines[0] + end * across for end in ends]) for ends in zip(*spans, strict=True))
     table = _line_integrals(response, firsts, lasts)
     parts = []
-    for k in _tabulated(response, np.asarray(radii) * SAME_SPREAD):
+    for k in _tabulated(response, radii, SAME_SPREAD):
         radius = float(response.radii[k]) / SAME_SPREAD
         level = np.flatnonzero(np.minimum(heights, size[2] - heights) >= radius + gap)
         inside = _beside(firsts, lasts, size) >= radius + gap
@@ -133,13 +154,25 @@ def tube_candidates(
         parts.append((*placed, np.full(len(z), radius), signals))
     begins, ends, sizes, responses = (np.concatenate(part) for part in zip(*parts, strict=True))
     if not len(sizes):
-        raise InputError("no tube of the tabulated radii fits into the block; take smaller radii")
+        raise no_body("tube")
     return Candidates("tube", begins, ends, sizes, responses)
 
 
-def _tabulated(response: TissueResponse, radii: Array) -> Array:
-    """Numbers of the tabulated radii nearest to those wanted, each once."""
-    return np.unique(np.abs(response.radii[:, None] - radii).argmin(axis=0))
+def untabulated(response: TissueResponse, limits: tuple[float, float], factor: float = 1.0) -> InputError:
+    """What is raised if the response knows no ball with a radius between limits in m, times ``factor``."""
+    known = (float(radius) / factor for radius in response.radii[[0, -1]])
+    words = [format_quantity(float(f"{radius:.4g}"), "m") for radius in (*limits, *known)]
+    return InputError(
+        f"no tabulated radius lies between {words[0]} and {words[1]}; the response of the tissue knows {words[2]} to {words[3]}"
+    )
+
+
+def _tabulated(response: TissueResponse, radii: Sequence[float], factor: float = 1.0) -> Array:
+    """Numbers of the tabulated radii nearest to those wanted times ``factor``, each once."""
+    wanted = factor * np.asarray(radii)
+    if wanted.max() < response.radii[0] * (1 - SAME) or wanted.min() > response.radii[-1] * (1 + SAME):
+        raise untabulated(response, (min(radii), max(radii)), factor)
+    return np.unique(np.abs(response.radii[:, None] - wanted).argmin(axis=0))
 
 
 def _lines(size: Array, spacing: float) -> tuple[Array, Array]:

@@ -15,7 +15,8 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.units import format_quantity
 
 RIGID_CONTRAST = 2.5
 """Contrast of a small rigid ball in incompressible tissue."""
@@ -91,6 +92,24 @@ class LumpResponse:
             return self._interpolator(np.column_stack([radii, centers]))
         except ValueError as error:
             raise InvalidQuantity(f"a ball outside the table of the response: {error}") from None
+
+
+def fitting_radii(radii: Array, size: Sequence[float]) -> Array:
+    """Those of ascending radii in m whose balls fit into a block of this size (3,) in m.
+
+    Raises
+    ------
+    InputError
+        If none fits.
+    """
+    fitting = radii[min(size) > 2 * radii]
+    if not len(fitting):
+        side, least = format_quantity(min(size), "m"), format_quantity(2 * float(radii[0]), "m")
+        raise InputError(
+            f"the block is {side} along its shortest side, and the smallest ball whose response is computed is {least} wide; "
+            "needed: a thicker block"
+        )
+    return fitting
 
 
 def eshelby_contrast(shear_ratio: Array) -> Array:

@@ -60,7 +60,8 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
 
     .. math:: \chi^2 = d \cdot S^{-1} d, \qquad S = (2 \sigma^2 + e_b^2 \overline{p^2}) 1 + b^2 p p^T
 
-    which readings of the tissue of the reference bring above the limit once in a thousand times.
+    which readings of the tissue of the reference bring above the limit once in a thousand times. A factor f of the reference
+    multiplies its errors too: what it leaves has the variance :math:`(1 + f^2) \sigma^2 + f^2 e_b^2 \overline{p^2}`.
     """
     if readings.reference is None or readings.difference is None:
         return None
@@ -70,10 +71,11 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
     if len(plain) < LEAST or not plain.any():
         return None
     errors = ReferenceErrors(plain, readings.noise, TAXEL_ERROR * _rms(reference) / _rms(plain), SAME_TISSUE, 0.0)
-    white, excess = errors.white(0 * change), float(plain @ change / (plain @ plain))
+    factor = 1 + float(plain @ change / (plain @ plain))
     squares = float(change @ np.linalg.solve(errors.covariance(0 * change), change))
-    left = change - excess * plain
-    return PlainParts(len(plain), squares, 1 + excess, float(left @ left) / white)
+    left = change - (factor - 1) * plain
+    white = factor**2 * errors.white(0 * change) + (1 - factor**2) * readings.noise**2
+    return PlainParts(len(plain), squares, factor, float(left @ left) / white)
 
 
 def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
@@ -87,6 +89,8 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
     )
     if not parts.fits_scaled:
         return f"{words}, nor any multiple of it: other friction, closing or inclusions; do not trust the place"
+    if parts.factor < 0:
+        return f"{words}: they have the opposite sign; forces are positive where the tissue presses; do not trust the place"
     words += f": they are {parts.factor:.3g} times as large, so tissue or sensors are not those of the reference"
     if estimate.factor is None:
         return f"{words}; the estimate takes that for an inclusion; give a reference of this tissue"

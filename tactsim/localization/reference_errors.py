@@ -170,6 +170,8 @@ def factor_words(factor: float | None) -> str:
     """What a user must know of a factor; nothing if it may be that of a reference of the same tissue."""
     if factor is None or abs(factor - 1) < WORTH_SAYING:
         return ""
+    if factor < 0:
+        return "; the readings have the opposite sign of the reference: forces are positive where the tissue presses"
     return f"; the readings are {factor:.3g} times those of the reference: stiffness and gain cannot be told apart"
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.dataset.ranking.reference import check_same
+from tactsim.dataset.ranking.samples import refuse_reopened, stored_experiment
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
@@ -48,13 +50,15 @@ def store_confusion(
     StorageError
         If the store or the reference cannot be read, or a sample is not what was written.
     InputError
-        If no sample is done, it has no inclusions, or another matrix or closing than the reference.
+        If no sample is done, it has no inclusions, another block, matrix or closing than the reference, or opens again before
+        its end.
     """
     data = _grasps(store, split)
     plain = readings_of(stored_grasp(reference), noise=noise)
+    experiment = stored_experiment(store)
+    check_same(np.asarray(experiment.block.size), experiment.matrix, plain, "the store")
+    refuse_reopened(experiment, Path(store).name)
     forces = np.asarray(data[TAXEL_FORCE].values, dtype=float)[:, -1]
-    if forces.shape[1:] != plain.forces.shape:
-        raise InputError(f"the samples have (jaw, row, column) = {forces.shape[1:]}, the reference {plain.forces.shape}")
     _check_closings(data["closing"].values, plain.closing)
     if estimator.needs_response and response is None:
         response = stored_response(reference)

@@ -20,10 +20,12 @@ from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.localization.source import SAME_CLOSING
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import one_line
 from tactsim.sensors.matrix_readout import MatrixReadout
+from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -130,10 +132,11 @@ def judged_samples(
         If the folder is not a data set, or a sample is not what was written.
     InputError
         If it has no grasp that is done, other inclusions than one ball, no such readings, another block or matrix than the
-        reference, or closes further.
+        reference, closes further, or opens again before its end.
     """
     data, experiment = load(store, split=split, verified=True), stored_experiment(store)
     _check_store(data, source, Path(store).name, split)
+    refuse_reopened(experiment, Path(store).name)
     plain = PlainGrasp.of_results(reference)
     check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")
     forces = np.asarray(data[source].values[:, -1], dtype=float)
@@ -167,6 +170,26 @@ def stored_experiment(store: str | Path) -> Grasp:
             f"{Path(store).name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml"
         )
     return case.experiment
+
+
+def refuse_reopened(experiment: Grasp, name: str) -> None:
+    """Refuse grasps that open again before their end: forces are judged there, against tissue that was closed only.
+
+    Raises
+    ------
+    InputError
+        If they do.
+    """
+    if experiment.loading.control != "displacement":
+        return  # which has no closing, and is refused for that
+    most = experiment.loading.least_and_most()[1]
+    end = float(experiment.loading.history().value(experiment.duration))
+    if end < most * (1 - SAME_CLOSING):
+        closed, left = format_quantity(most, "m"), format_quantity(end, "m")
+        raise InputError(
+            f"{name} has grasps that close by {closed} and open again to {left}; needed: a largest closing at the end, where the "
+            "taxels are read"
+        )
 
 
 def _check_store(data: xarray.Dataset, source: Source, name: str, split: str | Sequence[str] | None) -> None:

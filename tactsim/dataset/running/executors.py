@@ -80,8 +80,16 @@ class LocalWorkers(Executor):
 
     @classmethod
     def of(cls, sweep: Sweep, count: int | None) -> Self:
-        """Those of a sweep; by default one per core, not more than samples, and the first alone if the sweep is short."""
+        """Those of a sweep; by default one per core, not more than samples, and the first alone if the sweep is short.
+
+        Raises
+        ------
+        InputError
+            If the count is no whole number from 1 on.
+        """
         if count is not None:
+            if not isinstance(count, int) or count < 1:
+                raise InputError(f"workers is {shown(count)}; allowed: whole numbers from 1 on, or None for one per core")
             return cls(sweep.text, count, folder=sweep.folder)
         return cls(sweep.text, min(usable_cores(), sweep.samples), folder=sweep.folder, patience=WORTH_A_PROCESS)
 

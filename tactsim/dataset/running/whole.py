@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ from tactsim.errors import CaseError, InputError
 from tactsim.interfaces.variation import Variation
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
-from tactsim.registry import registered_outside
+from tactsim.registry import kinds_outside
 from tactsim.storage.own_files import ForeignFile, OwnFiles
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def sweep(
     CaseError
         If a place, a distribution or a setting is wrong.
     InputError
-        If the experiment is of a class that a worker process cannot load.
+        If the experiment, or what it is made of, is of a class that a worker process cannot load, or there are no workers.
     StorageError
         If the place is taken or cannot be written.
     """
@@ -91,9 +91,6 @@ def sweep(
 
 
 def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Sweep:
-    foreign = {cls.__name__ for cls in registered_outside("tactsim")} & {type(variation.experiment).__name__}
-    if foreign:
-        raise InputError(f"{foreign.pop()} is defined in this session, and the worker processes of a sweep cannot load it")
     document = Document(case_document(variation.experiment, complete=True) | {"title": title, "schema": SCHEMA})
     try:
         for place, distribution in variation.places.items():
@@ -101,7 +98,22 @@ def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Swe
     except YamlProblems as error:
         raise CaseError(f"vary: {error}") from None
     document.value[SECTION] = settings
+    foreign = kinds_outside("tactsim")
+    for kind in _kinds_in(document.value):
+        if kind in foreign:
+            raise InputError(f"{foreign[kind]} is defined in this session, and the worker processes of a sweep cannot load it")
     return sweep_of_document(document)
+
+
+def _kinds_in(value: Any) -> Iterator[str]:
+    """Every kind that a plain document names."""
+    if isinstance(value, dict):
+        if isinstance(value.get("kind"), str):
+            yield value["kind"]
+        value = list(value.values())
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from _kinds_in(item)
 
 
 def compute(run: SweepRun, executor: Executor, progress: Callable[[Tally], None]) -> bool:

@@ -167,6 +167,8 @@ def _sized(document: Document, where: Where, settings: SweepSettings, samples: i
         raise _wrong("within_specimen", "names nothing, so that the samples of a specimen would be equal; name what varies")
     if wanted is None:
         raise _wrong("samples", f"missing; expected a number of samples up to {MOST_SAMPLES}, or --samples N")
+    if wanted > MOST_SAMPLES:  # of an option, which no field of the file has checked
+        raise _wrong("samples", f"{wanted} asked for; allowed: up to {MOST_SAMPLES}")
     return Sweep(document, where, settings, wanted, settings.samples_per_specimen, outer, inner)
 
 

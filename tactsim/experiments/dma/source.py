@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.identification.columns import of_file
 from tactsim.identification.dma_data import FEWEST_FREQUENCIES, THESIS_FREQUENCIES, DmaData, read_dma, synthetic_dma
 from tactsim.identification.dma_signals import (
     DmaSignals,
@@ -210,11 +211,11 @@ class SignalsDma(DmaSource):
         """The signals and what they give."""
         if self.path is not None:
             signals = read_dma_tests(self.path, area=self.area, height=self.height)
-        else:
-            signals = [
-                read_dma_signals(test.path, frequency=test.frequency, area=self.area, height=self.height)
-                for test in self.tests or ()
-            ]
+            with of_file(self.path):
+                return SignalsAnalysis.of(signals, refine=self.refine)
+        signals = [
+            read_dma_signals(test.path, frequency=test.frequency, area=self.area, height=self.height) for test in self.tests or ()
+        ]
         return SignalsAnalysis.of(signals, refine=self.refine)
 
     def measured(self) -> DmaData:

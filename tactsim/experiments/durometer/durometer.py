@@ -72,6 +72,9 @@ class Durometer(Experiment):
         if self.specimen.thickness < LEAST_THICKNESS:
             given, least = (format_quantity(value, "m") for value in (self.specimen.thickness, LEAST_THICKNESS))
             raise ValueError(f"a durometer needs a specimen of at least {least} (ASTM D2240); this one is {given} thick")
+        if self.scale.travel >= self.specimen.thickness:
+            given, most = (format_quantity(value, "m") for value in (self.scale.travel, self.specimen.thickness))
+            raise ValueError(f"scale.travel {given} must be smaller than the specimen's thickness {most}")
         if any(material.relaxation is not None for material in self.specimen.materials):
             raise ValueError(
                 "a durometer is read without regard to time; give the constants at the time of reading, no relaxation"

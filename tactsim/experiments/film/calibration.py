@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import nullcontext
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -12,6 +13,7 @@ from tactsim.array import Array
 from tactsim.experiments.film.force_calibration_source import MeasuredCalibration, SyntheticCalibration
 from tactsim.experiments.film.scene import CalibrationScene
 from tactsim.identification.calibration_line import CalibrationFit, fit_calibration_line
+from tactsim.identification.columns import of_file
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.results.quantity import Quantity
@@ -61,15 +63,16 @@ class ForceCalibration(Experiment):
     def begin(self) -> Course:
         """Fit the line of every sensor; one step per reading of a sensor."""
         force, voltage, saturated = self.data.readings(self.chain)
-        fit = fit_calibration_line(
-            force,
-            voltage,
-            supply=self.chain.supply,
-            load=self.chain.load_resistor,
-            saturated=saturated,
-            confidence=self.confidence,
-            full_scale=self.full_scale,
-        )
+        with of_file(self.data.path) if isinstance(self.data, MeasuredCalibration) else nullcontext():
+            fit = fit_calibration_line(
+                force,
+                voltage,
+                supply=self.chain.supply,
+                load=self.chain.load_resistor,
+                saturated=saturated,
+                confidence=self.confidence,
+                full_scale=self.full_scale,
+            )
         lines = "line" if fit.slope.size == 1 else f"{fit.slope.size} lines"
         return Course.computed(
             Findings(

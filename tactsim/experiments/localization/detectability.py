@@ -17,7 +17,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
+from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, fitting_radii
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.progress import elapsed_time
@@ -205,12 +205,19 @@ class Detectability(Experiment):
 
 
 def coarse_response(setup: GraspSetup) -> LumpResponse:
-    """The response of the taxels of a grasp on a coarse grid of centres and radii."""
+    """The response of the taxels of a grasp on a coarse grid of centres and radii.
+
+    Raises
+    ------
+    InputError
+        If no tabulated ball fits into the block.
+    """
     from tactsim.experiments.localization.lump_sensitivity import sensitivity
 
+    size = setup.block.size
+    radii = fitting_radii(RADII, size)
     adjoint = sensitivity(setup)
-    size, densities = setup.block.size, adjoint.densities
-    radii = RADII[min(size) > 2 * RADII]
+    densities = adjoint.densities
     flat = densities.reshape(-1, densities.shape[-1])
     spacing, tables = min(SPACING, min(size) / 5), []
     for begin in range(0, len(flat), ROWS_AT_ONCE):

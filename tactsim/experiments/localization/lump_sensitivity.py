@@ -26,7 +26,7 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.fem.solvers.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.localization.lump_response import LumpResponse
+from tactsim.localization.lump_response import LumpResponse, fitting_radii
 from tactsim.mechanics.models.block_model import CLOSING, GraspModel
 from tactsim.mechanics.models.block_source import StructuredSource
 
@@ -55,13 +55,13 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
     Raises
     ------
     InputError
-        If the grasp has inclusions.
+        If the grasp has inclusions, or no tabulated ball fits into its block.
     ConvergenceError
         If the plain tissue cannot be grasped.
     """
-    adjoint = sensitivity(setup)
     size = setup.block.size
-    radii = RADII[min(size) > 2 * RADII]
+    radii = fitting_radii(RADII, size)
+    adjoint = sensitivity(setup)
     return LumpResponse.of_density(
         adjoint.places, adjoint.volumes, adjoint.densities, size=size, radii=radii, spacing=min(SPACING, min(size) / 10)
     )

@@ -15,7 +15,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import Candidates, ball_candidates, radius_steps, tube_candidates
+from tactsim.localization.candidates import Candidates, RadiusLimits, ball_candidates, radius_steps, tube_candidates
 from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -66,9 +66,9 @@ class HypothesesEstimator(Estimator):
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """Classes that are considered."""
-    radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
+    radii: RadiusLimits = (2e-3, 7e-3)
     """Least and largest radius of a lump."""
-    tube_radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 5e-3)
+    tube_radii: RadiusLimits = (2e-3, 5e-3)
     """Least and largest outer radius of an artery."""
     gap: Annotated[Length, Field(ge=0)] = 0.5e-3
     """Least distance of a body from the faces of the block that it does not leave through."""

@@ -13,7 +13,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import ball_candidates, radius_steps
+from tactsim.localization.candidates import RadiusLimits, ball_candidates, no_body, radius_steps, untabulated
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -77,7 +77,7 @@ class ModelBasedEstimator(Estimator):
 
     needs_response: ClassVar[bool] = True
     kind: Literal["model_based"] = "model_based"
-    radii: tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]] = (2e-3, 7e-3)
+    radii: RadiusLimits = (2e-3, 7e-3)
     """Least and largest radius."""
     gap: Annotated[Length, Field(ge=0)] = 0.5e-3
     """Least distance of the ball from the faces of the block."""
@@ -192,13 +192,15 @@ class ModelBasedEstimator(Estimator):
         """All balls of the table that fit into the block."""
         chosen = np.flatnonzero((response.radii >= self.radii[0] - 1e-12) & (response.radii <= self.radii[1] + 1e-12))
         if not len(chosen):
-            raise InputError(f"no tabulated radius lies between {self.radii[0]:g} and {self.radii[1]:g} m")
+            raise untabulated(response, self.radii)
         grid = np.stack(np.meshgrid(*response.axes, indexing="ij"), axis=-1).reshape(-1, 3)
         room = np.minimum(grid, size - grid).min(axis=1)
         cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
         signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
         radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])
         every = np.concatenate(cells)
+        if not len(every):
+            raise no_body("ball")
         return Candidates(every, grid[every], radii, np.concatenate(signals))
 
     def _probability(self, fits: list[ReferenceFit]) -> float:

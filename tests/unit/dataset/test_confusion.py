@@ -6,10 +6,11 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from made_grasps import CLOSINGS, made_forces, made_store, plain_result, response, sum_up, truths
+from made_grasps import CLOSINGS, LAYOUT, TEXT, made_forces, made_store, plain_result, response, sum_up, truths
 
 from tactsim.cli.entry import main
 from tactsim.dataset.ranking import confusion
@@ -73,6 +74,33 @@ def test_other_closings_than_the_reference_are_refused(store: Path, tmp_path: Pa
     other = plain_result(tmp_path / "other", CLOSINGS[:2])
     with pytest.raises(InputError, match="needed: the same"):
         store_confusion(store, other, HypothesesEstimator(), response=response())
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        (
+            {"size": np.array([60e-3, 40e-3, 20e-3])},
+            "the block of the store measures 40 mm x 40 mm x 20 mm, that of",
+        ),
+        ({"layout": LAYOUT.model_copy(update={"pitch": 9e-3})}, "the matrix of the store"),
+    ],
+)
+def test_a_reference_of_another_block_or_matrix_is_refused(
+    store: Path, tmp_path: Path, other: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        store_confusion(store, plain_result(tmp_path / "other", **other), HypothesesEstimator(), response=response())
+
+
+def test_grasps_that_open_again_are_not_held_against_tissue_that_only_closed(tmp_path: Path, plain: str) -> None:
+    ramp = "      - {kind: ramp, to: 1 mm, duration: 1 s}\n"
+    place = made_store(tmp_path, response(), text=TEXT.replace(ramp, ramp + "      - {kind: ramp, to: 0.4 mm, duration: 1 s}\n"))
+    words = "close by 1 mm and open again to 400 µm; needed: a largest closing at the end"
+    with pytest.raises(InputError, match=words):
+        store_confusion(place, plain, HypothesesEstimator(), response=response())
+    with pytest.raises(InputError, match=words):
+        judged_samples(place, [plain], source="taxel_force")
 
 
 def test_a_changed_sample_is_not_counted(store: Path, plain: str, tmp_path: Path) -> None:

@@ -192,3 +192,9 @@ def test_a_grid_may_begin_with_impossible_cases(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, text)
     assert layout_of(sweep).variables
     assert sum(drawn_specimen(sweep, k)[0].case is not None for k in range(8)) == 5
+
+
+def test_more_samples_than_a_data_set_may_have_are_refused_before_it_is_made(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match=r"sweep\.samples: 10000001 asked for; allowed: up to 10000000"):
+        sweep_of(tmp_path, samples=10_000_001)
+    assert sweep_of(tmp_path, samples=10_000_000).samples == 10_000_000

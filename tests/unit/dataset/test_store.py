@@ -35,7 +35,7 @@ from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
 from tactsim.dataset.use.card import redrawn, split_counts
-from tactsim.errors import CaseError, StorageError, TactsimError
+from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
 
 CASES = Path(__file__).parents[3] / "cases"
@@ -240,6 +240,12 @@ def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole:
     assert store.read("varied_inner_radius")[5] > 0
     assert np.isnan(store.group["force"][5]).all()
     assert check(tmp_path / "unlucky.zarr").findings == ()
+
+
+@pytest.mark.parametrize("count", [0, -1, "2", 1.5])
+def test_a_number_of_workers_that_is_none_is_refused(tmp_path: Path, count: Any) -> None:
+    with pytest.raises(InputError, match=r"workers is .*; allowed: whole numbers from 1 on"):
+        LocalWorkers.of(load_sweep(sweep_file(tmp_path)), count)
 
 
 def test_workers_that_always_die_end_the_sweep_and_mark_little(tmp_path: Path) -> None:

@@ -52,6 +52,13 @@ def test_a_wrong_frequency_is_not_refined():
         complex_modulus(DmaSignals(**oscillation() | {"frequency": 7.7}), refine=True)
 
 
+@pytest.mark.parametrize("named", [5.3, 6.7])
+def test_a_frequency_beyond_the_search_is_not_refined_to_its_border(named):
+    signals = DmaSignals(**oscillation(frequency=6.0) | {"frequency": named})  # half a cycle over the record is 0.6 Hz
+    with pytest.raises(ConvergenceError, match=r"within 0\.6 Hz"):
+        complex_modulus(signals, refine=True)
+
+
 @pytest.mark.parametrize("of", ["modulus", "compliance"])
 def test_noise_stays_within_its_standard_errors(of):
     scores = []

@@ -114,6 +114,11 @@ def test_one_file_of_all_tests(tmp_path):
     path.write_text(f"{header}\n" + "\n".join(f"1, {t / 100}, {np.sin(t)}, 1" for t in range(200)))
     with pytest.raises(InvalidQuantity, match=r"test at 1 Hz: displacement is 0\.001 m throughout"):
         read_dma_tests(path, area=1e-4, height=1e-3)
+    path.write_text(f"{header}\n" + "\n".join(f"{1 + 1e-6 * t}, {t / 100}, {np.sin(t)}, {np.cos(t)}" for t in range(20)))
+    with pytest.raises(
+        InvalidQuantity, match=r"tests\.csv: the frequency 1 Hz stands in 1 rows.*write the frequency that was set"
+    ):
+        read_dma_tests(path, area=1e-4, height=1e-3)
     path.write_text("time [s], load [N], displacement [mm]\n0, 1, 1\n")
     with pytest.raises(InvalidQuantity, match="no column frequency"):
         read_dma_tests(path, area=1e-4, height=1e-3)

@@ -74,3 +74,21 @@ def test_a_file_is_read_in_its_units(tmp_path):
         read_creep(path)
     with pytest.raises(StorageError):
         read_creep(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t, force, s: (t, force * (1 + 1e-4 * t), s), r"stands in 1 rows.*write the force that was set"),
+        (lambda t, force, s: (t, force, -s), "at 2 N never strains"),
+        (lambda t, force, s: (t, 0 * force, s), "under a force of 0 N"),
+        (lambda t, force, s: (t % 10, force, s), "must increase from 0 s or later: one test for each force"),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_refused_with_its_name(tmp_path, change, message):
+    test = noisy_creep(0.001)[0]
+    rows = [change(t, test.force, s) for t, s in zip(test.time, test.strain, strict=True)]
+    path = tmp_path / "creep.csv"
+    np.savetxt(path, rows, delimiter=",", header="time [s], force [N], strain [1]", comments="", fmt="%.17g")
+    with pytest.raises(InvalidQuantity, match=r"creep\.csv: .*" + message):
+        read_creep(path)

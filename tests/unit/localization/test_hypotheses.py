@@ -176,6 +176,9 @@ def test_reference_and_response_are_needed(response):
     large = ESTIMATOR.model_copy(update={"gap": 9.9e-3})
     with pytest.raises(InputError, match="fits into the block"):
         large.estimate(readings(response, np.zeros((2, 3, 3))))
+    for beyond in ({"radii": (9e-3, 12e-3)}, {"tube_radii": (9e-3, 12e-3), "classes": ("artery",)}):
+        with pytest.raises(InputError, match="no tabulated radius lies between 9 mm and 12 mm; the response of the tissue knows"):
+            ESTIMATOR.model_copy(update=beyond).estimate(readings(response, np.zeros((2, 3, 3))))
 
 
 def test_readings_equal_to_the_reference_without_noise_hold_nothing(response):

@@ -1,11 +1,14 @@
 """The fast forward model and the estimator on it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from tactsim.errors import InputError, InvalidQuantity
+from tactsim.errors import CaseError, InputError, InvalidQuantity
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 
@@ -112,3 +115,30 @@ def test_reference_and_response_are_needed(response):
         ModelBasedEstimator().estimate(bare)
     with pytest.raises(InputError, match="radius"):
         ModelBasedEstimator(radii=(8e-3, 9e-3)).estimate(readings(response, (20e-3, 20e-3, 10e-3), 4e-3, 1.0))
+    with pytest.raises(InputError, match="no ball of the tabulated radii fits into the block"):
+        ModelBasedEstimator(gap=15e-3).estimate(readings(response, (20e-3, 20e-3, 10e-3), 4e-3, 1.0))
+    with pytest.raises(CaseError, match="least radius 7 mm is above the largest 2 mm"):
+        ModelBasedEstimator(radii=(7e-3, 2e-3))
+
+
+@pytest.mark.parametrize("estimator", [ModelBasedEstimator(), HypothesesEstimator()])
+def test_what_a_dead_taxel_of_the_reference_reads_is_not_looked_at(response, estimator):
+    given = readings(response, (26e-3, 24e-3, 13e-3), 4e-3, 8.0)
+    valid = np.ones((2, 3, 3), bool)
+    valid[0, 2, 0] = valid[1, 0, 1] = False
+    estimates = [
+        estimator.estimate(replace(given, reference=np.where(valid, given.reference, dead), valid=valid))
+        for dead in (given.reference, np.nan, 1e6)
+    ]
+    assert estimates[0].present
+    for other in estimates[1:]:
+        assert other.inclusions[0].center == estimates[0].inclusions[0].center
+
+
+def test_the_response_of_another_grasp_is_refused(response):
+    given = readings(response, (20e-3, 20e-3, 10e-3), 4e-3, 1.0)
+    fewer = LumpResponse(response.axes, response.radii, response.values[..., :2, :])
+    with pytest.raises(InvalidQuantity, match=r"that of taxels \(2, 2, 3\).*the same grasp"):
+        replace(given, response=fewer)
+    with pytest.raises(InvalidQuantity, match="a block of 40 mm x 40 mm x 20 mm, the readings are of 60 mm x 60 mm x 20 mm"):
+        replace(given, block_size=np.array([60e-3, 60e-3, 20e-3]))

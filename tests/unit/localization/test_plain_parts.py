@@ -10,6 +10,7 @@ from made_grasps import LAYOUT, NOISE, SIZE, plain_forces, response
 
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
+from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.plain_parts import plain_parts, plain_parts_warning
 
 PLAIN = plain_forces(np.array([1e-3]))[0]
@@ -42,6 +43,24 @@ def test_stiffer_tissue_is_a_warning_with_its_factor() -> None:
     assert "1.25 times as large" in words
     assert "takes that for an inclusion" in words
     assert "allows for one common factor" in str(plain_parts_warning(read(1.25 * PLAIN), replace(NOTHING, factor=1.25)))
+
+
+def test_readings_in_another_unit_are_a_multiple_of_the_reference() -> None:
+    given = read(PLAIN)
+    parts = plain_parts(replace(given, forces=1e3 * given.forces), NOTHING)
+    assert parts is not None
+    assert parts.factor == pytest.approx(1e3, rel=5e-3)
+    assert parts.fits_scaled, "the factor multiplies the errors too"
+
+
+def test_readings_of_the_opposite_sign_are_named() -> None:
+    given = read(-PLAIN)
+    words = plain_parts_warning(given, replace(NOTHING, factor=-1.0))
+    assert words is not None
+    assert "opposite sign; forces are positive where the tissue presses" in words
+    estimate = ModelBasedEstimator().estimate(replace(given, response=response()))
+    assert "opposite sign" in estimate.reason
+    assert "gain" not in estimate.reason
 
 
 def test_a_lump_is_not_held_against_the_reference() -> None:

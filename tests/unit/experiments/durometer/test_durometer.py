@@ -101,7 +101,7 @@ def test_an_interrupted_run_keeps_its_steps():
     [
         ({"specimen": {"thickness": 5e-3}}, "at least 6 mm"),
         ({"material": named_material("atrial").material}, "no relaxation"),
-        ({"scale": {"travel": 20e-3}}, "smaller than the specimen's thickness"),
+        ({"scale": {"travel": 20e-3}}, r"scale\.travel 20 mm must be smaller than the specimen's thickness"),
         ({"indentor": Rod(radius=16e-3)}, "is too small for a body of radius 16 mm"),
         ({"spring_tolerance": -1.0}, "spring_tolerance"),
         ({"penetration_tolerance": 0.0}, "penetration_tolerance"),

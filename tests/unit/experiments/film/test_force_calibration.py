@@ -134,6 +134,9 @@ def test_bad_files_are_refused(written, tmp_path):
     path.write_text("force [N]\n1\n2\n3\n")
     with pytest.raises(InvalidQuantity, match="no column voltage"):
         run(data=MeasuredCalibration(path=str(path)))
+    for force, words in ((np.full(5, 3.0), "all forces are equal"), (np.arange(-1.0, 4.0), "a force is -1 N")):
+        with pytest.raises(InvalidQuantity, match=rf"readings\.csv: {words}"):
+            run(data=written(force, 1e3 * np.arange(1.0, 6.0) / 5))
 
 
 @pytest.mark.parametrize(

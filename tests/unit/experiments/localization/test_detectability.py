@@ -7,6 +7,7 @@ from scenes import unmarked_figures
 from scipy.special import ndtri
 from scipy.stats import ncx2
 
+from tactsim.errors import InputError
 from tactsim.experiments.localization import detectability, lump_sensitivity
 from tactsim.experiments.localization.detectability import Detectability, coarse_response
 from tactsim.experiments.localization.detectability_statistics import (
@@ -139,3 +140,11 @@ def test_the_coarse_response_does_not_depend_on_its_parts(monkeypatch):
     monkeypatch.setattr(detectability, "ROWS_AT_ONCE", 5)
     np.testing.assert_allclose(coarse_response(setup).values, whole.values)
     assert whole.values.shape[-3:] == (2, 3, 3)
+
+
+def test_a_block_thinner_than_every_tabulated_ball_is_refused_before_it_is_solved():
+    setup = Detectability.example().grasp
+    thin = setup.model_copy(update={"block": setup.block.model_copy(update={"size": (40e-3, 40e-3, 2.5e-3)})})
+    for response in (coarse_response, lump_sensitivity.lump_response):
+        with pytest.raises(InputError, match=r"2\.5 mm along its shortest side.*3 mm wide; needed: a thicker block"):
+            response(thin)
