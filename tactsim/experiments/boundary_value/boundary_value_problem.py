@@ -35,7 +35,8 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
     ...     ],
     ...     asked={"force": {"kind": "force", "face": "top", "component": "z"}},
     ... )
-    >>> f"{disc.run()['force'].to('N'):.3f}"
+    >>> f"{disc.run()['force'].to('N'):.3f}"  # pi r^2 2 c10 (l - 1 / l^2) at the stretch l = 3/4
+    '-1.614 N'
     """
 
     kind: Literal["boundary_value_problem"] = "boundary_value_problem"
